@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Parallel binned-SAH bounding volume hierarchy over boxes, collapsed to eight children a node. Knows no shape.
+// Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007; Wald, Benthin and Boulos,
+// "Getting rid of packets", 2008 (collapse to wide nodes).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace caplet::bvh {
+
+/// A box with the primitive's opaque group: a leaf holds primitives of one group only.
+struct Reference {
+  float min[3];
+  std::uint32_t primitive;
+  float max[3];
+  std::uint32_t group;
+};
+static_assert(sizeof(Reference) == 32);
+
+inline constexpr int width = 8;
+
+/// child[i] >= 0: node index; < 0: leaf ~child[i]; empty slots have min > max and child = 0x7fffffff.
+struct Node {
+  float min[3][width];
+  float max[3][width];
+  std::int32_t child[width];
+};
+
+struct Leaf {
+  std::uint32_t first;  // in Tree::order
+  std::uint32_t count;  // 1..8
+  std::uint32_t group;
+};
+
+struct Tree {
+  std::vector<Node> nodes;  // node 0 is the root, present also for one primitive; children after parents, depth-first
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> order;  // indices into the references given
+  int depth = 0;                     // nodes on the longest path
+  double sah = 0;                    // expected node visits + leaf visits of a random line through the root box
+};
+
+/// Same tree for any number of threads. `references` must not be empty, boxes finite with min <= max.
+Tree build(std::span<const Reference> references);
+
+}  // namespace caplet::bvh

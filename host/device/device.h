@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// OpenCL: choose a device, hold its context and queue, buffers, programs with a disk cache, launches.
+// Every error carries the call, the place and, for programs, the build log.
+#pragma once
+
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#define CL_HPP_ENABLE_EXCEPTIONS
+#include <CL/opencl.hpp>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace caplet {
+
+struct DeviceInfo {
+  int index = 0;  // over all platforms, as `--device` takes it
+  std::string name, vendor, driver, version, platform;
+  std::string type;  // "cpu", "gpu", "accelerator", "other"
+  unsigned compute_units = 0;
+  std::uint64_t global_bytes = 0, max_allocation_bytes = 0;
+};
+
+/// All OpenCL devices; empty when there is no platform (never throws for that).
+std::vector<DeviceInfo> list_devices();
+
+/// A chosen device with its context and in-order queue. Copies share them.
+class Device {
+ public:
+  /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
+  /// Throws InputError with place "--device" listing what there is when nothing or more than one name matches, or when there is
+  /// no device.
+  static Device choose(const std::string& choice);
+
+  const DeviceInfo& info() const { return info_; }
+  bool is_cpu() const { return info_.type == "cpu"; }
+  const cl::Context& context() const { return context_; }
+  const cl::Device& handle() const { return device_; }
+  cl::CommandQueue& queue() const { return *queue_; }
+  void finish() const;
+  /// Bytes of buffers alive now, and the most there ever were.
+  std::uint64_t bytes_allocated() const;
+  std::uint64_t bytes_peak() const;
+
+ private:
+  friend class RawBuffer;
+  struct Accounting;
+  DeviceInfo info_;
+  cl::Device device_;
+  cl::Context context_;
+  std::shared_ptr<cl::CommandQueue> queue_;
+  std::shared_ptr<Accounting> accounting_;
+};
+
+/// Untyped buffer; Buffer<T> below is the one to use. Empty sizes are allocated as 16 bytes, since OpenCL has no empty buffers.
+class RawBuffer {
+ public:
+  RawBuffer() = default;
+  /// Throws RunError when the device lacks the memory ("needs N bytes, the device allows M").
+  RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents);
+  void read(void* to, std::size_t offset, std::size_t bytes) const;     // blocking
+  void write(const void* from, std::size_t offset, std::size_t bytes);  // blocking
+  std::size_t bytes() const { return bytes_; }
+  const cl::Buffer& handle() const { return buffer_; }
+
+ private:
+  Device device_;
+  cl::Buffer buffer_;
+  std::size_t bytes_ = 0;
+  std::shared_ptr<void> accounted_;
+};
+
+template <class T>
+class Buffer : public RawBuffer {
+ public:
+  Buffer() = default;
+  Buffer(const Device& device, std::size_t count) : RawBuffer(device, count * sizeof(T), false, nullptr) {}
+  Buffer(const Device& device, std::span<const T> contents) : RawBuffer(device, contents.size_bytes(), true, contents.data()) {}
+  std::size_t size() const { return bytes() / sizeof(T); }
+  std::vector<T> read() const {
+    std::vector<T> out(size());
+    RawBuffer::read(out.data(), 0, bytes());
+    return out;
+  }
+  void write(std::span<const T> values) { RawBuffer::write(values.data(), 0, values.size_bytes()); }
+};
+
+/// The flattened text of kernels/stages/<name>.cl (or another kernel file), embedded at build with #line marks. When the
+/// environment variable CAPLET_KERNELS names a folder, the file is read and flattened from there instead. Throws std::logic_error
+/// for unknown names.
+std::string kernel_source(std::string_view name);
+
+/// A compiled program: one kernel file, one set of options. Cached on disk by device, driver, source hash and options
+/// (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an error).
+class Program {
+ public:
+  /// `options` like "-DCAPLET_REAL_WIDTH=8". "-cl-std=CL1.2" is always added. Throws RunError with the build log.
+  Program(const Device& device, const std::string& name, const std::string& options);
+  /// From a text that is not embedded (tests, the probe).
+  static Program from_source(const Device& device, const std::string& name, const std::string& source,
+                             const std::string& options);
+  cl::Kernel kernel(const std::string& name) const;
+  double build_seconds() const { return build_seconds_; }
+  bool from_cache() const { return from_cache_; }
+
+ private:
+  Program() = default;
+  Device device_;
+  std::string name_;
+  cl::Program program_;
+  double build_seconds_ = 0;
+  bool from_cache_ = false;
+};
+
+/// Enqueues `kernel` over `count` work-items (rounded up to `local`; the kernel checks its index). Throws RunError naming the
+/// kernel.
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
+
+/// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record layout on this device; once per
+/// device and driver (remembered in the cache). Throws RunError that says what is wrong.
+void self_test(const Device& device);
+
+}  // namespace caplet

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Reads scene files of every known format into the model. A format is one file here, one row in registry.cpp and one page in
+// docs/formats.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+struct Format {
+  std::string name;                     // "pbrt-v4"
+  std::vector<std::string> extensions;  // ".pbrt"
+  /// Throws InputError.
+  Scene (*import)(const std::filesystem::path& path, const ImageReader& images);
+};
+
+const std::vector<Format>& formats();
+
+/// Imports by extension. The scene is validated; a file that says nothing of camera, light or material has good ones.
+/// Throws InputError for a missing, unreadable or wrong file, or an unknown extension.
+Scene import_scene(const std::filesystem::path& path, const ImageReader& images);
+
+}  // namespace caplet

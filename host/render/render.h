@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Renders a lowered scene: the wavefront path tracer's host side.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "device/device.h"
+#include "lower/lower.h"
+
+namespace caplet {
+
+struct RenderOptions {
+  int samples_per_pixel = 16;
+  std::optional<double> time_limit;  // seconds; the pass under way is finished
+  std::size_t batch_paths = 0;       // 0: chosen for the device
+  bool gpu_encoding = false;         // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
+};
+
+struct Progress {
+  double fraction = 0;  // 0..1
+  int samples_done = 0;
+  double samples_per_second = 0;  // paths
+};
+
+struct RenderResult {
+  std::vector<FilmRecord> film;  // of the crop window, row-major
+  int samples_per_pixel = 0;     // finished
+  bool interrupted = false;
+  double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
+  std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+  std::uint64_t peak_device_bytes = 0;
+  std::vector<std::pair<std::string, double>> stage_compile_seconds;
+};
+
+/// Renders pass by pass; stops after the pass in which `interrupt_requested()` (base) became true. Throws RunError.
+RenderResult render(const FlatScene& scene, const Device& device, const RenderOptions& options,
+                    const std::function<void(const Progress&)>& progress);
+
+}  // namespace caplet

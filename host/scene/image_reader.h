@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// Reads images for importers (environment maps). host/film implements it; whoever imports passes it in.
+class ImageReader {
+ public:
+  virtual ~ImageReader() = default;
+  /// Linear RGB floats, row-major from the top. Throws InputError when the file is missing, broken or of an unknown type.
+  virtual EnvironmentImage read_rgb(const std::filesystem::path& path) const = 0;
+};
+
+}  // namespace caplet

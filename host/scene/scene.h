@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The model of a scene, in double precision, as its file states it: what importers produce and everything else starts from.
+// Lengths are in scene units, angles in radians, matrices map column vectors and are named destination_from_source.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+// --- Shapes (object space) ---
+
+struct SphereShape {
+  double radius = 1;  // centre at the origin
+};
+
+/// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres each. Also the bulk form.
+/// All vectors have one entry a capsule; `radius1` is empty when no capsule is tapered; `materials` is empty or holds an index
+/// into Scene::materials a capsule (overriding Shape::material).
+struct CapsulesShape {
+  std::vector<glm::vec3> p0, p1;
+  std::vector<float> radius0, radius1;
+  std::vector<std::uint32_t> materials;
+};
+
+struct TriangleMeshShape {
+  std::vector<glm::vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<glm::vec3> normals;  // empty or one a vertex
+  std::vector<glm::vec2> uvs;      // empty or one a vertex
+};
+
+/// Disk of `radius` in the plane z = height, normal +z.
+struct DiskShape {
+  double height = 0;
+  double radius = 1;
+};
+
+struct AreaEmission {
+  Spectrum radiance = ConstantSpectrum{1};
+  double scale = 1;             // all scale factors of the file, multiplied ("scale", "power" resolved by lower when set)
+  std::optional<double> power;  // watts over the whole shape; replaces the radiance's magnitude
+  bool two_sided = false;
+};
+
+struct Shape {
+  std::variant<SphereShape, CapsulesShape, TriangleMeshShape, DiskShape> geometry;
+  glm::dmat4 world_from_object{1};  // in an object definition: object_from_shape
+  std::uint32_t material = 0;       // index into Scene::materials
+  std::optional<AreaEmission> emission;
+  bool reverse_orientation = false;
+  std::string name;
+  SourceLocation where;
+};
+
+// --- Materials ---
+
+struct DiffuseMaterial {
+  Spectrum reflectance = ConstantSpectrum{0.5};
+};
+/// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly smooth.
+struct ConductorMaterial {
+  Spectrum eta, k;
+  double alpha_u = 0, alpha_v = 0;
+};
+struct DielectricMaterial {
+  Spectrum eta = ConstantSpectrum{1.5};
+  double alpha_u = 0, alpha_v = 0;
+};
+
+struct Material {
+  std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial> model;
+  std::string name;
+  SourceLocation where;
+};
+
+// --- Lights other than emissive shapes ---
+
+struct PointLight {
+  Spectrum intensity = ConstantSpectrum{1};
+  glm::dvec3 position{0};  // world
+};
+struct SpotLight {
+  Spectrum intensity = ConstantSpectrum{1};
+  glm::dvec3 position{0};
+  glm::dvec3 direction{0, 0, 1};                    // unit, world, along the axis
+  double total_angle = 0.5235987755982988;          // half angle of the cone
+  double falloff_start_angle = 0.4363323129985824;  // where the smooth falloff starts (smoothstep in cos, as pbrt-v4)
+};
+struct DistantLight {
+  Spectrum irradiance = ConstantSpectrum{1};  // pbrt's L: radiance times the delta direction
+  glm::dvec3 direction{0, 0, -1};             // unit, world, the way the light travels
+};
+/// An infinite light. Image pixels are linear RGB in `space`, row-major from the top, 3 floats each.
+struct EnvironmentImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+  ColorSpace space = ColorSpace::srgb;
+  bool equal_area = false;  // square equal-area octahedral (pbrt-v4); otherwise latitude-longitude, 2:1, z up
+};
+struct InfiniteLight {
+  Spectrum radiance = ConstantSpectrum{1};  // without an image
+  std::shared_ptr<const EnvironmentImage> image;
+  glm::dmat3 world_from_light{1};  // rotation, possibly mirroring
+};
+
+struct Light {
+  std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> model;
+  double scale = 1;
+  std::optional<double> power;        // pbrt's "power"
+  std::optional<double> illuminance;  // pbrt's "illuminance" (distant, infinite)
+  SourceLocation where;
+};
+
+// --- Objects and instances ---
+
+struct Object {
+  std::string name;
+  std::vector<Shape> shapes;
+  SourceLocation where;
+};
+struct Instance {
+  std::uint32_t object = 0;  // index into Scene::objects
+  glm::dmat4 world_from_object{1};
+  SourceLocation where;
+};
+
+// --- Camera, film, sampler, integrator ---
+
+struct Camera {
+  glm::dmat4 world_from_camera{1};  // camera space: +x right, +y up, +z forward
+  double fov = 1.5707963267948966;  // of the shorter image side, full angle
+  std::optional<double> frame_aspect_ratio;
+  std::optional<std::array<double, 4>> screen_window;  // x min, x max, y min, y max
+  double lens_radius = 0;
+  double focal_distance = 1e6;
+};
+
+struct PixelFilter {
+  enum class Kind { box, triangle, gaussian, mitchell } kind = Kind::gaussian;
+  double radius_x = 1.5, radius_y = 1.5;  // pixels
+  double sigma = 0.5;                     // gaussian
+  double b = 1.0 / 3, c = 1.0 / 3;        // mitchell
+};
+
+struct FilmSettings {
+  int width = 1280, height = 720;
+  std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
+  std::string filename;                    // as the scene file states it
+  double iso = 100, exposure_time = 1;     // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
+  double max_component_value = 0;          // 0: none
+  ColorSpace space = ColorSpace::srgb;
+};
+
+struct SamplerSettings {
+  int samples_per_pixel = 16;
+  std::uint32_t seed = 0;
+};
+
+struct IntegratorSettings {
+  int max_depth = 5;
+};
+
+struct Scene {
+  std::vector<Material> materials;
+  std::vector<Shape> shapes;  // world
+  std::vector<Object> objects;
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  Camera camera;
+  PixelFilter filter;
+  FilmSettings film;
+  SamplerSettings sampler;
+  IntegratorSettings integrator;
+  std::string source;  // the file it came from
+};
+
+struct Bounds {
+  glm::dvec3 min{1e300}, max{-1e300};
+  bool empty() const { return !(min.x <= max.x); }
+  void extend(const glm::dvec3& p);
+  void extend(const Bounds& other);
+};
+
+/// Exact bounds of the transformed shape itself (ellipsoids and capsules under affine maps included, not of its transformed box).
+Bounds bounds_of(const Shape& shape);
+Bounds bounds_of(const Scene& scene);
+
+/// Number of primitives per kind ("capsule", "tapered_capsule" counted as "capsule", "sphere", "triangle", "disk"), instances
+/// expanded.
+std::map<std::string, std::uint64_t> count_primitives(const Scene& scene);
+
+/// Reports everything that cannot be rendered: non-finite numbers, non-positive sizes, singular transforms, indices out of range,
+/// an image larger than 2^28 pixels, an empty scene. Places are those of the statements.
+void validate(const Scene& scene, Diagnostics& diagnostics);
+
+}  // namespace caplet

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Small vector helpers over float3. Matrices are 3x4 row-major, 12 floats.
+#ifndef CAPLET_MATH_VECTOR_CL
+#define CAPLET_MATH_VECTOR_CL
+
+#define CAPLET_PI 3.14159265358979f
+#define CAPLET_INV_PI 0.318309886183791f
+// Unit roundoff of binary32.
+#define CAPLET_EPS 5.9604644775390625e-8f
+
+typedef struct {
+  float3 s, t, n;
+} Frame;
+
+static inline float sqr(float x) { return x * x; }
+static inline float max3(float3 v) { return fmax(v.x, fmax(v.y, v.z)); }
+static inline float max4(float4 v) { return fmax(fmax(v.x, v.y), fmax(v.z, v.w)); }
+static inline float mean4(float4 v) { return 0.25f * (v.x + v.y + v.z + v.w); }
+static inline float3 load3(__global const float* p) { return (float3)(p[0], p[1], p[2]); }
+
+static inline float3 transform_point(__global const float* m, float3 p) {
+  return (float3)(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                  m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+static inline float3 transform_vector(__global const float* m, float3 v) {
+  return (float3)(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+                  m[8] * v.x + m[9] * v.y + m[10] * v.z);
+}
+// The transpose of m applied to v: a normal goes to the space m comes from.
+static inline float3 transform_transposed(__global const float* m, float3 v) {
+  return (float3)(m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z,
+                  m[2] * v.x + m[6] * v.y + m[10] * v.z);
+}
+
+// Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit length.
+static inline Frame frame_from_normal(float3 n) {
+  Frame f;
+  const float sign = n.z >= 0.0f ? 1.0f : -1.0f;
+  const float a = -1.0f / (sign + n.z);
+  const float b = n.x * n.y * a;
+  f.s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+  f.t = (float3)(b, sign + n.y * n.y * a, -n.y);
+  f.n = n;
+  return f;
+}
+// The frame with normal n whose s lies along dpdu as far as it can.
+static inline Frame frame_from_tangent(float3 n, float3 dpdu) {
+  const float3 s = dpdu - n * dot(n, dpdu);
+  const float length_squared = dot(s, s);
+  if (!(length_squared > 1e-20f * dot(dpdu, dpdu)) || !(length_squared > 0.0f)) return frame_from_normal(n);
+  Frame f;
+  f.s = s * rsqrt(length_squared);
+  f.t = cross(n, f.s);
+  f.n = n;
+  return f;
+}
+static inline float3 to_local(const Frame* f, float3 v) { return (float3)(dot(v, f->s), dot(v, f->t), dot(v, f->n)); }
+static inline float3 to_world(const Frame* f, float3 v) { return f->s * v.x + f->t * v.y + f->n * v.z; }
+
+static inline float power_heuristic(float a, float b) {
+  if (isinf(a)) return 1.0f;
+  const float a2 = a * a, b2 = b * b;
+  return a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+}
+
+// Shirley and Chiu 1997: the unit square onto the unit disk, keeping areas.
+static inline float2 sample_disk(float2 u) {
+  const float2 p = 2.0f * u - 1.0f;
+  if (p.x == 0.0f && p.y == 0.0f) return (float2)(0.0f);
+  float radius, angle;
+  if (fabs(p.x) > fabs(p.y)) {
+    radius = p.x;
+    angle = 0.25f * CAPLET_PI * (p.y / p.x);
+  } else {
+    radius = p.y;
+    angle = 0.5f * CAPLET_PI - 0.25f * CAPLET_PI * (p.x / p.y);
+  }
+  return radius * (float2)(cos(angle), sin(angle));
+}
+static inline float3 sample_cosine_hemisphere(float2 u) {
+  const float2 d = sample_disk(u);
+  return (float3)(d, sqrt(fmax(0.0f, 1.0f - dot(d, d))));
+}
+
+#endif

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Ids of everything that has kinds, expanded from the .def lists. Valid as OpenCL C 1.2 and as C++.
+#ifndef CAPLET_SHARED_KINDS_H
+#define CAPLET_SHARED_KINDS_H
+
+#ifdef __cplusplus
+namespace caplet {
+#endif
+
+enum {
+#define SHAPE(name, rows) shape_##name,
+#include "shared/shapes.def"
+#undef SHAPE
+  shape_count
+};
+
+enum {
+#define MATERIAL(name) material_##name,
+#include "shared/materials.def"
+#undef MATERIAL
+  material_count
+};
+
+enum {
+#define LIGHT(name) light_##name,
+#include "shared/lights.def"
+#undef LIGHT
+  light_count
+};
+
+enum {
+#define SPECTRUM(name) spectrum_##name,
+#include "shared/spectra.def"
+#undef SPECTRUM
+  spectrum_count
+};
+
+// "None" for any index: instance of a world-space primitive, geometry without light, mesh without normals.
+#define CAPLET_NONE 0xffffffffu
+
+// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, bits 30..27 the shape kind, bits 26..0 the
+// block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
+#define CAPLET_LEAF_ROW_BITS 27
+#define CAPLET_LEAF_ROW_MASK 0x07ffffffu
+#define CAPLET_NODE_FLOATS 56  // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
+#define CAPLET_WIDTH 8
+
+// Wavelengths, in nanometres, of every spectral table: 1 nm steps, both ends included.
+#define CAPLET_LAMBDA_MIN 360.0f
+#define CAPLET_LAMBDA_MAX 830.0f
+#define CAPLET_LAMBDA_COUNT 471
+
+// GeometryRecord.flags
+#define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation xor a mirroring transform (open shapes only)
+#define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
+// LightRecord.flags
+#define CAPLET_LIGHT_BOTH_SIDES 1u
+// InstanceRecord.flags
+#define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
+// MaterialRecord.flags
+#define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The records of records.def as plain structs, with their sizes asserted. Valid as OpenCL C 1.2 and as C++.
+#ifndef CAPLET_SHARED_RECORDS_H
+#define CAPLET_SHARED_RECORDS_H
+
+#include "shared/kinds.h"
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace caplet {
+using uint = std::uint32_t;
+#define CAPLET_SIZE_ASSERT(name, bytes) static_assert(sizeof(name) == (bytes) && (bytes) % 16 == 0, #name);
+#else
+#define CAPLET_SIZE_ASSERT(name, bytes) typedef char name##_size_assert[(sizeof(name) == (bytes) && (bytes) % 16 == 0) ? 1 : -1];
+#endif
+
+#define RECORD_BEGIN(name) typedef struct name {
+#define FIELD(type, name) type name;
+#define ARRAY(type, name, count) type name[count];
+#define RECORD_END(name, bytes) \
+  }                             \
+  name;                         \
+  CAPLET_SIZE_ASSERT(name, bytes)
+#include "shared/records.def"
+#undef RECORD_BEGIN
+#undef FIELD
+#undef ARRAY
+#undef RECORD_END
+
+#ifdef __cplusplus
+}
+#endif
+#endif
