@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Spectra of the scene -> SpectrumRecord and tables.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "lower/lower.h"
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// Appends spectra to a FlatScene, each distinct one once.
+class SpectrumTable {
+ public:
+  /// Also fills observer, wavelength_table, and the colour space's illuminant table (params.illuminant_table).
+  SpectrumTable(FlatScene& out, ColorSpace space);
+
+  /// Index into FlatScene::spectra. RGB is uplifted by a sigmoid polynomial; values are clamped to [0, 1].
+  std::uint32_t add_reflectance(const Spectrum& spectrum);
+  /// For eta and k: RGB scaled to a sigmoid times twice its maximum (as pbrt-v4's RGBUnboundedSpectrum).
+  std::uint32_t add_unbounded(const Spectrum& spectrum);
+  /// For emission. RGB: sigmoid times twice the maximum times the illuminant, so that rgb (1 1 1) seen directly is pixel (1 1 1).
+  /// Every other form is normalised to luminance 1, as pbrt-v4 does (its magnitude comes from "scale" and "power").
+  std::uint32_t add_illuminant(const Spectrum& spectrum);
+
+  /// Luminance (CIE Y with the integral of y-bar as unit; 1 for rgb (1 1 1)) of the spectrum that add_illuminant makes.
+  double illuminant_luminance(const Spectrum& spectrum) const;
+
+ private:
+  FlatScene& out_;
+  ColorSpace space_;
+};
+
+/// True when the value does not depend on wavelength (for the dispersive flag).
+bool is_constant(const Spectrum& spectrum);
+
+/// Value at `nm` of a spectrum that is not RGB.
+double evaluate(const Spectrum& spectrum, double nm);
+
+/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of texels
+/// (a table of exact solutions built on first use, interpolated).
+std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
+
+/// 3x3 row-major, linear RGB of `space` from XYZ and back.
+std::array<double, 9> rgb_from_xyz(ColorSpace space);
+std::array<double, 9> xyz_from_rgb(ColorSpace space);
+
+}  // namespace caplet
