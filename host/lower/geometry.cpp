@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/geometry.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <map>
+#include <numbers>
+
+#include "base/check.h"
+#include "lower/encode.h"
+
+namespace caplet {
+
+namespace {
+
+using Matrix = glm::dmat4;
+using glm::dvec3;
+
+/// What one tree holds: primitives in its space, and where emissive ones come from.
+struct Part {
+  Matrix placed{1};  // object_from_part
+  std::vector<FlatPrimitive> primitives;
+  std::vector<const Shape*> shapes;  // that contributed
+  struct Emissive {
+    std::size_t first, count;  // in primitives
+    const Shape* shape;
+    std::uint32_t geometry;
+  };
+  std::vector<Emissive> emissive;
+  std::size_t emitter_count = 0;
+  EncodedTree tree;
+};
+
+dvec3 apply_point(const Matrix& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
+
+/// The common scale when `m` keeps angles (a rotation or reflection times a factor), within float rounding; otherwise 0.
+double similarity_scale(const Matrix& m) {
+  const glm::dmat3 a(m);
+  const double x = glm::length(a[0]), y = glm::length(a[1]), z = glm::length(a[2]);
+  const double s = (x + y + z) / 3;
+  // Scene files carry rotations to six or seven digits: an angle error of 1e-6 moves a surface by less than a float's rounding of
+  // it.
+  const double slack = 2e-6 * s;
+  const bool equal = std::abs(x - s) <= slack && std::abs(y - s) <= slack && std::abs(z - s) <= slack;
+  const bool orthogonal = std::abs(glm::dot(a[0], a[1])) <= slack * s && std::abs(glm::dot(a[0], a[2])) <= slack * s &&
+                          std::abs(glm::dot(a[1], a[2])) <= slack * s;
+  return equal && orthogonal ? s : 0;
+}
+
+/// The common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise 0.
+double disk_scale(const Matrix& m) {
+  const glm::dmat3 a(m);
+  const double x = glm::length(a[0]), y = glm::length(a[1]), s = (x + y) / 2;
+  return std::abs(x - y) <= 2e-6 * s && std::abs(glm::dot(a[0], a[1])) <= 2e-6 * s * s ? s : 0;
+}
+
+void put(FlatPrimitive& p, int at, const dvec3& v) {
+  for (int k = 0; k < 3; ++k) p.data[at + k] = static_cast<float>(v[k]);
+}
+
+void write_matrix(float* rows, const Matrix& m) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
+}
+
+double length3(const float* a, const float* b) { return glm::length(dvec3(b[0], b[1], b[2]) - dvec3(a[0], a[1], a[2])); }
+
+/// Surface area of a primitive in its tree's space.
+double primitive_area(const FlatPrimitive& p) {
+  constexpr double pi = std::numbers::pi;
+  const float* d = p.data;
+  switch (p.shape) {
+    case shape_sphere:
+      return 4 * pi * d[3] * d[3];
+    case shape_capsule:
+      return 2 * pi * d[6] * length3(d, d + 3) + 4 * pi * d[6] * d[6];
+    case shape_tapered_capsule: {
+      const double l = length3(d, d + 3), r0 = d[6], r1 = d[7], dr = r0 - r1;
+      if (l <= std::abs(dr)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
+      const double s = dr / l, c = std::sqrt(1 - s * s);  // sine and cosine of the tangent cone's half angle
+      // Two caps of heights r0 (1 + s)... seen from their centres, and the cone between the tangent circles of radii r0 c, r1 c.
+      return 2 * pi * (r0 * r0 * (1 - s) + r1 * r1 * (1 + s)) + pi * (r0 + r1) * c * l * c;
+    }
+    case shape_triangle: {
+      const dvec3 a(d[0], d[1], d[2]), b(d[3], d[4], d[5]), c(d[6], d[7], d[8]);
+      return 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    case shape_disk:
+      return pi * d[6] * d[6];
+    default:
+      return 0;
+  }
+}
+
+/// Mean factor by which `m` scales areas: the cofactor matrix applied to unit normals, averaged over a spherical Fibonacci set.
+/// Exact for similarities; for others within 1 % for round shapes, and used for powers alone.
+double mean_area_scale(const Matrix& m) {
+  if (const double s = similarity_scale(m); s > 0) return s * s;
+  const glm::dmat3 cofactor = glm::transpose(glm::inverse(glm::dmat3(m))) * std::abs(glm::determinant(glm::dmat3(m)));
+  constexpr int n = 1024;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double z = 1 - (2 * i + 1.0) / n, phi = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    sum += glm::length(cofactor * dvec3(r * std::cos(phi), r * std::sin(phi), z));
+  }
+  return sum / n;
+}
+
+class GeometryLowering {
+ public:
+  GeometryLowering(const Scene& scene, SpectrumTable& spectra, FlatScene& out) : scene_(scene), spectra_(spectra), out_(out) {}
+
+  std::vector<Emitter> run() {
+    std::vector<Part> world = lower_shapes(scene_.shapes, 0);
+    std::vector<std::vector<Part>> objects;
+    auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
+    for (const Object& object : scene_.objects) objects.push_back(lower_shapes(object.shapes, object_number));
+
+    Part& top = world[0];
+    for (std::size_t i = 1; i < world.size(); ++i) {
+      encode(world[i]);
+      place(world[i], world[i].placed, CAPLET_NONE, top);
+    }
+    for (std::vector<Part>& parts : objects)
+      for (Part& part : parts)
+        if (!part.primitives.empty()) encode(part);
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const Instance& instance = scene_.instances[i];
+      for (const Part& part : objects[instance.object])
+        if (!part.primitives.empty())
+          place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(object_number + i), top);
+    }
+    if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
+    encode(top);
+    // World-space emitters come first: their light_offset is absolute.
+    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, 1);
+    for (const Placed& placed : placed_) {
+      if (placed.part->emitter_count == 0) continue;
+      out_.instances[placed.instance].light_base = narrow<uint>(emitters.size());
+      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.area_scale);
+      emitters.insert(emitters.end(), more.begin(), more.end());
+    }
+    out_.params.root = top.tree.root;
+    set_bounds(top.tree);
+    out_.primitive_count = 0;
+    for (const auto& [kind, count] : count_primitives(scene_)) out_.primitive_count += count;
+    out_.bvh_depth = std::max(out_.bvh_depth, top.tree.depth);
+    out_.bvh_sah = top.tree.sah;
+    return emitters;
+  }
+
+ private:
+  struct Placed {
+    const Part* part;
+    uint instance;
+    double area_scale;
+  };
+
+  /// One part for what is baked into the shapes' common space, then one for each transform that cannot be.
+  std::vector<Part> lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
+    std::vector<Part> parts(1);
+    std::map<std::array<double, 16>, std::size_t> by_transform;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Shape& shape = shapes[i];
+      Part* part = &parts[0];
+      Matrix baked = shape.world_from_object;
+      if (!bakes(shape)) {
+        std::array<double, 16> key;
+        for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = shape.world_from_object[k / 4][k % 4];
+        const auto [found, fresh] = by_transform.emplace(key, parts.size());
+        if (fresh) {
+          parts.emplace_back();
+          parts.back().placed = shape.world_from_object;
+        }
+        part = &parts[found->second];
+        baked = Matrix(1);
+      }
+      lower_shape(shape, baked, object_begin + narrow<std::uint32_t>(&shape - shapes.data()), *part);
+    }
+    return parts;
+  }
+
+  static bool bakes(const Shape& shape) {
+    if (std::holds_alternative<TriangleMeshShape>(shape.geometry)) return true;
+    if (std::holds_alternative<DiskShape>(shape.geometry)) return disk_scale(shape.world_from_object) > 0;
+    return similarity_scale(shape.world_from_object) > 0;
+  }
+
+  void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Part& part) {
+    const std::size_t first = part.primitives.size();
+    const auto primitive_begin = narrow<uint>(out_.primitive_geometry.size());
+    GeometryRecord record{};
+    record.material = shape.material;
+    record.object = object;
+    record.primitive_begin = primitive_begin;
+    record.light_offset = CAPLET_NONE;
+    record.normal_begin = record.uv_begin = CAPLET_NONE;
+    if (shape.emission) {
+      record.light_offset = narrow<uint>(part.emitter_count);
+      if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
+    }
+    const bool mirrored = glm::determinant(glm::dmat3(m)) < 0;
+    const bool open =
+        std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<DiskShape>(shape.geometry);
+    if (shape.reverse_orientation != (open && mirrored)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
+    std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
+    const std::size_t count = part.primitives.size() - first;
+    if (shape.emission && count > 0) {
+      part.emissive.push_back({first, count, &shape, out_.primitive_geometry[primitive_begin]});
+      part.emitter_count += count;
+    }
+    part.shapes.push_back(&shape);
+  }
+
+  uint add_geometry(GeometryRecord record, int shape) {
+    record.shape = static_cast<uint>(shape);
+    out_.geometries.push_back(record);
+    return narrow<uint>(out_.geometries.size() - 1);
+  }
+
+  FlatPrimitive& add_primitive(Part& part, int shape, uint geometry) {
+    FlatPrimitive& p = part.primitives.emplace_back();
+    p = FlatPrimitive{static_cast<std::uint32_t>(shape), narrow<std::uint32_t>(out_.primitive_geometry.size()), {}};
+    out_.primitive_geometry.push_back(geometry);
+    return p;
+  }
+
+  void append(const SphereShape& sphere, const Matrix& m, const GeometryRecord& record, Part& part) {
+    FlatPrimitive& p = add_primitive(part, shape_sphere, add_geometry(record, shape_sphere));
+    put(p, 0, apply_point(m, dvec3(0)));
+    p.data[3] = static_cast<float>(sphere.radius * similarity_scale(m));
+  }
+
+  void append(const DiskShape& disk, const Matrix& m, const GeometryRecord& record, Part& part) {
+    FlatPrimitive& p = add_primitive(part, shape_disk, add_geometry(record, shape_disk));
+    put(p, 0, apply_point(m, dvec3(0, 0, disk.height)));
+    put(p, 3, glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1)));
+    p.data[6] = static_cast<float>(disk.radius * disk_scale(m));
+    // The inverse transpose already turns the normal with a mirroring of the plane's own axis.
+    GeometryRecord& made = out_.geometries.back();
+    const glm::dmat3 a(m);
+    const bool winding_flips = glm::dot(glm::cross(a[0], a[1]), dvec3(p.data[3], p.data[4], p.data[5])) < 0;
+    const bool mirrored = glm::determinant(a) < 0;
+    if (winding_flips != mirrored) made.flags ^= CAPLET_GEOMETRY_FLIP_NORMAL;
+  }
+
+  void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Part& part) {
+    const double scale = similarity_scale(m);
+    std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
+    const bool identity = m == Matrix(1);
+    part.primitives.reserve(part.primitives.size() + capsules.p0.size());
+    for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
+      const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
+      const int kind = capsules.p0[i] == capsules.p1[i] ? shape_sphere : r0 == r1 ? shape_capsule : shape_tapered_capsule;
+      const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
+      const auto [found, fresh] = geometry_of.try_emplace({kind, material}, 0);
+      if (fresh) {
+        GeometryRecord own = record;
+        own.material = material;
+        found->second = add_geometry(own, kind);
+      }
+      FlatPrimitive& p = add_primitive(part, kind, found->second);
+      const auto point = [&](const glm::vec3& v) { return identity ? dvec3(v) : apply_point(m, dvec3(v)); };
+      put(p, 0, point(capsules.p0[i]));
+      if (kind == shape_sphere) {
+        p.data[3] = static_cast<float>(std::max(r0, r1) * scale);
+      } else {
+        put(p, 3, point(capsules.p1[i]));
+        p.data[6] = static_cast<float>(r0 * scale);
+        if (kind == shape_tapered_capsule) p.data[7] = static_cast<float>(r1 * scale);
+      }
+    }
+  }
+
+  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
+    record.index_begin = narrow<uint>(out_.mesh_indices.size());
+    if (!mesh.normals.empty()) {
+      record.normal_begin = narrow<uint>(out_.mesh_normals.size());
+      const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(m)));
+      for (const glm::vec3& n : mesh.normals) {
+        const dvec3 turned = normal_matrix * dvec3(n);
+        const double length = glm::length(turned);
+        for (int k = 0; k < 3; ++k) out_.mesh_normals.push_back(length > 0 ? static_cast<float>(turned[k] / length) : 0.f);
+      }
+    }
+    if (!mesh.uvs.empty()) {
+      record.uv_begin = narrow<uint>(out_.mesh_uvs.size());
+      for (const glm::vec2& uv : mesh.uvs) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {uv.x, uv.y});
+    }
+    std::vector<glm::vec3> moved;
+    moved.reserve(mesh.positions.size());
+    for (const glm::vec3& p : mesh.positions) moved.emplace_back(apply_point(m, dvec3(p)));
+    const uint geometry = add_geometry(record, shape_triangle);
+    part.primitives.reserve(part.primitives.size() + mesh.triangles.size());
+    for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+      FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
+      for (std::size_t k = 0; k < 3; ++k) {
+        out_.mesh_indices.push_back(triangle[k]);
+        put(p, static_cast<int>(3 * k), dvec3(moved[triangle[k]]));
+      }
+    }
+  }
+
+  void encode(Part& part) {
+    part.tree = encode_tree(part.primitives, out_.nodes, out_.leaves);
+    out_.bvh_nodes += part.tree.nodes;
+    out_.bvh_depth = std::max(out_.bvh_depth, part.tree.depth);
+  }
+
+  void place(const Part& part, const Matrix& world_from_part, std::uint32_t object, Part& top) {
+    InstanceRecord record{};
+    const Matrix part_from_world = glm::inverse(world_from_part);
+    write_matrix(record.object_from_world, part_from_world);
+    write_matrix(record.world_from_object, world_from_part);
+    record.root = part.tree.root;
+    record.light_base = CAPLET_NONE;
+    record.object = object;
+    if (glm::determinant(glm::dmat3(world_from_part)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
+    const auto index = narrow<uint>(out_.instances.size());
+    out_.instances.push_back(record);
+
+    const Bounds box = placed_bounds(part, world_from_part);
+    FlatPrimitive& p = top.primitives.emplace_back();
+    p = FlatPrimitive{shape_instance, index, {}};
+    double largest = 0;
+    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
+    // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on either side: 32 units are
+    // ample.
+    const double slack = 32 * 0x1p-24 * largest;
+    for (int k = 0; k < 3; ++k) {
+      p.data[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
+      p.data[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
+    }
+    placed_.push_back({&part, index, part.emitter_count > 0 ? mean_area_scale(world_from_part) : 1});
+  }
+
+  /// Of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
+  static Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
+    Bounds box;
+    if (part.primitives.size() <= 256) {
+      for (const Shape* shape : part.shapes) {
+        Shape moved = *shape;
+        // A part with a transform of its own holds its shapes in their object space.
+        moved.world_from_object = part.placed == Matrix(1) ? world_from_part * shape->world_from_object : world_from_part;
+        box.extend(bounds_of(moved));
+      }
+      return box;
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      dvec3 p;
+      for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? part.tree.max[k] : part.tree.min[k];
+      box.extend(apply_point(world_from_part, p));
+    }
+    return box;
+  }
+
+  std::vector<Emitter> emitters_of(const Part& part, uint instance, double area_scale) {
+    std::vector<Emitter> out;
+    for (const Part::Emissive& emissive : part.emissive) {
+      const AreaEmission& emission = *emissive.shape->emission;
+      double total_area = 0;
+      for (std::size_t i = 0; i < emissive.count; ++i)
+        total_area += primitive_area(part.primitives[emissive.first + i]) * area_scale;
+      Emitter emitter{};
+      emitter.instance = instance;
+      emitter.two_sided = emission.two_sided;
+      emitter.spectrum = spectra_.add_illuminant(emission.radiance);
+      const double luminance = spectra_.illuminant_luminance(emission.radiance);
+      emitter.scale = emission.scale;
+      if (emission.power) {
+        const double sides = emission.two_sided ? 2 : 1;
+        const double of_unit = luminance * total_area * std::numbers::pi * sides;
+        emitter.scale = of_unit > 0 ? emission.scale * *emission.power / of_unit : 0;
+      }
+      emitter.luminance = luminance * emitter.scale;
+      for (std::size_t i = 0; i < emissive.count; ++i) {
+        const std::size_t at = emissive.first + i;
+        emitter.slot = part.tree.slots[at];
+        emitter.geometry = out_.primitive_geometry[part.primitives[at].id];
+        emitter.area = primitive_area(part.primitives[at]) * area_scale;
+        out.push_back(emitter);
+      }
+    }
+    return out;
+  }
+
+  void set_bounds(const EncodedTree& tree) {
+    dvec3 low(tree.min[0], tree.min[1], tree.min[2]), high(tree.max[0], tree.max[1], tree.max[2]);
+    const dvec3 center = (low + high) * 0.5;
+    out_.params.scene_center_x = static_cast<float>(center.x);
+    out_.params.scene_center_y = static_cast<float>(center.y);
+    out_.params.scene_center_z = static_cast<float>(center.z);
+    out_.params.scene_radius = static_cast<float>(glm::length(high - low) * 0.5);
+  }
+
+  const Scene& scene_;
+  SpectrumTable& spectra_;
+  FlatScene& out_;
+  std::vector<Placed> placed_;
+};
+
+}  // namespace
+
+std::vector<Emitter> lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
+  return GeometryLowering(scene, spectra, out).run();
+}
+
+}  // namespace caplet

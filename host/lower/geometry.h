@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Shapes of the scene -> geometry records, primitives and trees.
+#pragma once
+
+#include <vector>
+
+#include "lower/lights.h"
+#include "lower/lower.h"
+#include "lower/spectrum.h"
+
+namespace caplet {
+
+/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, params.root and the bounding sphere, and returns the
+/// emissive primitives in light order. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
+/// becomes an instance of its own tree, shared by all shapes under the same transform.
+std::vector<Emitter> lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out);
+
+}  // namespace caplet

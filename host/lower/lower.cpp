@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/lower.h"
+
+#include <chrono>
+
+#include "base/check.h"
+#include "lower/camera.h"
+#include "lower/filter.h"
+#include "lower/geometry.h"
+#include "lower/lights.h"
+#include "lower/spectrum.h"
+
+namespace caplet {
+
+namespace {
+
+// GGX below this roughness is a mirror in binary32: its lobe is narrower than the rounding of a normal can resolve.
+constexpr double smooth_alpha = 1e-3;
+
+class MaterialLowering {
+ public:
+  explicit MaterialLowering(SpectrumTable& spectra) : spectra_(spectra) {}
+
+  MaterialRecord operator()(const DiffuseMaterial& material) const {
+    MaterialRecord record{};
+    record.kind = material_diffuse;
+    record.reflectance = spectra_.add_reflectance(material.reflectance);
+    return record;
+  }
+  MaterialRecord operator()(const ConductorMaterial& material) const {
+    MaterialRecord record = rough(material_conductor, material.alpha_u, material.alpha_v);
+    record.eta = spectra_.add_unbounded(material.eta);
+    record.k = spectra_.add_unbounded(material.k);
+    return record;
+  }
+  MaterialRecord operator()(const DielectricMaterial& material) const {
+    MaterialRecord record = rough(material_dielectric, material.alpha_u, material.alpha_v);
+    record.eta = spectra_.add_unbounded(material.eta);
+    if (!is_constant(material.eta)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
+    return record;
+  }
+
+ private:
+  static MaterialRecord rough(int kind, double alpha_u, double alpha_v) {
+    MaterialRecord record{};
+    record.kind = static_cast<uint>(kind);
+    const bool smooth = alpha_u < smooth_alpha && alpha_v < smooth_alpha;
+    record.alpha_u = smooth ? 0.f : static_cast<float>(std::max(alpha_u, smooth_alpha));
+    record.alpha_v = smooth ? 0.f : static_cast<float>(std::max(alpha_v, smooth_alpha));
+    return record;
+  }
+  SpectrumTable& spectra_;
+};
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+}  // namespace
+
+std::uint64_t FlatScene::geometry_bytes() const {
+  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +
+         bytes_of(mesh_normals) + bytes_of(mesh_uvs);
+}
+
+std::uint64_t FlatScene::device_bytes() const {
+  return geometry_bytes() + sizeof(params) + sizeof(camera) + bytes_of(geometries) + bytes_of(materials) + bytes_of(spectra) +
+         bytes_of(spectrum_tables) + bytes_of(lights) + bytes_of(light_data) + bytes_of(light_alias) +
+         bytes_of(environment_texels) + bytes_of(environment_cdf) + bytes_of(observer) + bytes_of(wavelength_table) +
+         bytes_of(filter_table);
+}
+
+FlatScene lower(const Scene& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  FlatScene out;
+  SpectrumTable spectra(out, scene.film.space);
+  for (const Material& material : scene.materials) out.materials.push_back(std::visit(MaterialLowering(spectra), material.model));
+  const std::vector<Emitter> emitters = lower_geometry(scene, spectra, out);
+  lower_lights(scene, emitters, spectra, out);
+  lower_camera(scene, out);
+  lower_filter(scene.filter, out);
+  out.params.seed = scene.sampler.seed;
+  out.params.max_depth = narrow<uint>(scene.integrator.max_depth);
+  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace caplet
