@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The control flow of a path, and which sample dimensions its decisions take.
+//
+//   generate -> queue
+//   repeat: extend (closest hits) -> shade (ends paths or fills queue_next and queue_shadow) -> connect (shadow rays)
+//           -> sort_prefix, sort_scatter (queue_next into queue, spatially sorted)
+//   resolve (radiance to film)
+#ifndef CAPLET_STAGES_PATH_CL
+#define CAPLET_STAGES_PATH_CL
+
+#include "math/rng.cl"
+
+// path_flags
+#define PATH_SPECULAR 1u   // the last scattering was a delta: light sampling could not have found what is hit next
+#define PATH_DEPTH_SHIFT 8
+
+// counters
+#define COUNTER_QUEUE 0
+#define COUNTER_NEXT 1
+#define COUNTER_SHADOW 2
+#define COUNTER_NOT_FINITE 3  // samples dropped because their radiance was not a number
+
+// Pairs of sample dimensions: three for the camera, four for each scattering.
+#define SAMPLE_FILTER 0
+#define SAMPLE_LENS 1
+#define SAMPLE_WAVELENGTH 2
+#define SAMPLE_BSDF(depth) (3 + 4 * (depth))
+#define SAMPLE_LIGHT(depth) (4 + 4 * (depth))
+#define SAMPLE_CHOICES(depth) (5 + 4 * (depth))   // x: which light, y: which lobe
+#define SAMPLE_ROULETTE(depth) (6 + 4 * (depth))
+
+typedef struct {
+  uint x, y;  // pixel of the full image
+  uint sample;
+  uint seed;  // of the pixel
+} PathSample;
+
+static inline PathSample path_sample(const Globals* g, uint path) {
+  __global const ParamsRecord* params = g->params;
+  const uint pixel = params->pixel_begin + path / params->sample_count;
+  PathSample s;
+  s.x = params->crop_x + pixel % params->crop_width;
+  s.y = params->crop_y + pixel / params->crop_width;
+  s.sample = params->sample_begin + path % params->sample_count;
+  s.seed = pixel_seed(s.x, s.y, params->seed);
+  return s;
+}
+
+#endif
