@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Capsule and tapered capsule: the convex hull of two spheres, which is the envelope of the spheres with centre and radius
+// interpolated along the axis. A point is refined to the one of those spheres that touches the envelope nearest to it.
+// uv: u around the axis p0 -> p1, v along the profile by arc length from p0's pole (0) to p1's pole (1).
+#ifndef CAPLET_SHAPES_SURFACE_CAPSULE_CL
+#define CAPLET_SHAPES_SURFACE_CAPSULE_CL
+
+#include "shapes/surface_sphere.cl"
+
+// r0 > 0 or r1 > 0. `fallback`: unit normal used where x leaves it undefined.
+static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, float r1, float3 x, float3 fallback) {
+  const float3 axis = p1 - p0;
+  const float3 unit_axis = unit_or(axis, (float3)(0.0f, 0.0f, 1.0f));
+  const float axis_length = dot(axis, unit_axis);
+  const float taper = r0 - r1;
+  if (!(axis_length > fabs(taper))) {
+    // One sphere holds the other (or the ends are equal).
+    return taper >= 0.0f ? sphere_point(p0, r0, unit_axis, x, fallback) : sphere_point(p1, r1, unit_axis, x, fallback);
+  }
+  // Normals of the tangent cone make a constant angle with the axis: sine `k` of its complement.
+  const float k = taper / axis_length;
+  const float c = sqrt((1.0f - k) * (1.0f + k));
+
+  // Cylinder coordinates of x; the second subtraction makes `radial` perpendicular to the axis to rounding of its own length.
+  const float3 v = x - p0;
+  const float z = dot(v, unit_axis);
+  float3 radial = v - z * unit_axis;
+  radial -= dot(radial, unit_axis) * unit_axis;
+  const float3 unit_radial = unit_or(radial, unit_or(fallback - dot(fallback, unit_axis) * unit_axis, perpendicular(unit_axis)));
+  const float along = (z - dot(radial, unit_radial) * k / c) / axis_length;
+  const float s = fmin(fmax(along, 0.0f), 1.0f);
+
+  const float3 q = p0 + s * axis;
+  const float radius = s < 1.0f ? r0 - s * taper : r1;
+  LocalSurface out;
+  float arc;  // along the profile
+  const float angle0 = acos(-k);
+  const float side = axis_length * c;
+  if (s > 0.0f && s < 1.0f) {
+    out.ng = k * unit_axis + c * unit_radial;
+    arc = r0 * angle0 + s * side;
+  } else {
+    out.ng = unit_or(x - q, k * unit_axis + c * unit_radial);
+    const float angle = angle_between(unit_axis, out.ng);
+    arc = s > 0.0f ? r0 * angle0 + side + r1 * (CAPLET_PI - angle0 - angle) : r0 * (CAPLET_PI - angle);
+  }
+  out.ns = out.ng;
+  out.p = q + radius * out.ng;
+  out.uv.x = turn_around(unit_axis, unit_radial);
+  out.uv.y = fmin(fmax(arc / (r0 * angle0 + side + r1 * (CAPLET_PI - angle0)), 0.0f), 1.0f);
+  out.dpdu = 2.0f * CAPLET_PI * radius * cross(unit_axis, out.ng);
+  out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
+  return out;
+}
+
+static inline LocalSurface surface_capsule(__global const float* data, float3 x, float3 fallback) {
+  return round_cone_point((float3)(data[0], data[8], data[16]), (float3)(data[24], data[32], data[40]), data[48], data[48], x,
+                          fallback);
+}
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Disk: centre, unit normal, radius. uv as pbrt's disk: u = angle / 2 pi, v = 1 - distance from the centre / radius.
+#ifndef CAPLET_SHAPES_SURFACE_DISK_CL
+#define CAPLET_SHAPES_SURFACE_DISK_CL
+
+#include "shapes/surface_local.cl"
+
+static inline LocalSurface surface_disk(__global const float* data, float3 x) {
+  const float3 center = (float3)(data[0], data[8], data[16]);
+  const float3 normal = (float3)(data[24], data[32], data[40]);
+  const float radius = data[48];
+  LocalSurface s;
+  const float3 v = x - center;
+  const float3 in_plane = v - dot(v, normal) * normal;
+  const float3 spoke = in_plane - dot(in_plane, normal) * normal;
+  s.ng = s.ns = normal;
+  s.p = center + spoke;
+  const float distance = length(spoke);
+  s.uv = (float2)(distance > 0.0f ? turn_around(normal, spoke / distance) : 0.0f,
+                  radius > 0.0f ? fmax(0.0f, 1.0f - distance / radius) : 0.0f);
+  s.dpdu = 2.0f * CAPLET_PI * cross(normal, spoke);
+  s.error = CAPLET_EPS * (12.0f * radius + 4.0f * norm1(s.p));
+  return s;
+}
+
+#endif

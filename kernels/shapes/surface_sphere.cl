@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Sphere: centre, radius. uv as pbrt's full sphere: u around +z from +x, v = 0 at -z, 1 at +z (by angle).
+#ifndef CAPLET_SHAPES_SURFACE_SPHERE_CL
+#define CAPLET_SHAPES_SURFACE_SPHERE_CL
+
+#include "shapes/surface_local.cl"
+
+// The sphere of `radius` around `center` at x projected from its centre; `fallback`: unit normal where x is the centre. uv about
+// `axis` (unit).
+static inline LocalSurface sphere_point(float3 center, float radius, float3 axis, float3 x, float3 fallback) {
+  LocalSurface s;
+  s.ng = unit_or(x - center, fallback);
+  s.ns = s.ng;
+  s.p = center + radius * s.ng;
+  s.uv = (float2)(turn_around(axis, s.ng), 1.0f - CAPLET_INV_PI * angle_between(axis, s.ng));
+  s.dpdu = 2.0f * CAPLET_PI * radius * cross(axis, s.ng);
+  s.error = CAPLET_EPS * (32.0f * radius + 4.0f * norm1(s.p));
+  return s;
+}
+
+static inline LocalSurface surface_sphere(__global const float* data, float3 x, float3 fallback) {
+  return sphere_point((float3)(data[0], data[8], data[16]), data[24], (float3)(0.0f, 0.0f, 1.0f), x, fallback);
+}
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Triangle: three vertices, with the mesh's normals and uvs. The point is interpolated from the vertices, so that it lies in the
+// triangle's plane however far the ray came from.
+#ifndef CAPLET_SHAPES_SURFACE_TRIANGLE_CL
+#define CAPLET_SHAPES_SURFACE_TRIANGLE_CL
+
+#include "globals.cl"
+#include "shapes/surface_local.cl"
+
+// a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
+static inline float difference_of_products(float a, float b, float c, float d) {
+  const float cd = c * d;
+  return fma(a, b, -cd) + fma(-c, d, cd);
+}
+static inline float3 robust_cross(float3 a, float3 b) {
+  return (float3)(difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+                  difference_of_products(a.x, b.y, a.y, b.x));
+}
+
+static inline LocalSurface surface_triangle(const Globals* g, const GeometryRecord geometry, uint primitive,
+                                            __global const float* data, float3 x, float3 fallback) {
+  const float3 v0 = (float3)(data[0], data[8], data[16]);
+  const float3 e1 = (float3)(data[24], data[32], data[40]) - v0;
+  const float3 e2 = (float3)(data[48], data[56], data[64]) - v0;
+  const float3 n = unit_or(robust_cross(e1, e2), fallback);
+
+  // Barycentric coordinates of x projected along the normal, kept inside the triangle.
+  const float3 v = x - v0;
+  const float area = dot(robust_cross(e1, e2), n);
+  float b1 = area > 0.0f ? fmin(fmax(dot(robust_cross(v, e2), n) / area, 0.0f), 1.0f) : 0.0f;
+  float b2 = area > 0.0f ? fmin(fmax(dot(robust_cross(e1, v), n) / area, 0.0f), 1.0f) : 0.0f;
+  const float sum = b1 + b2;
+  if (sum > 1.0f) {
+    b1 /= sum;
+    b2 /= sum;
+  }
+  const float b0 = fmax(0.0f, 1.0f - b1 - b2);
+
+  LocalSurface s;
+  s.p = v0 + (b1 * e1 + b2 * e2);
+  s.ng = (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) ? -n : n;
+  s.ns = s.ng;
+  s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
+
+  const uint corner = geometry.index_begin + 3u * (primitive - geometry.primitive_begin);
+  if (geometry.normal_begin != CAPLET_NONE) {
+    __global const float* normals = g->mesh_normals + geometry.normal_begin;
+    const float3 ns = b0 * load3(normals + 3u * g->mesh_indices[corner]) +
+                      b1 * load3(normals + 3u * g->mesh_indices[corner + 1u]) +
+                      b2 * load3(normals + 3u * g->mesh_indices[corner + 2u]);
+    s.ns = unit_or(ns, s.ng);
+    if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
+  }
+  if (geometry.uv_begin != CAPLET_NONE) {
+    __global const float* uvs = g->mesh_uvs + geometry.uv_begin;
+    const float2 uv0 = vload2(g->mesh_indices[corner], uvs);
+    const float2 d1 = vload2(g->mesh_indices[corner + 1u], uvs) - uv0;
+    const float2 d2 = vload2(g->mesh_indices[corner + 2u], uvs) - uv0;
+    s.uv = uv0 + b1 * d1 + b2 * d2;
+    const float determinant = difference_of_products(d1.x, d2.y, d1.y, d2.x);
+    s.dpdu = determinant != 0.0f ? (d2.y * e1 - d1.y * e2) / determinant : (float3)(0.0f);
+  } else {
+    s.uv = (float2)(b1 + b2, b2);
+    s.dpdu = e1;
+  }
+  return s;
+}
+
+#endif
