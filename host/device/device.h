@@ -93,10 +93,14 @@ class Buffer : public RawBuffer {
   void write(std::span<const T> values) { RawBuffer::write(values.data(), 0, values.size_bytes()); }
 };
 
-/// The flattened text of kernels/stages/<name>.cl (or another kernel file), embedded at build with #line marks. When the
-/// environment variable CAPLET_KERNELS names a folder, the file is read and flattened from there instead. Throws std::logic_error
-/// for unknown names.
+/// The flattened text of kernels/stages/<name>.cl, or of kernels/<name> when the name has a '/', embedded at build with #line
+/// marks. When the environment variable CAPLET_KERNELS names a folder, the file is read and flattened from there instead. Throws
+/// std::logic_error for unknown names.
 std::string kernel_source(std::string_view name);
+
+/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/). Throws std::logic_error
+/// for a file that does not exist.
+std::string flatten_kernels(const std::string& text);
 
 /// A compiled program: one kernel file, one set of options. Cached on disk by device, driver, source hash and options
 /// (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an error).

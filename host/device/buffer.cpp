@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "device/accounting.h"
+#include "device/cl_error.h"
+#include "device/device.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::size_t smallest_buffer = 16;
+
+void require_memory(const DeviceInfo& info, std::uint64_t bytes, std::uint64_t alive) {
+  const std::uint64_t left = info.global_bytes - std::min(info.global_bytes, alive);
+  if (bytes <= info.max_allocation_bytes && bytes <= left) return;
+  throw RunError(
+      fmt::format("a buffer needs {} bytes, the device allows {} bytes in one buffer and {} bytes in all, {} of them in use "
+                  "(device '{}')",
+                  bytes, info.max_allocation_bytes, info.global_bytes, alive, info.name));
+}
+
+}  // namespace
+
+RawBuffer::RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents)
+    : device_(device), bytes_(bytes) {
+  const std::size_t size = std::max(bytes, smallest_buffer);
+  require_memory(device.info(), size, device.bytes_allocated());
+  cl_call(fmt::format("buffer of {} bytes", bytes), device.info().name, [&] {
+    buffer_ = cl::Buffer(device.context(), read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE, size);
+    if (contents && bytes > 0) device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, contents);
+  });
+  const std::shared_ptr<Device::Accounting> accounting = device.accounting_;
+  accounting->add(size);
+  accounted_ = std::shared_ptr<void>(nullptr, [accounting, size](void*) { accounting->remove(size); });
+}
+
+void RawBuffer::read(void* to, std::size_t offset, std::size_t bytes) const {
+  if (bytes == 0) return;
+  CHECK_LE_(offset, bytes_);
+  CHECK_LE_(bytes, bytes_ - offset);
+  cl_call(fmt::format("reading {} of a buffer's {} bytes", bytes, bytes_), device_.info().name,
+          [&] { device_.queue().enqueueReadBuffer(buffer_, CL_TRUE, offset, bytes, to); });
+}
+
+void RawBuffer::write(const void* from, std::size_t offset, std::size_t bytes) {
+  if (bytes == 0) return;
+  CHECK_LE_(offset, bytes_);
+  CHECK_LE_(bytes, bytes_ - offset);
+  cl_call(fmt::format("writing {} of a buffer's {} bytes", bytes, bytes_), device_.info().name,
+          [&] { device_.queue().enqueueWriteBuffer(buffer_, CL_TRUE, offset, bytes, from); });
+}
+
+}  // namespace caplet

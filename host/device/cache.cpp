@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "device/cache.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A file: this line, the hash of key and contents, the length of the contents (both in text), then the contents.
+constexpr std::string_view magic = "caplet cache 1\n";
+
+std::string header(std::string_view key, const std::vector<unsigned char>& contents) {
+  std::string hashed(key);
+  hashed += '\0';
+  hashed.append(contents.begin(), contents.end());
+  return fmt::format("{}{}\n{}\n", magic, content_hash(hashed), contents.size());
+}
+
+fs::path environment_path(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? fs::path(value) : fs::path();
+}
+
+}  // namespace
+
+fs::path cache_folder() {
+  if (const fs::path named = environment_path("CAPLET_CACHE"); !named.empty()) return named;
+  if (const fs::path base = environment_path("XDG_CACHE_HOME"); !base.empty()) return base / "caplet";
+  if (const fs::path home = environment_path("HOME"); !home.empty()) return home / ".cache" / "caplet";
+  return {};
+}
+
+std::string content_hash(std::string_view bytes) {
+  // Offset basis 0x6c62272e07bb014262b821756295c58d, prime 2^88 + 0x13b.
+  using Wide = unsigned __int128;
+  Wide hash = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) | 0x62b821756295c58du;
+  const Wide prime = (static_cast<Wide>(1) << 88) | 0x13bu;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
+  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
+}
+
+fs::path cache_file(std::string_view key, std::string_view extension) {
+  const fs::path folder = cache_folder();
+  return folder.empty() ? folder : folder / fmt::format("{}.{}", content_hash(key), extension);
+}
+
+std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::string_view extension) {
+  const fs::path path = cache_file(key, extension);
+  if (path.empty()) return std::nullopt;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  const std::string file{std::istreambuf_iterator<char>(in), {}};
+  std::size_t begin = magic.size();
+  for (int line = 0; line < 2; ++line) {
+    begin = file.find('\n', begin);
+    if (begin == std::string::npos) return std::nullopt;
+    ++begin;
+  }
+  const std::vector<unsigned char> contents(file.begin() + static_cast<std::ptrdiff_t>(begin), file.end());
+  if (std::string_view(file).substr(0, begin) != header(key, contents)) return std::nullopt;
+  return contents;
+}
+
+bool cache_store(std::string_view key, std::string_view extension, const std::vector<unsigned char>& contents) {
+  static std::mutex one_writer;
+  const std::lock_guard lock(one_writer);
+  const fs::path path = cache_file(key, extension);
+  if (path.empty()) return false;
+  try {
+    fs::create_directories(path.parent_path());
+    write_atomically(path, [&](const fs::path& temporary) {
+      std::ofstream out(temporary, std::ios::binary);
+      out << header(key, contents);
+      out.write(reinterpret_cast<const char*>(contents.data()), static_cast<std::streamsize>(contents.size()));
+      out.close();
+      if (!out) throw RunError(fmt::format("{}: cannot be written", temporary.string()));
+    });
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace caplet

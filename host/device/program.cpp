@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "base/log.h"
+#include "device/cache.h"
+#include "device/cl_error.h"
+#include "device/device.h"
+
+namespace caplet {
+
+namespace {
+
+using Binary = std::vector<unsigned char>;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string cache_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
+  std::string key = "program";
+  for (const std::string* part : {&info.name, &info.driver, &info.version, &info.platform, &options, &source}) {
+    key += '\0';
+    key += *part;
+  }
+  return key;
+}
+
+/// A program from a cached binary; nothing when the driver refuses it.
+std::optional<cl::Program> from_binary(const Device& device, const Binary& binary, const std::string& options) {
+  try {
+    cl::Program program(device.context(), {device.handle()}, {binary});
+    program.build({device.handle()}, options.c_str());
+    return program;
+  } catch (const cl::Error&) {
+    return std::nullopt;
+  }
+}
+
+cl::Program from_text(const Device& device, const std::string& name, const std::string& source, const std::string& options) {
+  const std::string& device_name = device.info().name;
+  cl::Program program =
+      cl_call(fmt::format("program '{}'", name), device_name, [&] { return cl::Program(device.context(), source); });
+  try {
+    program.build({device.handle()}, options.c_str());
+  } catch (const cl::BuildError& error) {
+    std::string log;
+    for (const auto& [of, text] : error.getBuildLog()) log += text;
+    throw RunError(fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}", name, error.what(),
+                               cl_error_name(error.err()), device_name, options, log));
+  } catch (const cl::Error& error) {
+    throw_cl_error(error, fmt::format("program '{}'", name), device_name);
+  }
+  return program;
+}
+
+/// The device's binary; empty when the driver gives none.
+Binary binary_of(const cl::Program& program) {
+  try {
+    const std::vector<Binary> binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    return binaries.empty() ? Binary() : binaries.front();
+  } catch (const cl::Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+Program::Program(const Device& device, const std::string& name, const std::string& options)
+    : Program(from_source(device, name, kernel_source(name), options)) {}
+
+Program Program::from_source(const Device& device, const std::string& name, const std::string& source,
+                             const std::string& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string all_options = options.empty() ? "-cl-std=CL1.2" : "-cl-std=CL1.2 " + options;
+  const std::string key = cache_key(device.info(), all_options, source);
+  Program out;
+  out.device_ = device;
+  out.name_ = name;
+  if (const std::optional<Binary> binary = cache_load(key, "program")) {
+    if (std::optional<cl::Program> program = from_binary(device, *binary, all_options)) {
+      out.program_ = std::move(*program);
+      out.from_cache_ = true;
+    }
+  }
+  if (!out.from_cache_) {
+    out.program_ = from_text(device, name, source, all_options);
+    if (const Binary binary = binary_of(out.program_); !binary.empty()) cache_store(key, "program", binary);
+  }
+  out.build_seconds_ = seconds_since(start);
+  if (!out.from_cache_) log::info("compiled {} for {} in {:.1f} s", name, device.info().name, out.build_seconds_);
+  return out;
+}
+
+cl::Kernel Program::kernel(const std::string& name) const {
+  return cl_call(fmt::format("kernel '{}' of program '{}'", name, name_), device_.info().name,
+                 [&] { return cl::Kernel(program_, name.c_str()); });
+}
+
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local) {
+  if (count == 0) return;
+  const std::string& device_name = device.info().name;
+  const std::string name = cl_call("a kernel's name", device_name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
+  const std::size_t global = (count + local - 1) / local * local;
+  cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local), device_name,
+          [&] { device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(global), cl::NDRange(local)); });
+}
+
+}  // namespace caplet
