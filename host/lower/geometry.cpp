@@ -30,7 +30,6 @@ struct Part {
   struct Emissive {
     std::size_t first, count;  // in primitives
     const Shape* shape;
-    std::uint32_t geometry;
   };
   std::vector<Emissive> emissive;
   std::size_t emitter_count = 0;
@@ -206,13 +205,14 @@ class GeometryLowering {
       if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
     }
     const bool mirrored = glm::determinant(glm::dmat3(m)) < 0;
-    const bool open =
-        std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<DiskShape>(shape.geometry);
-    if (shape.reverse_orientation != (open && mirrored)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
+    // Winding turns with a mirroring transform; a disk's and a solid's own normal do not.
+    const bool wound = std::holds_alternative<TriangleMeshShape>(shape.geometry);
+    if (shape.reverse_orientation != (wound && mirrored)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
+    reversed_ = shape.reverse_orientation;
     std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
     const std::size_t count = part.primitives.size() - first;
     if (shape.emission && count > 0) {
-      part.emissive.push_back({first, count, &shape, out_.primitive_geometry[primitive_begin]});
+      part.emissive.push_back({first, count, &shape});
       part.emitter_count += count;
     }
     part.shapes.push_back(&shape);
@@ -242,12 +242,6 @@ class GeometryLowering {
     put(p, 0, apply_point(m, dvec3(0, 0, disk.height)));
     put(p, 3, glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1)));
     p.data[6] = static_cast<float>(disk.radius * disk_scale(m));
-    // The inverse transpose already turns the normal with a mirroring of the plane's own axis.
-    GeometryRecord& made = out_.geometries.back();
-    const glm::dmat3 a(m);
-    const bool winding_flips = glm::dot(glm::cross(a[0], a[1]), dvec3(p.data[3], p.data[4], p.data[5])) < 0;
-    const bool mirrored = glm::determinant(a) < 0;
-    if (winding_flips != mirrored) made.flags ^= CAPLET_GEOMETRY_FLIP_NORMAL;
   }
 
   void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Part& part) {
@@ -298,13 +292,26 @@ class GeometryLowering {
     for (const glm::vec3& p : mesh.positions) moved.emplace_back(apply_point(m, dvec3(p)));
     const uint geometry = add_geometry(record, shape_triangle);
     part.primitives.reserve(part.primitives.size() + mesh.triangles.size());
-    for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+    for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
+      if (!mesh.normals.empty() && against_normals(mesh, record, moved, triangle, flipped)) std::swap(triangle[1], triangle[2]);
       FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
       for (std::size_t k = 0; k < 3; ++k) {
         out_.mesh_indices.push_back(triangle[k]);
         put(p, static_cast<int>(3 * k), dvec3(moved[triangle[k]]));
       }
     }
+  }
+
+  /// pbrt: where a mesh has normals, they say which side is out, not the winding.
+  bool against_normals(const TriangleMeshShape& mesh, const GeometryRecord& record, const std::vector<glm::vec3>& moved,
+                       const std::array<std::uint32_t, 3>& triangle, bool flipped) const {
+    const dvec3 a(moved[triangle[0]]), b(moved[triangle[1]]), c(moved[triangle[2]]);
+    dvec3 sum(0);
+    for (const std::uint32_t v : triangle)
+      for (int k = 0; k < 3; ++k) sum[k] += out_.mesh_normals[record.normal_begin + 3 * v + static_cast<std::uint32_t>(k)];
+    const double side = glm::dot(glm::cross(b - a, c - a), sum) * (reversed_ ? -1 : 1);
+    return (flipped ? -side : side) < 0 && mesh.normals.size() == mesh.positions.size();
   }
 
   void encode(Part& part) {
@@ -403,6 +410,7 @@ class GeometryLowering {
   SpectrumTable& spectra_;
   FlatScene& out_;
   std::vector<Placed> placed_;
+  bool reversed_ = false;  // of the shape being appended
 };
 
 }  // namespace
