@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Metals: GGX microfacets with the complex Fresnel reflectance, or a perfect mirror. wo.z > 0 (bsdf.cl mirrors the frame).
+#ifndef CAPLET_BSDF_CONDUCTOR_CL
+#define CAPLET_BSDF_CONDUCTOR_CL
+
+#include "bsdf/bsdf_types.cl"
+#include "bsdf/fresnel.cl"
+#include "bsdf/ggx.cl"
+
+static inline float4 conductor_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
+  *pdf = 0.0f;
+  if (!(wi.z > 0.0f)) return (float4)(0.0f);
+  const float3 m = normalize(wo + wi);
+  const float cos_m = dot(wo, m);
+  if (!(cos_m > 0.0f)) return (float4)(0.0f);
+  *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
+  return fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wi, b->alpha_u, b->alpha_v));
+}
+
+static inline int conductor_sample(const Bsdf* b, int smooth, float3 wo, float2 u, BsdfSample* s) {
+  s->specular = smooth;
+  s->transmitted = 0;
+  s->eta_scale = 1.0f;
+  if (smooth) {
+    s->wi = (float3)(-wo.x, -wo.y, wo.z);
+    s->pdf = 1.0f;
+    s->weight = fresnel_conductor(wo.z, b->eta, b->k);
+    return 1;
+  }
+  const float3 m = ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
+  const float cos_m = dot(wo, m);
+  s->wi = normalize(2.0f * cos_m * m - wo);
+  if (!(cos_m > 0.0f) || !(s->wi.z > 0.0f)) return 0;
+  s->pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
+  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(s->wi, b->alpha_u, b->alpha_v);
+  return s->pdf > 0.0f;
+}
+
+#endif

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Glass and its like: GGX reflection and refraction (Walter et al. 2007), or a clear interface. wo.z > 0 (bsdf.cl mirrors the
+// frame); `eta` is the index beyond the interface over that of wo's side. Radiance is transported: refraction scales it by 1 /
+// eta^2.
+#ifndef CAPLET_BSDF_DIELECTRIC_CL
+#define CAPLET_BSDF_DIELECTRIC_CL
+
+#include "bsdf/bsdf_types.cl"
+#include "bsdf/fresnel.cl"
+#include "bsdf/ggx.cl"
+
+static inline float dielectric_eval(const Bsdf* b, float eta, float3 wo, float3 wi, float* pdf) {
+  *pdf = 0.0f;
+  const int reflected = wi.z > 0.0f;
+  float3 m = reflected ? wo + wi : wo + eta * wi;
+  if (wi.z == 0.0f || !(dot(m, m) > 0.0f)) return 0.0f;
+  m = normalize(m);
+  if (m.z < 0.0f) m = -m;
+  const float cos_o = dot(wo, m), cos_i = dot(wi, m);
+  if (!(cos_o > 0.0f) || (reflected ? !(cos_i > 0.0f) : !(cos_i < 0.0f)) || !(m.z > 0.0f)) return 0.0f;
+  float cos_t;
+  const float fresnel = fresnel_dielectric(cos_o, eta, &cos_t);
+  const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
+  const float masking = ggx_masking(wi, b->alpha_u, b->alpha_v);
+  if (reflected) {
+    *pdf = 0.25f * fresnel * visible;
+    return *pdf * masking;
+  }
+  const float denominator = cos_i + cos_o / eta;
+  *pdf = (1.0f - fresnel) * visible * cos_o * -cos_i / (denominator * denominator);
+  return *pdf * masking / (eta * eta);
+}
+
+static inline int dielectric_sample(const Bsdf* b, int smooth, float eta, float3 wo, float u_component, float2 u, BsdfSample* s) {
+  const float3 m = smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
+  const float cos_o = dot(wo, m);
+  if (!(cos_o > 0.0f)) return 0;
+  float cos_t;
+  const float fresnel = fresnel_dielectric(cos_o, eta, &cos_t);
+  const int reflected = u_component < fresnel;
+  float weight = 1.0f;
+  s->specular = smooth;
+  s->transmitted = !reflected;
+  s->eta_scale = reflected ? 1.0f : eta * eta;
+  if (reflected) {
+    s->wi = smooth ? (float3)(-wo.x, -wo.y, wo.z) : normalize(2.0f * cos_o * m - wo);
+    s->pdf = fresnel;
+  } else {
+    s->wi = normalize((cos_o / eta - cos_t) * m - wo / eta);
+    s->pdf = 1.0f - fresnel;
+    weight = 1.0f / (eta * eta);
+  }
+  if (reflected ? !(s->wi.z > 0.0f) : !(s->wi.z < 0.0f)) return 0;
+  if (!smooth) {
+    const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
+    const float cos_i = dot(s->wi, m);
+    const float denominator = cos_i + cos_o / eta;
+    s->pdf *= reflected ? 0.25f * visible : visible * cos_o * fabs(cos_i) / (denominator * denominator);
+    weight *= ggx_masking(s->wi, b->alpha_u, b->alpha_v);
+  }
+  s->weight = (float4)(weight);
+  return s->pdf > 0.0f && !isinf(s->pdf);
+}
+
+#endif
