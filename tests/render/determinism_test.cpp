@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Samples are addressed, not streamed: batches, passes and crops cannot change a bit; both traversals find the same things.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "render_scene.h"
+#include "support/data.h"
+
+namespace caplet::test {
+namespace {
+
+std::filesystem::path scene_file() { return source_folder() / "tests" / "render" / "everything.pbrt"; }
+
+bool same_bits(const std::vector<FilmRecord>& a, const std::vector<FilmRecord>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(FilmRecord)) == 0;
+}
+
+TEST(Determinism, BatchSizesDoNotChangeBits) {
+  const Rendered one = render_file(scene_file(), 8);
+  for (const std::size_t batch : {977u, 5000u, 1u << 20}) {
+    RenderOptions options;
+    options.batch_paths = batch;
+    EXPECT_TRUE(same_bits(one.result.film, render_file(scene_file(), 8, {}, options).result.film)) << batch;
+  }
+}
+
+TEST(Determinism, SeedsDiffer) {
+  const Rendered one = render_file(scene_file(), 4);
+  const Rendered other = render_file(scene_file(), 4, [](Scene& scene) { scene.sampler.seed = 1; });
+  EXPECT_FALSE(same_bits(one.result.film, other.result.film));
+}
+
+TEST(Determinism, CropIsPartOfTheWhole) {
+  const Rendered whole = render_file(scene_file(), 4);
+  const Rendered crop = render_file(scene_file(), 4, [](Scene& scene) { scene.film.crop = {{10, 40, 5, 25}}; });
+  ASSERT_EQ(crop.image.data_width, 30);
+  ASSERT_EQ(crop.image.data_height, 20);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 30; ++x)
+      ASSERT_EQ(channel(crop.image, "R").floats[static_cast<std::size_t>(y * 30 + x)],
+                channel(whole.image, "R").floats[static_cast<std::size_t>((y + 5) * whole.image.width + x + 10)])
+          << x << " " << y;
+}
+
+TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
+  RenderOptions gpu;
+  gpu.gpu_encoding = true;
+  const Rendered a = render_file(scene_file(), 4), b = render_file(scene_file(), 4, {}, gpu);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.result.film.size(); ++i)
+    different += a.result.film[i].object != b.result.film[i].object || a.result.film[i].primitive != b.result.film[i].primitive;
+  // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
+  EXPECT_LE(different, a.result.film.size() / 1000);
+  const Figures figures = compare(picture_of(a.image), picture_of(b.image));
+  EXPECT_LT(std::abs(figures.mean), 2e-3);
+}
+
+TEST(Film, HasNoNonFiniteSample) {
+  const Rendered one = render_file(scene_file(), 16);
+  for (const Channel& c : one.image.channels)
+    for (const float value : c.floats) ASSERT_TRUE(std::isfinite(value)) << c.name;
+}
+
+}  // namespace
+}  // namespace caplet::test

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "render_scene.h"
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "film/develop.h"
+#include "import/import.h"
+
+namespace caplet::test {
+
+const Device& test_device() {
+  static const Device device = Device::choose(std::getenv("CAPLET_TEST_DEVICE") ? std::getenv("CAPLET_TEST_DEVICE") : "");
+  return device;
+}
+
+Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options) {
+  const FlatScene flat = lower(scene);
+  options.samples_per_pixel = samples_per_pixel;
+  Rendered out;
+  out.result = render(flat, test_device(), options, {});
+  out.image = develop(out.result.film, flat.params, scene, true);
+  return out;
+}
+
+Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, const std::function<void(Scene&)>& change,
+                     RenderOptions options) {
+  Scene scene = import_scene(file, FileImageReader());
+  if (change) change(scene);
+  return render_model(scene, samples_per_pixel, options);
+}
+
+const Channel& channel(const LayeredImage& image, const std::string& name) {
+  for (const Channel& channel : image.channels)
+    if (channel.name == name) return channel;
+  throw std::logic_error("no channel " + name);
+}
+
+Picture picture_of(const LayeredImage& image) {
+  Picture out;
+  out.width = image.data_width;
+  out.height = image.data_height;
+  const std::size_t pixels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+  const auto interleave = [&](const std::string& prefix) {
+    std::vector<float> values(3 * pixels);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Channel& from = channel(image, prefix + "RGB"[c]);
+      for (std::size_t i = 0; i < pixels; ++i) values[3 * i + c] = from.floats[i];
+    }
+    return values;
+  };
+  out.rgb = interleave("");
+  for (const Channel& c : image.channels)
+    if (c.name == "variance.R") out.variance = interleave("variance.");
+  return out;
+}
+
+}  // namespace caplet::test

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// From a scene file to a picture, as the program does it, for tests.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "film/image.h"
+#include "render/render.h"
+#include "scene/scene.h"
+#include "support/compare.h"
+
+namespace caplet::test {
+
+/// The device that tests run on: $CAPLET_TEST_DEVICE, else the default choice.
+const Device& test_device();
+
+struct Rendered {
+  LayeredImage image;
+  RenderResult result;
+};
+
+/// `change` may edit the scene before it is lowered. The variance layer is always there.
+Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, const std::function<void(Scene&)>& change = {},
+                     RenderOptions options = {});
+Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options = {});
+
+/// R G B (and variance, where present) of an image.
+Picture picture_of(const LayeredImage& image);
+const Channel& channel(const LayeredImage& image, const std::string& name);
+
+}  // namespace caplet::test
