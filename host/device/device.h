@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/error.h"
@@ -123,6 +124,29 @@ class Program {
   double build_seconds_ = 0;
   bool from_cache_ = false;
 };
+
+namespace detail {
+void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const void* value, std::size_t bytes);
+
+template <class Value>
+void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const Value& value) {
+  if constexpr (std::is_base_of_v<RawBuffer, Value>) {
+    const cl_mem memory = value.handle()();
+    set_argument(device, kernel, index, &memory, sizeof(memory));
+  } else {
+    static_assert(std::is_arithmetic_v<Value>, "kernels take buffers and scalars");
+    set_argument(device, kernel, index, &value, sizeof(value));
+  }
+}
+}  // namespace detail
+
+/// Sets the kernel's arguments 0, 1, ... from buffers and scalars (cl_uint, cl_float...). Throws RunError naming kernel and
+/// argument.
+template <class... Values>
+void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... values) {
+  cl_uint index = 0;
+  (detail::set_argument(device, kernel, index++, values), ...);
+}
 
 /// Enqueues `kernel` over `count` work-items (rounded up to `local`; the kernel checks its index). Throws RunError naming the
 /// kernel.

@@ -66,6 +66,10 @@ Binary binary_of(const cl::Program& program) {
   }
 }
 
+std::string kernel_name(const Device& device, const cl::Kernel& kernel) {
+  return cl_call("a kernel's name", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
+}
+
 }  // namespace
 
 Program::Program(const Device& device, const std::string& name, const std::string& options)
@@ -97,6 +101,12 @@ Program Program::from_source(const Device& device, const std::string& name, cons
 cl::Kernel Program::kernel(const std::string& name) const {
   return cl_call(fmt::format("kernel '{}' of program '{}'", name, name_), device_.info().name,
                  [&] { return cl::Kernel(program_, name.c_str()); });
+}
+
+void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const void* value, std::size_t bytes) {
+  const std::string& device_name = device.info().name;
+  const std::string name = kernel_name(device, kernel);
+  cl_call(fmt::format("argument {} of kernel '{}'", index, name), device_name, [&] { kernel.setArg(index, bytes, value); });
 }
 
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local) {

@@ -20,8 +20,11 @@ TEST(Buffer, GivesBackWhatItWasMadeFrom) {
 
 TEST(Program, RunsAKernel) {
   const Device device = Device::choose("");
-  const Program program = Program::from_source(
-      device, "twice", flatten_kernels("#include \"math/vector.cl\"\n__kernel void twice(__global float* x, uint n) { const uint i = get_global_id(0); if (i < n) x[i] = sqr(x[i]); }"), "");
+  const Program program =
+      Program::from_source(device, "twice",
+                           flatten_kernels("#include \"math/vector.cl\"\n__kernel void twice(__global float* x, uint n) { const "
+                                           "uint i = get_global_id(0); if (i < n) x[i] = sqr(x[i]); }"),
+                           "");
   Buffer<float> buffer(device, 5);
   buffer.write(std::vector<float>{1, 2, 3, 4, 5});
   cl::Kernel kernel = program.kernel("twice");

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "device/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/check.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::size_t largest_record_bytes = std::max({
+#define RECORD_BEGIN(name) sizeof(name),
+#define FIELD(type, name)
+#define ARRAY(type, name, count)
+#define RECORD_END(name, bytes)
+#include "shared/records.def"
+#undef RECORD_BEGIN
+#undef FIELD
+#undef ARRAY
+#undef RECORD_END
+});
+
+/// What the kernel writes for `expected` layouts, the count at the front left out, and what each value is.
+struct Expectation {
+  std::vector<cl_uint> values;
+  std::vector<std::string> meanings;
+
+  void add(cl_uint value, const std::string& meaning) {
+    values.push_back(value);
+    meanings.push_back(meaning);
+  }
+};
+
+Expectation expectation(const std::vector<RecordLayout>& layouts) {
+  Expectation out;
+  for (const RecordLayout& record : layouts) {
+    out.add(record.bytes, record.name + ": size");
+    for (const FieldLayout& field : record.fields) {
+      const std::string name = record.name + "." + field.name;
+      out.add(field.offset, name + ": offset");
+      out.add(field.offset, name + ": offset it is loaded from");
+      out.add(field.bytes, name + ": size");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<RecordLayout> host_layout() {
+  std::vector<RecordLayout> out;
+#define RECORD_BEGIN(name) \
+  {                        \
+    using Record = name;   \
+    RecordLayout layout{#name, narrow<std::uint32_t>(sizeof(Record)), {}};
+#define FIELD(type, name) \
+  layout.fields.push_back({#name, narrow<std::uint32_t>(offsetof(Record, name)), narrow<std::uint32_t>(sizeof(Record::name))});
+#define ARRAY(type, name, count) FIELD(type, name)
+#define RECORD_END(name, bytes) \
+  out.push_back(layout);        \
+  }
+#include "shared/records.def"
+#undef RECORD_BEGIN
+#undef FIELD
+#undef ARRAY
+#undef RECORD_END
+  return out;
+}
+
+std::vector<std::string> compare_layout(const Device& device, const std::vector<RecordLayout>& expected) {
+  const Expectation wanted = expectation(expected);
+  // Room for a device list that is longer than the host's, as it can be with CAPLET_KERNELS.
+  const std::size_t capacity = 2 * wanted.values.size() + 1;
+  // As much beyond the largest record again, should the device's records be larger than the host's.
+  std::vector<cl_uint> words(2 * largest_record_bytes / sizeof(cl_uint));
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = 0x40000000u + narrow<cl_uint>(4 * i);
+
+  const Program program = Program::from_source(device, "layout", kernel_source("probe/layout.cl"), "");
+  Buffer<cl_uint> out(device, capacity);
+  const Buffer<cl_uint> in(device, std::span<const cl_uint>(words));
+  cl::Kernel kernel = program.kernel("layout");
+  set_arguments(device, kernel, out, narrow<cl_uint>(capacity), in);
+  launch(device, kernel, 1, 1);
+  const std::vector<cl_uint> seen = out.read();
+
+  std::vector<std::string> mismatches;
+  if (seen[0] != wanted.values.size() + 1)
+    mismatches.push_back(fmt::format("the device lists {} sizes and offsets, the host {}", seen[0] - 1, wanted.values.size()));
+  const std::size_t comparable = std::min<std::size_t>(seen[0] - 1, wanted.values.size());
+  for (std::size_t i = 0; i < comparable; ++i)
+    if (seen[i + 1] != wanted.values[i])
+      mismatches.push_back(
+          fmt::format("{} is {} on the device, {} on the host", wanted.meanings[i], seen[i + 1], wanted.values[i]));
+  return mismatches;
+}
+
+std::vector<std::string> compare_layout(const Device& device) { return compare_layout(device, host_layout()); }
+
+}  // namespace caplet
