@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <string>
+#include <utility>
 
 #include "render_scene.h"
 #include "support/data.h"
@@ -14,6 +17,17 @@ namespace caplet::test {
 namespace {
 
 std::filesystem::path scene_file() { return source_folder() / "tests" / "render" / "everything.pbrt"; }
+
+/// Compute units and film hash of render_digest under an environment setting.
+std::pair<int, std::string> digest(const std::string& environment) {
+  const std::string command = environment + " " RENDER_DIGEST " " + scene_file().string() + " 4";
+  FILE* pipe = ::popen(command.c_str(), "r");
+  int units = 0;
+  char hash[64] = "";
+  if (pipe == nullptr || std::fscanf(pipe, "%d %63s", &units, hash) != 2) ADD_FAILURE() << "no digest from: " << command;
+  EXPECT_EQ(::pclose(pipe), 0) << command;
+  return {units, hash};
+}
 
 bool same_bits(const std::vector<FilmRecord>& a, const std::vector<FilmRecord>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(FilmRecord)) == 0;
@@ -26,6 +40,17 @@ TEST(Determinism, BatchSizesDoNotChangeBits) {
     options.batch_paths = batch;
     EXPECT_TRUE(same_bits(one.result.film, render_file(scene_file(), 8, {}, options).result.film)) << batch;
   }
+}
+
+TEST(Determinism, ThreadsDoNotChangeBits) {
+  if (test_device().info().platform.find("Portable Computing Language") == std::string::npos ||
+      test_device().info().compute_units < 2)
+    GTEST_SKIP() << "needs PoCL on two or more processors";
+  const auto [one_unit, one] = digest("POCL_MAX_PTHREAD_COUNT=1");
+  const auto [two_units, two] = digest("POCL_MAX_PTHREAD_COUNT=2");
+  EXPECT_EQ(one_unit, 1);
+  EXPECT_EQ(two_units, 2);
+  EXPECT_EQ(one, two);
 }
 
 TEST(Determinism, SeedsDiffer) {
