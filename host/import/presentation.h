@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Camera, light and ground for files that bring geometry alone.
+// Camera and light for files that bring geometry alone.
 #pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
 
 #include "scene/scene.h"
 
 namespace caplet {
 
-/// Frames the camera to the scene's bounds (three-quarter view for volumes, face-on for flat ones), and adds soft studio light
-/// (a large key light, a dim constant sky). The scene has shapes with materials and no lights.
+/// Frames the camera to the scene's shapes (frame_camera) and adds soft studio light around it: one infinite image light with a
+/// large key light from the upper left, a fill from the right, a rim light from behind and a dim, slightly cool background. Being
+/// at infinity it adds no shape and lights large and small scenes alike: a white surface that faces the key comes out near 1.
+/// The scene has shapes with materials and no lights; y is taken as up.
 void add_presentation(Scene& scene);
+
+/// Points the camera at the shapes and moves it so that they just fit the film's size, with a margin; sets automatic_camera. To
+/// be called again when the film's size has changed. Flat scenes are seen face-on with a slight tilt, others three-quarter. The
+/// direction depends on the shapes alone.
+void frame_camera(Scene& scene);
 
 /// `n` well-told-apart diffuse colours (linear sRGB reflectance), index wraps.
 glm::dvec3 palette_color(std::size_t index);

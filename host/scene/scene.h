@@ -186,7 +186,8 @@ struct Scene {
   FilmSettings film;
   SamplerSettings sampler;
   IntegratorSettings integrator;
-  std::string source;  // the file it came from
+  std::string source;             // the file it came from
+  bool automatic_camera = false;  // the camera was framed to the shapes (import/presentation.h), for the film's size as it was
 };
 
 struct Bounds {

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Samples are parsed and linked first; then somata become spheres or chains and every other sample a segment to its parent.
+#include "import/swc.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <glm/ext/matrix_transform.hpp>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "import/importers.h"
+#include "import/presentation.h"
+#include "import/text_file.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::size_t kColumns = 7;
+constexpr std::array<const char*, kColumns> kColumnNames = {"id", "type", "x", "y", "z", "radius", "parent"};
+constexpr int kSoma = 1;
+/// A radius of 0 stands for "not measured" or "tapers off"; it becomes this part of the file's median positive radius.
+constexpr float kMissingRadiusPart = 0.25F;
+
+struct Token {
+  std::string_view text;
+  int column = 0;  // bytes, from 1
+};
+
+/// The blank-separated parts of a line before any comment, at most one more than there are columns.
+std::size_t split(std::string_view line, std::array<Token, kColumns + 1>& tokens) {
+  std::size_t count = 0, i = 0;
+  while (count < tokens.size()) {
+    while (i < line.size() && is_blank(line[i])) ++i;
+    if (i >= line.size() || line[i] == '#') break;
+    const std::size_t begin = i;
+    while (i < line.size() && !is_blank(line[i]) && line[i] != '#') ++i;
+    tokens[count++] = {line.substr(begin, i - begin), static_cast<int>(begin) + 1};
+  }
+  return count;
+}
+
+template <class Integer>
+bool parse_integer(std::string_view token, Integer& value) {
+  const char* end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
+class Parser {
+ public:
+  explicit Parser(const std::string& name) : name_(name) {}
+
+  std::vector<SwcSample> parse(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    for (int line = 1; !text.empty(); ++line) parse_line(take_line(text), line);
+    if (extra_columns_ > 0)
+      diagnostics_.warning({name_, first_extra_, 0},
+                           fmt::format("columns after the seventh are ignored ({} lines have some)", extra_columns_));
+    if (samples_.empty() && !diagnostics_.has_errors()) diagnostics_.error({name_, 0, 0}, "holds no samples");
+    link();
+    diagnostics_.finish();
+    find_cycles();
+    diagnostics_.finish();
+    return std::move(samples_);
+  }
+
+ private:
+  void parse_line(std::string_view line, int number) {
+    std::array<Token, kColumns + 1> tokens;
+    const std::size_t count = split(line, tokens);
+    if (count == 0) return;
+    if (count < kColumns) {
+      diagnostics_.error(
+          {name_, number, tokens[count - 1].column + static_cast<int>(tokens[count - 1].text.size())},
+          fmt::format("{} columns where 7 are needed (id type x y z radius parent): {} is missing", count, kColumnNames[count]));
+      return;
+    }
+    if (count > kColumns && extra_columns_++ == 0) first_extra_ = number;
+    SwcSample sample;
+    sample.line = number;
+    bool good = true;
+    const auto refuse = [&](std::size_t column, const std::string& message) {
+      diagnostics_.error({name_, number, tokens[column].column}, fmt::format("{}: {}", kColumnNames[column], message));
+      good = false;
+    };
+    const auto integer = [&](std::size_t column, auto& value) {
+      if (!parse_integer(tokens[column].text, value))
+        refuse(column, fmt::format("{} is not a whole number", quoted(tokens[column].text)));
+    };
+    const auto number_at = [&](std::size_t column, float& value) {
+      const NumberError error = parse_float(tokens[column].text, value);
+      if (error != NumberError::none) refuse(column, describe(error, tokens[column].text));
+    };
+    integer(0, sample.id);
+    integer(1, sample.type);
+    for (int axis = 0; axis < 3; ++axis) number_at(2 + static_cast<std::size_t>(axis), sample.position[axis]);
+    number_at(5, sample.radius);
+    integer(6, sample.parent_id);
+    if (!good) return;
+    if (sample.id < 0) refuse(0, fmt::format("{} is negative", sample.id));
+    if (sample.type < 0) refuse(1, fmt::format("{} is negative", sample.type));
+    if (sample.radius < 0) refuse(5, fmt::format("{} is negative", sample.radius));
+    if (sample.parent_id < -1) refuse(6, fmt::format("{} is neither an id nor -1 (a root)", sample.parent_id));
+    if (sample.parent_id == sample.id) refuse(6, fmt::format("sample {} is its own parent", sample.id));
+    if (good) samples_.push_back(sample);
+  }
+
+  /// Sets `parent`; reports repeated ids and missing parents (these only where no line was refused, since that line may be the
+  /// one).
+  void link() {
+    std::vector<std::uint32_t> by_id(samples_.size());
+    std::iota(by_id.begin(), by_id.end(), 0U);
+    const auto id_of = [this](std::uint32_t i) { return samples_[i].id; };
+    if (!std::ranges::is_sorted(by_id, {}, id_of)) std::ranges::stable_sort(by_id, {}, id_of);
+    for (std::size_t i = 1; i < by_id.size(); ++i) {
+      const SwcSample &first = samples_[by_id[i - 1]], &second = samples_[by_id[i]];
+      if (first.id == second.id)
+        diagnostics_.error({name_, second.line, 0}, fmt::format("id {} is already that of line {}", second.id, first.line));
+    }
+    if (diagnostics_.has_errors()) return;
+    const std::int64_t first_id = samples_.empty() ? 0 : id_of(by_id.front());
+    for (SwcSample& sample : samples_) {
+      if (sample.parent_id < 0) continue;
+      // Ids without gaps are their own index.
+      const auto guess = static_cast<std::uint64_t>(sample.parent_id - first_id);
+      if (sample.parent_id >= first_id && guess < by_id.size() && id_of(by_id[guess]) == sample.parent_id) {
+        sample.parent = static_cast<std::int32_t>(by_id[guess]);
+        continue;
+      }
+      const auto found = std::ranges::lower_bound(by_id, sample.parent_id, {}, id_of);
+      if (found == by_id.end() || id_of(*found) != sample.parent_id)
+        diagnostics_.error({name_, sample.line, 0}, fmt::format("parent {} is no sample of this file", sample.parent_id));
+      else
+        sample.parent = static_cast<std::int32_t>(*found);
+    }
+  }
+
+  void find_cycles() {
+    constexpr std::uint32_t kUnseen = 0;
+    std::vector<std::uint32_t> walk_of(samples_.size(), kUnseen);
+    for (std::uint32_t start = 0; start < samples_.size(); ++start) {
+      const std::uint32_t walk = start + 1;
+      auto i = static_cast<std::int32_t>(start);
+      while (i >= 0 && walk_of[static_cast<std::size_t>(i)] == kUnseen) {
+        walk_of[static_cast<std::size_t>(i)] = walk;
+        i = samples_[static_cast<std::size_t>(i)].parent;
+      }
+      if (i >= 0 && walk_of[static_cast<std::size_t>(i)] == walk) {
+        const SwcSample& sample = samples_[static_cast<std::size_t>(i)];
+        diagnostics_.error({name_, sample.line, 0}, fmt::format("sample {} is its own ancestor", sample.id));
+      }
+    }
+  }
+
+  const std::string& name_;
+  Diagnostics diagnostics_;
+  std::vector<SwcSample> samples_;
+  std::size_t extra_columns_ = 0;
+  int first_extra_ = 0;
+};
+
+/// Gives samples without a radius one, and warns.
+void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name) {
+  std::vector<float> known;
+  const SwcSample* first = nullptr;
+  for (const SwcSample& sample : samples) {
+    if (sample.radius > 0)
+      known.push_back(sample.radius);
+    else if (!first)
+      first = &sample;
+  }
+  if (!first) return;
+  float filled = 0;
+  if (!known.empty()) {
+    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+    std::ranges::nth_element(known, middle);
+    filled = std::max(kMissingRadiusPart * *middle, std::numeric_limits<float>::min());
+  } else {
+    glm::vec3 low(samples[0].position), high(low);
+    for (const SwcSample& sample : samples) {
+      low = glm::min(low, sample.position);
+      high = glm::max(high, sample.position);
+    }
+    constexpr double kThin = 1.0 / 512;
+    const double extent = glm::length(glm::dvec3(high) - glm::dvec3(low));
+    filled = extent > 0 ? static_cast<float>(kThin * extent) : 1.0F;
+  }
+  std::size_t missing = 0;
+  for (SwcSample& sample : samples)
+    if (!(sample.radius > 0)) {
+      sample.radius = filled;
+      ++missing;
+    }
+  Diagnostics().warning({name, first->line, 0},
+                        fmt::format("{} of {} samples have radius 0; they get {:.4g}", missing, samples.size(), filled));
+}
+
+/// What a sample is drawn as.
+struct Role {
+  bool segment = false;  // to its parent
+  bool sphere = false;   // a soma that is one sphere, or a sample that nothing else would show
+};
+
+/// NeuroMorpho.Org's soma of three points: two children of the first, at plus and minus one radius along y. Its files round to
+/// two decimals, so each of the numbers compared is off by up to 0.005: 0.01 for a difference of two.
+bool is_three_point_soma(const SwcSample& centre, const SwcSample& a, const SwcSample& b) {
+  const float tolerance = std::max(1e-3F * centre.radius, std::min(0.011F, 0.1F * centre.radius));
+  const auto near = [tolerance](float x, float y) { return std::abs(x - y) <= tolerance; };
+  const glm::vec3 da = a.position - centre.position, db = b.position - centre.position;
+  const bool same_radius = near(a.radius, centre.radius) && near(b.radius, centre.radius);
+  const bool on_axis = near(da.x, 0) && near(da.z, 0) && near(db.x, 0) && near(db.z, 0);
+  return same_radius && on_axis && near(std::abs(da.y), centre.radius) && near(da.y, -db.y);
+}
+
+std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
+  const std::size_t count = samples.size();
+  struct SomaLinks {
+    std::uint32_t children = 0;
+    std::array<std::uint32_t, 2> first{};
+    bool grandchildren = false;
+  };
+  std::map<std::uint32_t, SomaLinks> somata;  // by sample, for samples of type soma: few
+  std::vector<bool> has_children(count, false);
+  const auto is_soma = [&](std::int32_t i) { return i >= 0 && samples[static_cast<std::size_t>(i)].type == kSoma; };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::int32_t parent = samples[i].parent;
+    if (parent >= 0) has_children[static_cast<std::size_t>(parent)] = true;
+    if (!is_soma(static_cast<std::int32_t>(i))) continue;
+    somata.try_emplace(i);
+    if (!is_soma(parent)) continue;
+    SomaLinks& links = somata[static_cast<std::uint32_t>(parent)];
+    if (links.children < 2) links.first[links.children] = i;
+    ++links.children;
+    const std::int32_t grandparent = samples[static_cast<std::size_t>(parent)].parent;
+    if (is_soma(grandparent)) somata[static_cast<std::uint32_t>(grandparent)].grandchildren = true;
+  }
+
+  std::vector<Role> roles(count);
+  for (std::size_t i = 0; i < count; ++i) roles[i] = {samples[i].parent >= 0, samples[i].parent < 0 && !has_children[i]};
+  for (const auto& [i, links] : somata) {
+    if (is_soma(samples[i].parent)) continue;
+    if (links.children == 0) {
+      roles[i].sphere = true;
+    } else if (links.children == 2 && !links.grandchildren &&
+               is_three_point_soma(samples[i], samples[links.first[0]], samples[links.first[1]])) {
+      roles[i].sphere = true;
+      roles[links.first[0]].segment = roles[links.first[1]].segment = false;
+    }
+  }
+  return roles;
+}
+
+struct Palette {
+  const char* name;
+  glm::dvec3 reflectance;  // linear sRGB
+};
+
+Palette palette_of_type(int type) {
+  switch (type) {
+    case 0:
+      return {"undefined", {0.55, 0.56, 0.52}};
+    case kSoma:
+      return {"soma", {0.86, 0.62, 0.22}};
+    case 2:
+      return {"axon", {0.12, 0.48, 0.82}};
+    case 3:
+      return {"basal dendrite", {0.85, 0.23, 0.12}};
+    case 4:
+      return {"apical dendrite", {0.66, 0.22, 0.66}};
+    default:
+      return {"", palette_color(static_cast<std::size_t>(type))};
+  }
+}
+
+/// Materials by SWC type, made when first asked for.
+class TypeMaterials {
+ public:
+  explicit TypeMaterials(Scene& scene) : scene_(scene) {}
+  std::uint32_t operator()(const SwcSample& sample) {
+    if (sample.type == last_type_) return last_index_;
+    const auto [entry, fresh] = index_.try_emplace(sample.type, narrow<std::uint32_t>(scene_.materials.size()));
+    if (fresh) {
+      const Palette palette = palette_of_type(sample.type);
+      const std::string name = *palette.name ? palette.name : fmt::format("type {}", sample.type);
+      scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{palette.reflectance}}, name, {scene_.source, sample.line, 0}});
+    }
+    last_type_ = sample.type;
+    return last_index_ = entry->second;
+  }
+
+ private:
+  Scene& scene_;
+  std::map<int, std::uint32_t> index_;
+  int last_type_ = -1;
+  std::uint32_t last_index_ = 0;
+};
+
+}  // namespace
+
+std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
+
+Scene import_swc(const std::filesystem::path& path, const ImageReader&) {
+  Scene scene;
+  scene.source = path.string();
+  std::vector<SwcSample> samples = parse_swc(TextFile(path).text(), scene.source);
+  fill_missing_radii(samples, scene.source);
+  const std::vector<Role> roles = roles_of(samples);
+
+  TypeMaterials material_of(scene);
+  CapsulesShape segments;
+  const auto count = static_cast<std::size_t>(std::ranges::count(roles, true, &Role::segment));
+  for (std::vector<glm::vec3>* points : {&segments.p0, &segments.p1}) points->reserve(count);
+  for (std::vector<float>* radii : {&segments.radius0, &segments.radius1}) radii->reserve(count);
+  segments.materials.reserve(count);
+  bool tapered = false;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const SwcSample& sample = samples[i];
+    if (roles[i].sphere) {
+      Shape sphere;
+      sphere.geometry = SphereShape{sample.radius};
+      sphere.world_from_object = glm::translate(glm::dmat4(1), glm::dvec3(sample.position));
+      sphere.material = material_of(sample);
+      sphere.name = fmt::format("sample {}", sample.id);
+      sphere.where = {scene.source, sample.line, 0};
+      scene.shapes.push_back(std::move(sphere));
+    }
+    if (!roles[i].segment) continue;
+    // A neurite does not swell to the soma it starts at: the segment between them has the neurite's radius and material.
+    const SwcSample& parent = samples[static_cast<std::size_t>(sample.parent)];
+    const bool from_soma = parent.type == kSoma && sample.type != kSoma, to_soma = parent.type != kSoma && sample.type == kSoma;
+    segments.p0.push_back(parent.position);
+    segments.p1.push_back(sample.position);
+    segments.radius0.push_back(from_soma ? sample.radius : parent.radius);
+    segments.radius1.push_back(to_soma ? parent.radius : sample.radius);
+    segments.materials.push_back(material_of(to_soma ? parent : sample));
+    tapered |= segments.radius0.back() != segments.radius1.back();
+  }
+  if (!tapered) segments.radius1 = {};
+  if (!segments.p0.empty()) {
+    Shape shape;
+    shape.geometry = std::move(segments);
+    shape.name = path.stem().string();
+    shape.where = {scene.source, 1, 0};
+    scene.shapes.push_back(std::move(shape));
+  }
+  add_presentation(scene);
+  return scene;
+}
+
+}  // namespace caplet

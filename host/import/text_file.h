@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What line-based text formats share: a whole file in memory, its lines, and numbers in them.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace caplet {
+
+/// The bytes of a regular file. Throws InputError when it is missing, a folder or unreadable.
+class TextFile {
+ public:
+  explicit TextFile(const std::filesystem::path& path);
+  std::string_view text() const { return {data_.get(), size_}; }
+
+ private:
+  std::unique_ptr<char[]> data_;
+  std::size_t size_ = 0;
+};
+
+/// Takes the next line off `text`, without its end ("\n", "\r\n" or "\r").
+std::string_view take_line(std::string_view& text);
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+/// Why a number was refused; empty: it was not.
+enum class NumberError { none, not_a_number, not_finite, out_of_range };
+
+/// The float nearest to the whole of `token` (decimal notation, a leading '+' allowed); what is too small becomes 0.
+NumberError parse_float(std::string_view token, float& value);
+
+/// `token` in quotes for a message: shortened, unprintable bytes as \xNN.
+std::string quoted(std::string_view token);
+
+/// "'abc' is not a number" and the like, for a token that parse_float refused.
+std::string describe(NumberError error, std::string_view token);
+
+}  // namespace caplet
