@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The witness of a whole scene: every ray against every primitive, without a tree. Primitives stay in their object space; rays go
+// there through matrices inverted in double, unnormalised, so that t is the same in all spaces.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "reference/solver.h"
+#include "scene/scene.h"
+
+namespace caplet::reference {
+
+struct SceneHit {
+  double t = 0;
+  bool leaving = false;
+  std::uint32_t instance = 0;   // index into Scene::instances; no_instance: a shape of the world
+  std::uint32_t object = 0;     // index into Scene::objects; meaningless for shapes of the world
+  std::uint32_t shape = 0;      // index into Scene::shapes, or the object's shapes
+  std::uint32_t primitive = 0;  // capsule or triangle within the shape
+};
+inline constexpr std::uint32_t no_instance = 0xffffffffu;
+
+class SceneWitness {
+ public:
+  explicit SceneWitness(const Scene& scene);
+  /// The nearest hit with t_min < t < t_max over all primitives; the first in scene order among equals.
+  std::optional<SceneHit> closest(const Ray& ray) const;
+  /// The same for many rays, in parallel.
+  std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
+  std::size_t size() const { return placed_.size(); }
+
+ private:
+  struct Placed {
+    Primitive primitive;
+    Ball ball;  // of the primitive, object space
+    SceneHit identity;
+    std::uint32_t space;  // index into spaces_
+  };
+  void add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity);
+  std::vector<Placed> placed_;
+  std::vector<glm::dmat4> object_from_world_;
+};
+
+}  // namespace caplet::reference
