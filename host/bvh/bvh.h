@@ -44,7 +44,12 @@ struct Tree {
   double sah = 0;                    // expected node visits + leaf visits of a random line through the root box
 };
 
-/// Same tree for any number of threads. `references` must not be empty, boxes finite with min <= max.
-Tree build(std::span<const Reference> references);
+/// No path of a tree is longer than this, whatever the boxes: the builder splits at the median once the surface area heuristic
+/// has used up its share, so that the levels left always suffice. Holds for up to 2^31 references.
+inline constexpr int max_depth = 40;
+
+/// Same tree for any number of threads. `references` must not be empty, boxes finite with min <= max. References of group
+/// `single_group` get a leaf each.
+Tree build(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu);
 
 }  // namespace caplet::bvh

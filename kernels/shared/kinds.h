@@ -46,6 +46,7 @@ enum {
 #define CAPLET_LEAF_ROW_MASK 0x07ffffffu
 #define CAPLET_NODE_FLOATS 56  // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
 #define CAPLET_WIDTH 8
+#define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
 // Wavelengths, in nanometres, of every spectral table: 1 nm steps, both ends included.
 #define CAPLET_LAMBDA_MIN 360.0f

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The binary tree between references and wide nodes; private to this room.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "bvh/bvh.h"
+
+namespace caplet::bvh {
+
+struct Box {
+  std::array<float, 3> min{inf, inf, inf}, max{-inf, -inf, -inf};
+  static constexpr float inf = std::numeric_limits<float>::infinity();
+
+  void extend(const Reference& r) {
+    for (std::size_t k = 0; k < 3; k++) {
+      min[k] = std::min(min[k], r.min[k]);
+      max[k] = std::max(max[k], r.max[k]);
+    }
+  }
+  void extend(const Box& b) {
+    for (std::size_t k = 0; k < 3; k++) {
+      min[k] = std::min(min[k], b.min[k]);
+      max[k] = std::max(max[k], b.max[k]);
+    }
+  }
+  /// Half the surface area; 0 when empty. In double, so that no finite box overflows.
+  double area() const {
+    if (!(min[0] <= max[0])) return 0;
+    const double x = double(max[0]) - double(min[0]), y = double(max[1]) - double(min[1]), z = double(max[2]) - double(min[2]);
+    return x * y + y * z + z * x;
+  }
+};
+
+struct BinaryNode {
+  Box box;
+  std::uint32_t left = 0, right = 0;  // 0: leaf, since the root is nobody's child
+  std::uint32_t first = 0, count = 0;  // range of the ordered references
+};
+
+struct BinaryTree {
+  std::vector<Reference> items;  // in leaf order; `primitive` is the index into the references given
+  std::unique_ptr<BinaryNode[]> nodes;
+  std::uint32_t node_count = 0;
+};
+
+/// Node 0 is the root. Numbers of the other nodes depend on timing; the tree's shape does not.
+BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group);
+
+/// Wide nodes of least cost over the binary tree.
+Tree collapse(const BinaryTree& binary);
+
+}  // namespace caplet::bvh

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The capsule's span: the tube around the axis, closed by the spheres at its ends. Rows of a block: p0 p1 r.
+//
+// With the ray moved to its point p nearest to p0, axis b = p1 - p0, the parts of p and d across the axis are
+// e = p - (p.b / b.b) b and f = d - (d.b / b.b) b. The tube is |e + t f| = r: nearest to the axis at t0 = -e.f / f.f, where the
+// distance vector is q = e + t0 f, half a chord away from both crossings: h^2 = (r^2 - q^2) / f.f. A crossing beyond an end of the
+// axis is replaced by the crossing of that end's sphere.
+//
+// Why not the quadratic's b^2 - 4ac: its terms grow as L^2 and cancel to r^2, an error of eps L^2 / r. Here f is off by at most
+// 3 eps |d|, which tilts the ray by no more than 3 eps L over the capsule, and given f everything else is relative to |e| <= L + r.
+// Distance of the reported point from the surface: 12 eps (|o - p0| + L + r), eps = 2^-24 (docs/numerics.md).
+#ifndef CAPLET_SHAPES_CAPSULE_CL
+#define CAPLET_SHAPES_CAPSULE_CL
+
+#include "shapes/real.cl"
+
+typedef struct {
+  real px, py, pz;     // the ray's point nearest to p0, relative to p0
+  real bx, by, bz;     // axis
+  real u, v, t0, h;    // position on the axis (0..1) is u + v t; the tube is crossed at t0 -+ h
+  real r;
+} CapsuleLine;
+
+// The crossing on the entering (sign -1) or leaving (+1) side, as an offset from the moved origin; lanes without one leave `hit`.
+static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float sign, real_mask* hit) {
+  const real side = c->t0 + sign * c->h;
+  const real y = c->u + c->v * side;
+  const real_mask body = (y >= 0.0f) & (y <= 1.0f);
+  const real_mask beyond = y > 0.5f;
+  const real zero = real_of(0.0f);
+  const real cx = c->px - (beyond ? c->bx : zero), cy = c->py - (beyond ? c->by : zero), cz = c->pz - (beyond ? c->bz : zero);
+  const real tc = -real_dot(cx, cy, cz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
+  const real qx = cx + tc * ray->dx, qy = cy + tc * ray->dy, qz = cz + tc * ray->dz;
+  const real disc = c->r * c->r - real_dot(qx, qy, qz, qx, qy, qz);
+  *hit &= body | (disc >= 0.0f);
+  return body ? side : tc + sign * sqrt(real_max(disc, zero) * ray->inv_dd);
+}
+
+static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* leaving) {
+  CapsuleLine c;
+  const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
+  const real wx = ray->ox - ax, wy = ray->oy - ay, wz = ray->oz - az;
+  c.bx = real_load(block + 32, lane) - ax;
+  c.by = real_load(block + 40, lane) - ay;
+  c.bz = real_load(block + 48, lane) - az;
+  c.r = real_load(block + 56, lane);
+  const real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
+  c.px = wx + shift * ray->dx;
+  c.py = wy + shift * ray->dy;
+  c.pz = wz + shift * ray->dz;
+  const real bb = real_dot(c.bx, c.by, c.bz, c.bx, c.by, c.bz);
+  const real inv_bb = bb > 0.0f ? 1.0f / bb : real_of(0.0f);  // no axis: a sphere, all of it body
+  c.u = real_dot(c.px, c.py, c.pz, c.bx, c.by, c.bz) * inv_bb;
+  c.v = real_dot(c.bx, c.by, c.bz, ray->dx, ray->dy, ray->dz) * inv_bb;
+  const real ex = c.px - c.u * c.bx, ey = c.py - c.u * c.by, ez = c.pz - c.u * c.bz;
+  const real fx = ray->dx - c.v * c.bx, fy = ray->dy - c.v * c.by, fz = ray->dz - c.v * c.bz;
+  // Along the axis f vanishes; the floor makes the tube's span longer than any capsule whose shape single precision can hold.
+  const real inv_ff = 1.0f / real_max(real_dot(fx, fy, fz, fx, fy, fz), real_of(ray->ff_min));
+  c.t0 = -real_dot(ex, ey, ez, fx, fy, fz) * inv_ff;
+  const real qx = ex + c.t0 * fx, qy = ey + c.t0 * fy, qz = ez + c.t0 * fz;
+  const real disc = c.r * c.r - real_dot(qx, qy, qz, qx, qy, qz);
+  real_mask hit = disc >= 0.0f;
+  *t = shift;
+  *leaving = hit & (disc < 0.0f);
+  if (mask_bits(hit) == 0) return hit;
+  c.h = sqrt(real_max(disc, real_of(0.0f)) * inv_ff);
+  *t = shift + capsule_end(ray, &c, -1.0f, &hit);
+  *leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
+  if (mask_bits(*leaving) != 0) {
+    real_mask exit_hit = hit;
+    const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exit_hit);
+    *t = *leaving ? t_exit : *t;
+    hit = *leaving ? exit_hit : hit;
+  }
+  return hit;
+}
+
+#endif

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Traversal of the 8-wide tree, closest and any hit from one text, and the only switch over shapes.
+// One work-item is one ray. CAPLET_REAL_WIDTH 8: eight boxes and eight primitives at a time; 1: one after the other.
+#ifndef CAPLET_TRACE_TRACE_CL
+#define CAPLET_TRACE_TRACE_CL
+
+#include "math/vector.cl"
+#include "shapes/capsule.cl"
+#include "shapes/disk.cl"
+#include "shapes/real.cl"
+#include "shapes/sphere.cl"
+#include "shapes/tapered_capsule.cl"
+#include "shapes/triangle.cl"
+#include "shared/records.h"
+
+// A visited node leaves at most seven of its children on the stack, in both levels of trees; the host checks the depth.
+#define CAPLET_STACK_SIZE (2 * 7 * CAPLET_TREE_DEPTH_MAX)
+
+// The ray as slab tests want it. Plane p of axis x is crossed at p * near_ix - near_ox, or with far_: the true parameter is
+// between the two. With eps = 2^-24, 1/d is off by 5 eps (OpenCL allows 2.5 ulp), the products and the difference by eps each,
+// hence the factors 1 -+ 2^-21; the rounding of o/d and the shapes' own error, which grows with the distance of the origin
+// (16 eps at most), are covered by 2^-19 |o| / d. Boxes are padded for the part that grows with the primitive.
+typedef struct {
+  float near_ix, near_iy, near_iz, near_ox, near_oy, near_oz;
+  float far_ix, far_iy, far_iz, far_ox, far_oy, far_oz;
+  uint near_x, near_y, near_z;  // first float of the near plane's row; the far one is 24 further or back
+  uint far_x, far_y, far_z;
+} SlabRay;
+
+static inline SlabRay slab_ray(float3 o, float3 d) {
+  // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never, and nothing is NaN.
+  const float largest = max3(fabs(d)), smallest = largest * 0x1p-64f;
+  const float3 s = (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
+                            copysign(fmax(fabs(d.z), smallest), d.z));
+  const float3 i = clamp(1.0f / s, -1e37f, 1e37f);
+  const float3 shift = clamp(o * i, -1e37f, 1e37f);
+  const float3 slack = clamp(fabs(i) * (max3(fabs(o)) * 0x1p-19f), 0.0f, 1e37f);
+  const float3 near_i = i * (1.0f - 0x1p-21f), far_i = i * (1.0f + 0x1p-21f);
+  const float3 near_o = shift * (1.0f - 0x1p-21f) + slack, far_o = shift * (1.0f + 0x1p-21f) - slack;
+  SlabRay r;
+  r.near_ix = near_i.x;
+  r.near_iy = near_i.y;
+  r.near_iz = near_i.z;
+  r.near_ox = near_o.x;
+  r.near_oy = near_o.y;
+  r.near_oz = near_o.z;
+  r.far_ix = far_i.x;
+  r.far_iy = far_i.y;
+  r.far_iz = far_i.z;
+  r.far_ox = far_o.x;
+  r.far_oy = far_o.y;
+  r.far_oz = far_o.z;
+  r.near_x = s.x < 0.0f ? 24 : 0;
+  r.far_x = s.x < 0.0f ? 0 : 24;
+  r.near_y = s.y < 0.0f ? 32 : 8;
+  r.far_y = s.y < 0.0f ? 8 : 32;
+  r.near_z = s.z < 0.0f ? 40 : 16;
+  r.far_z = s.z < 0.0f ? 16 : 40;
+  return r;
+}
+
+// Children whose box the ray meets within [t_min, t_best], as bits, and where it enters them.
+static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
+#if CAPLET_REAL_WIDTH == 8
+  const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
+  const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
+  const float8 nz = vload8(0, node + s->near_z) * s->near_iz - s->near_oz;
+  const float8 fx = vload8(0, node + s->far_x) * s->far_ix - s->far_ox;
+  const float8 fy = vload8(0, node + s->far_y) * s->far_iy - s->far_oy;
+  const float8 fz = vload8(0, node + s->far_z) * s->far_iz - s->far_oz;
+  const float8 near = real_max(real_max(nx, ny), real_max(nz, real_of(t_min)));
+  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(t_best)));
+  vstore8(near, 0, enter);
+  return mask_bits(near <= far);
+#else
+  uint bits = 0;
+  for (uint i = 0; i < CAPLET_WIDTH; i++) {
+    const float near = fmax(fmax(node[s->near_x + i] * s->near_ix - s->near_ox, node[s->near_y + i] * s->near_iy - s->near_oy),
+                            fmax(node[s->near_z + i] * s->near_iz - s->near_oz, t_min));
+    const float far = fmin(fmin(node[s->far_x + i] * s->far_ix - s->far_ox, node[s->far_y + i] * s->far_iy - s->far_oy),
+                           fmin(node[s->far_z + i] * s->far_iz - s->far_oz, t_best));
+    enter[i] = near;
+    bits |= (near <= far ? 1u : 0u) << i;
+  }
+  return bits;
+#endif
+}
+
+static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t,
+                                  real_mask* leaving) {
+  switch (shape) {
+    case shape_capsule: return capsule_hit(ray, block, lane, t, leaving);
+    case shape_triangle: return triangle_hit(ray, block, lane, t, leaving);
+    case shape_sphere: return sphere_hit(ray, block, lane, t, leaving);
+    case shape_tapered_capsule: return tapered_capsule_hit(ray, block, lane, t, leaving);
+    default: return disk_hit(ray, block, lane, t, leaving);
+  }
+}
+
+// Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
+static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
+
+// Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: the smaller slot wins, then the smaller instance, so
+// that the order of traversal cannot show. Zero, infinite and NaN rays miss.
+static inline HitRecord trace_ray(__global const float* nodes, __global const float* leaves,
+                                  __global const InstanceRecord* instances, uint root, RayRecord ray, const int any) {
+  HitRecord hit;
+  hit.t = INFINITY;
+  hit.slot = CAPLET_NONE;
+  hit.instance = CAPLET_NONE;
+  hit.surface = 0;
+  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
+  const float dd = dot(world_d, world_d), oo = fabs(ray.ox) + fabs(ray.oy) + fabs(ray.oz);
+  if (!(dd > 0.0f && dd < INFINITY && oo < INFINITY)) return hit;
+  const float t_min = fmax(ray.t_min, 0.0f);
+  float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
+  if (!(t_min < t_best)) return hit;
+  uint best_slot = 0, best_instance = CAPLET_NONE, instance = CAPLET_NONE;
+  int found = 0, best_leaving = 0;
+
+  ulong stack[CAPLET_STACK_SIZE];
+  int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
+  SlabRay slab = slab_ray(world_o, world_d);
+  ShapeRay shape = shape_ray(world_o, world_d, t_min);
+  int current = (int)root;
+  for (;;) {
+    if (current >= 0) {
+      __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
+      __global const int* child = (__global const int*)(node + 48);
+      float enter[8];
+      uint bits = node_hits(node, &slab, t_min, t_best, enter);
+      if (bits != 0) {
+        uint i = lowest_bit(bits);
+        bits &= bits - 1;
+        if (bits == 0) {
+          current = child[i];
+          continue;
+        }
+        ulong first = stack_key(enter[i], child[i]);
+        i = lowest_bit(bits);
+        bits &= bits - 1;
+        ulong second = stack_key(enter[i], child[i]);
+        ulong near = min(first, second);
+        second = max(first, second);
+        if (bits == 0) {
+          stack[top++] = second;
+          current = (int)(uint)near;
+          continue;
+        }
+        i = lowest_bit(bits);
+        bits &= bits - 1;
+        ulong third = stack_key(enter[i], child[i]);
+        const ulong nearest = min(near, third);
+        third = max(near, third);
+        if (bits == 0) {
+          stack[top++] = max(second, third);
+          stack[top++] = min(second, third);
+          current = (int)(uint)nearest;
+          continue;
+        }
+        // Four or more: insertion, nearest on top.
+        const int bottom = top;
+        stack[top++] = max(second, third);
+        stack[top++] = min(second, third);
+        stack[top++] = nearest;
+        do {
+          i = lowest_bit(bits);
+          bits &= bits - 1;
+          const ulong key = stack_key(enter[i], child[i]);
+          int place = top++;
+          while (place > bottom && stack[place - 1] < key) {
+            stack[place] = stack[place - 1];
+            place--;
+          }
+          stack[place] = key;
+        } while (bits != 0);
+        current = (int)(uint)stack[--top];
+        continue;
+      }
+    } else {
+      const uint kind = ((uint)current >> CAPLET_LEAF_ROW_BITS) & 15u, row = (uint)current & CAPLET_LEAF_ROW_MASK;
+      __global const float* block = leaves + (size_t)row * 8;
+      if (kind == shape_instance) {
+        // Down into the object's tree: the ray goes along unnormalised, so t stays what it is.
+        instance = ((__global const uint*)block)[0];
+        __global const InstanceRecord* placed = instances + instance;
+        const float3 o = transform_point(placed->object_from_world, world_o);
+        const float3 d = transform_vector(placed->object_from_world, world_d);
+        slab = slab_ray(o, d);
+        shape = shape_ray(o, d, t_min);
+        floor = top;
+        current = (int)placed->root;
+        if (dot(d, d) > 0.0f) continue;
+      } else {
+        for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) {
+          real t;
+          real_mask leaving;
+          real_mask ok = shape_hit(kind, &shape, block, lane, &t, &leaving);
+          ok &= lanes_filled(block, lane) & (t > t_min) & (t <= t_best);
+          uint bits = mask_bits(ok);
+          if (bits == 0) continue;
+          float ts[CAPLET_REAL_WIDTH];
+          real_store(t, ts);
+          const uint leaving_bits = mask_bits(leaving);
+          do {
+            const uint i = lowest_bit(bits);
+            bits &= bits - 1;
+            const uint slot = row * 8 + lane + i;
+            const int earlier = slot < best_slot || (slot == best_slot && instance < best_instance && found);
+            if (ts[i] < t_best || (ts[i] == t_best && earlier)) {
+              t_best = ts[i];
+              best_slot = slot;
+              best_instance = instance;
+              best_leaving = (leaving_bits >> i) & 1u;
+              found = 1;
+            }
+          } while (bits != 0);
+          if (any && found) {
+            hit.t = t_best;
+            hit.slot = best_slot;
+            hit.instance = best_instance;
+            return hit;
+          }
+        }
+      }
+    }
+    // Next from the stack, passing over what begins behind the hit.
+    for (;;) {
+      if (top == floor) {
+        if (instance == CAPLET_NONE) {
+          if (found) {
+            hit.t = t_best;
+            hit.slot = best_slot;
+            hit.instance = best_instance;
+            hit.surface = best_leaving ? 1u << 16 : 0u;
+          }
+          return hit;
+        }
+        instance = CAPLET_NONE;
+        floor = 0;
+        slab = slab_ray(world_o, world_d);
+        shape = shape_ray(world_o, world_d, t_min);
+        continue;
+      }
+      const ulong key = stack[--top];
+      if ((uint)(key >> 32) <= as_uint(t_best)) {
+        current = (int)(uint)key;
+        break;
+      }
+    }
+  }
+}
+
+// The nearest hit with t in (t_min, t_max).
+static inline HitRecord trace_closest(__global const float* nodes, __global const float* leaves,
+                                      __global const InstanceRecord* instances, uint root, RayRecord ray) {
+  return trace_ray(nodes, leaves, instances, root, ray, 0);
+}
+
+// 1 if anything is hit with t in (t_min, t_max).
+static inline int trace_any(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                            uint root, RayRecord ray) {
+  return trace_ray(nodes, leaves, instances, root, ray, 1).slot != CAPLET_NONE;
+}
+
+#endif
