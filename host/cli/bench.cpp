@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet bench`: hands over to caplet_bench, the benchmark program built beside this one.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.h"
+#include "cli/commands.h"
+
+namespace caplet::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void run_bench(std::vector<std::string> arguments) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path() / "caplet_bench";
+  if (error || !fs::exists(program, error))
+    throw InputError("bench: caplet_bench is not built; configure with -DCAPLET_BENCH=ON (needs libembree-dev) and build again");
+  std::vector<char*> argv;
+  std::string name = program.string();
+  argv.push_back(name.data());
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  ::execv(name.c_str(), argv.data());
+  throw RunError(fmt::format("{}: cannot be run: {}", name, std::strerror(errno)));
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, const Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("bench", "Measure ray tracing speed side by side with Embree");
+  command->footer(
+      "Arguments go to the benchmark program: `caplet bench capsules --n 1000000`; `caplet bench -- --help` lists them.");
+  command->prefix_command();
+  command->callback([command, &invocation] {
+    (void)invocation;
+    run_bench(command->remaining());
+  });
+}
+
+}  // namespace caplet::cli

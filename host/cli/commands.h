@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The subcommands: each adds itself to the program, with its options and what it does. main.cpp catches their errors.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+namespace caplet::cli {
+
+/// How the program was called, for metadata and errors.
+struct Invocation {
+  std::vector<std::string> arguments;  // arguments[0] is the program
+  /// As one would type it into a shell.
+  std::string command_line() const;
+};
+
+void add_render(CLI::App& app, const Invocation& invocation);
+void add_devices(CLI::App& app);
+void add_info(CLI::App& app);
+void add_bench(CLI::App& app, const Invocation& invocation);
+
+}  // namespace caplet::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet info`: what is in a scene, without rendering it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/summary.h"
+#include "film/image.h"
+#include "import/import.h"
+#include "lower/lower.h"
+
+namespace caplet::cli {
+
+namespace {
+
+void print_text(const nlohmann::ordered_json& info) {
+  fmt::print("scene        {}\n", info["scene"].get<std::string>());
+  for (const auto& [kind, count] : info["primitives"].items()) fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
+  const auto& low = info["bounds"]["min"];
+  const auto& high = info["bounds"]["max"];
+  fmt::print("bounds       ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0].get<double>(), low[1].get<double>(),
+             low[2].get<double>(), high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
+  fmt::print("materials    {}\nlights       {}\n", info["materials"].get<std::uint64_t>(), info["lights"].get<std::uint64_t>());
+  fmt::print("image        {} x {}, {} samples per pixel\n", info["image"]["width"].get<int>(),
+             info["image"]["height"].get<int>(), info["samples_per_pixel"].get<int>());
+  fmt::print("bytes        {} host, {} device\n", info["bytes"]["host"].get<std::uint64_t>(),
+             info["bytes"]["device"].get<std::uint64_t>());
+  fmt::print("bvh          {} nodes, depth {}, SAH cost {:.4g}\n", info["bvh"]["nodes"].get<std::uint64_t>(),
+             info["bvh"]["depth"].get<int>(), info["bvh"]["sah"].get<double>());
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  struct Options {
+    std::string scene;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("info", "Tell what a scene file holds: primitives, bounds, materials, lights, memory, tree");
+  command->add_option("SCENE", options->scene, "Scene file")->required();
+  command->add_flag("--json", options->json, "Print a JSON object for machines");
+  command->callback([options] {
+    const Scene scene = import_scene(options->scene, FileImageReader());
+    const nlohmann::ordered_json info = scene_summary(scene, lower(scene));
+    options->json ? fmt::print("{}", to_text(info)) : print_text(info);
+  });
+}
+
+}  // namespace caplet::cli

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The program's door: subcommands in, exit codes out (0 done, 1 failed while working, 2 wrong input or usage).
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <new>
+
+#include "base/error.h"
+#include "cli/commands.h"
+
+namespace {
+
+constexpr int exit_failed = 1, exit_wrong_input = 2;
+
+void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", message.c_str()); }
+
+int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  for (char& c : message)
+    if (c == '\n') c = ' ';
+  print_error(message);
+  std::string help = "caplet --help";
+  for (const CLI::App* command : app.get_subcommands()) help = "caplet " + command->get_name() + " --help";
+  std::fprintf(stderr, "caplet: see: %s\n", help.c_str());
+  return exit_wrong_input;
+}
+
+int run(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return print_usage_error(app, error);
+  } catch (const caplet::InputError& error) {
+    for (const std::string& message : error.messages()) print_error(message);
+    return exit_wrong_input;
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const caplet::cli::Invocation invocation{{argv, argv + argc}};
+  CLI::App app{"Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any OpenCL device.", "caplet"};
+  app.set_version_flag("--version", "caplet " CAPLET_VERSION);
+  app.set_help_flag("-h,--help", "Show this help and exit");
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong.\n"
+      "`caplet COMMAND --help` explains a command.");
+  caplet::cli::add_render(app, invocation);
+  caplet::cli::add_info(app);
+  caplet::cli::add_devices(app);
+  caplet::cli::add_bench(app, invocation);
+  return run(app, argc, argv);
+}

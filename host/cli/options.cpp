@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "import/presentation.h"
+
+namespace caplet::cli {
+
+namespace {
+
+constexpr long long max_pixels = 1LL << 28;
+
+/// All of `text` as whole numbers separated by `separator`; empty when it is anything else.
+std::vector<long long> whole_numbers(std::string_view text, char separator) {
+  std::vector<long long> out;
+  for (;;) {
+    long long value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc()) return {};
+    out.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) return out;
+    if (text.front() != separator) return {};
+    text.remove_prefix(1);
+  }
+}
+
+[[noreturn]] void refuse(const char* flag, const std::string& message) { throw InputError(SourceLocation{flag}, message); }
+
+void check_crop(const std::array<int, 4>& crop, const FilmSettings& film) {
+  if (crop[0] < 0 || crop[1] < 0 || crop[2] > film.width || crop[3] > film.height)
+    refuse("--crop", fmt::format("{},{},{},{} is not within the image of {}x{}", crop[0], crop[1], crop[2], crop[3], film.width,
+                                 film.height));
+}
+
+/// Keeps a crop's place in the picture when the picture's size changes; never empty.
+std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& film, const ImageSize& size) {
+  const auto scaled = [](int value, int to, int from) { return static_cast<int>(std::lround(double{1} * value * to / from)); };
+  std::array<int, 4> out{scaled(crop[0], size.width, film.width), scaled(crop[1], size.width, film.width),
+                         scaled(crop[2], size.height, film.height), scaled(crop[3], size.height, film.height)};
+  out[0] = std::min(out[0], size.width - 1);
+  out[1] = std::max(out[1], out[0] + 1);
+  out[2] = std::min(out[2], size.height - 1);
+  out[3] = std::max(out[3], out[2] + 1);
+  return out;
+}
+
+}  // namespace
+
+ImageSize parse_size(const std::string& text) {
+  const std::vector<long long> sides = whole_numbers(text, 'x');
+  if (sides.size() != 2) refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 960x540", text));
+  if (sides[0] < 1 || sides[1] < 1) refuse("--size", fmt::format("'{}': both sides must be at least 1", text));
+  if (sides[0] > max_pixels || sides[1] > max_pixels || sides[0] * sides[1] > max_pixels)
+    refuse("--size", fmt::format("'{}' is more than 2^28 pixels", text));
+  return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
+}
+
+std::array<int, 4> parse_crop(const std::string& text) {
+  const std::vector<long long> corners = whole_numbers(text, ',');
+  if (corners.size() != 4) refuse("--crop", fmt::format("'{}' is not x0,y0,x1,y1 in pixels", text));
+  for (const long long corner : corners)
+    if (corner < 0 || corner > max_pixels) refuse("--crop", fmt::format("'{}': {} is out of range", text, corner));
+  if (corners[0] >= corners[2] || corners[1] >= corners[3])
+    refuse("--crop", fmt::format("'{}' is empty: x0 < x1 and y0 < y1 are needed", text));
+  return {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2]), static_cast<int>(corners[3])};
+}
+
+void apply(const Overrides& overrides, Scene& scene) {
+  FilmSettings& film = scene.film;
+  if (overrides.size) {
+    if (film.crop) film.crop = rescaled(*film.crop, film, *overrides.size);
+    film.width = overrides.size->width;
+    film.height = overrides.size->height;
+    if (scene.automatic_camera) frame_camera(scene);
+  }
+  if (overrides.crop) {
+    const std::array<int, 4>& crop = *overrides.crop;
+    check_crop(crop, film);
+    film.crop = {crop[0], crop[2], crop[1], crop[3]};
+  }
+  if (overrides.samples_per_pixel) scene.sampler.samples_per_pixel = *overrides.samples_per_pixel;
+  if (overrides.seed) scene.sampler.seed = *overrides.seed;
+  if (overrides.max_depth) scene.integrator.max_depth = *overrides.max_depth;
+}
+
+}  // namespace caplet::cli

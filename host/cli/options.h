@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Options that several values make up, and what they change in a scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace caplet::cli {
+
+struct ImageSize {
+  int width = 0, height = 0;
+};
+
+/// "960x540": two whole numbers from 1, at most 2^28 pixels in all. Throws InputError naming --size.
+ImageSize parse_size(const std::string& text);
+
+/// "x0,y0,x1,y1" in pixels from the top left, x1 and y1 excluded. Throws InputError naming --crop.
+std::array<int, 4> parse_crop(const std::string& text);
+
+/// What the command line overrides.
+struct Overrides {
+  std::optional<ImageSize> size;
+  std::optional<std::array<int, 4>> crop;  // x0, y0, x1, y1
+  std::optional<int> samples_per_pixel, max_depth;
+  std::optional<std::uint32_t> seed;
+};
+
+/// Applies them; a new size rescales the file's own crop and re-frames an automatic camera. Throws InputError when the crop does
+/// not lie within the image.
+void apply(const Overrides& overrides, Scene& scene);
+
+}  // namespace caplet::cli

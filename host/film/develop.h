@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The film's sums as picture layers.
+#pragma once
+
+#include <vector>
+
+#include "film/image.h"
+#include "scene/scene.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+/// Z of pixels whose camera rays all missed: Blender's value. Infinity would poison filters and normalising nodes.
+inline constexpr float depth_of_nothing = 1e10f;
+
+/// Layers of the rendered window (docs/output.md), of film records in its scan order, times the film's exposure:
+/// R G B     mean of the samples, linear in the film's colour space; at most film.max_component_value, the others scaled with it
+/// A         coverage: share of the camera rays that hit something
+/// albedo    mean over all samples (0 where nothing is hit)
+/// N, P, Z   mean over the samples that hit: shading normal (not renormalised), world position, distance; 0, 0 and
+///           depth_of_nothing without hits
+/// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
+/// variance  (with_variance) variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
+/// Throws std::logic_error when the film is not of the window's size.
+LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, bool with_variance);
+
+}  // namespace caplet

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Image files other than EXR. image_oiio.cpp does it with OpenImageIO; image_none.cpp stands in where that is not built.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace caplet::image_files {
+
+/// Pixels as the file holds them, made linear, before alpha is applied; row-major from the top, `channels` floats each.
+struct Pixels {
+  int width = 0, height = 0, channels = 0;
+  int alpha = -1;  // channel, or none; not yet multiplied in
+  std::vector<float> values;
+};
+
+bool available();
+/// Throws InputError naming the file, or naming the build option where this is not built.
+Pixels read_linear(const std::filesystem::path& path);
+/// Whether a file of that extension can be written.
+bool can_write(const std::filesystem::path& path);
+/// Writes 8-bit sRGB, 3 bytes a pixel. Throws RunError.
+void write_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
+
+}  // namespace caplet::image_files

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Image files other than EXR in a build without OpenImageIO: clear errors.
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "film/image_files.h"
+
+namespace caplet::image_files {
+
+namespace {
+
+constexpr const char* reason = "this build reads and writes EXR only (built with CAPLET_WITH_OIIO=OFF)";
+
+}  // namespace
+
+bool available() { return false; }
+
+Pixels read_linear(const std::filesystem::path& path) { throw InputError(fmt::format("{}: {}", path.string(), reason)); }
+
+bool can_write(const std::filesystem::path&) { return false; }
+
+void write_rgb8(const std::filesystem::path& path, int, int, const std::vector<std::uint8_t>&) {
+  throw RunError(fmt::format("{}: {}", path.string(), reason));
+}
+
+}  // namespace caplet::image_files

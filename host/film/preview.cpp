@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "film/preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "film/image_files.h"
+#include "film/transfer.h"
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr float knee = 0.5f;
+constexpr float whitening = 0.125f;
+
+std::uint8_t byte_from_linear(float value) {
+  return static_cast<std::uint8_t>(std::clamp(srgb_from_linear(value), 0.0f, 1.0f) * 255 + 0.5f);
+}
+
+}  // namespace
+
+std::array<float, 3> tone_map(const std::array<float, 3>& rgb) {
+  std::array<float, 3> out{};
+  for (std::size_t c = 0; c < 3; ++c) out[c] = rgb[c] > 0 ? rgb[c] : 0.0f;
+  const float peak = std::max({out[0], out[1], out[2]});
+  if (!(peak > knee)) return out;
+  if (std::isinf(peak)) return {1, 1, 1};
+  const float mapped = 1 - (1 - knee) * std::exp(-(peak - knee) / (1 - knee));
+  const float white = 1 - 1 / (1 + whitening * (peak - mapped));
+  for (float& value : out) value = value * (mapped / peak) * (1 - white) + mapped * white;
+  return out;
+}
+
+std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image) {
+  const std::array<const Channel*, 3> channels{image.find("R"), image.find("G"), image.find("B")};
+  if (!channels[0] || !channels[1] || !channels[2]) throw std::logic_error("preview of an image without R G B");
+  const Chromaticities from = image.chromaticities ? *image.chromaticities : chromaticities_of(image.space);
+  const std::array<double, 9> m = product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))), xyz_from_rgb(from));
+  const bool convert = from != chromaticities_of(ColorSpace::srgb);
+
+  const std::size_t pixels = channels[0]->floats.size();
+  std::vector<std::uint8_t> out(3 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::array<float, 3> v{channels[0]->floats[i], channels[1]->floats[i], channels[2]->floats[i]};
+    std::array<float, 3> rgb = v;
+    if (convert)
+      for (std::size_t r = 0; r < 3; ++r)
+        rgb[r] = static_cast<float>(m[3 * r] * v[0] + m[3 * r + 1] * v[1] + m[3 * r + 2] * v[2]);
+    const std::array<float, 3> shown = tone_map(rgb);
+    for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = byte_from_linear(shown[c]);
+  }
+  return out;
+}
+
+void write_preview(const fs::path& path, const LayeredImage& image) {
+  const std::vector<std::uint8_t> rgb = preview_rgb8(image);
+  write_atomically(
+      path, [&](const fs::path& temporary) { image_files::write_rgb8(temporary, image.data_width, image.data_height, rgb); });
+}
+
+void check_preview_format(const fs::path& path, const std::string& flag) {
+  if (!image_files::available())
+    throw InputError(SourceLocation{flag}, "previews need OpenImageIO, and this build is without it (CAPLET_WITH_OIIO=OFF)");
+  const std::string extension = path.extension().string();
+  if (extension.empty())
+    throw InputError(SourceLocation{flag}, fmt::format("'{}' has no extension to tell the format (try .png)", path.string()));
+  if (extension == ".exr" || !image_files::can_write(path))
+    throw InputError(SourceLocation{flag}, fmt::format("'{}' is no preview format (try .png or .jpg)", extension));
+}
+
+}  // namespace caplet

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Tone mapping of previews.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "film/image.h"
+
+namespace caplet {
+
+/// Displayable linear sRGB in 0..1 from linear sRGB of any size. With m the largest component: up to the knee of 1/2 nothing
+/// changes; above it m becomes 1 - exp(-(2 m - 1)) / 2, a shoulder of equal slope at the knee that approaches 1. All components
+/// scale alike, so hue and saturation stay; only beyond that light goes towards white, by 1 - 1 / (1 + (m - mapped m) / 8), as
+/// film and eyes do. Negative and NaN components are 0, infinite ones white.
+std::array<float, 3> tone_map(const std::array<float, 3>& rgb);
+
+/// The image's R G B, converted to sRGB primaries, tone-mapped, with the sRGB transfer: 3 bytes a pixel of the data window.
+/// Throws std::logic_error when there are no R G B channels.
+std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image);
+
+}  // namespace caplet
