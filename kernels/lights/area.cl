@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Area lights: one emissive primitive each, sampled on its own geometry. Strategies and densities: docs/lights.md.
+#ifndef CAPLET_LIGHTS_AREA_CL
+#define CAPLET_LIGHTS_AREA_CL
+
+#include "globals.cl"
+#include "lights/round_cone.cl"
+#include "lights/sphere.cl"
+#include "lights/triangle.cl"
+#include "math/spectrum.cl"
+#include "math/vector.cl"
+#include "shapes/surface.cl"
+
+// Densities above this count as this, so that squares of them stay finite.
+#define CAPLET_MAX_DENSITY 1e18f
+
+// A point of the light, world space.
+typedef struct {
+  float3 p, n;  // n: unit, on the emitting side of a one-sided light
+  float error;  // how far p and what a ray meets may lie apart, along n
+  float pdf;    // solid angle
+} AreaSample;
+
+// The primitive's data: datum j at [8 * j] (shared/shapes.def).
+static inline __global const float* area_data(const Globals* g, __global const LightRecord* light) {
+  return g->leaves + light->slot + 8u;
+}
+static inline float3 area_point(__global const float* data, int j) {
+  return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]);
+}
+static inline int area_is_open(uint shape) { return shape == shape_triangle || shape == shape_disk; }
+
+// Object space to world of the light's instance: by how much areas with normal n (object space, unit) grow.
+static inline float area_scale(__global const InstanceRecord* instance, float3 n) {
+  __global const float* m = instance->world_from_object;
+  const float3 r0 = (float3)(m[0], m[1], m[2]), r1 = (float3)(m[4], m[5], m[6]), r2 = (float3)(m[8], m[9], m[10]);
+  return length(transform_transposed(instance->object_from_world, n)) * fabs(dot(r0, cross(r1, r2)));
+}
+
+static inline RoundCone area_round_cone(uint shape, __global const float* data) {
+  if (shape == shape_sphere) return round_cone_of_sphere(area_point(data, 0), data[24]);
+  return round_cone_make(area_point(data, 0), area_point(data, 3), data[48], shape == shape_capsule ? data[48] : data[56]);
+}
+
+// World-space corners of a triangle light, as seen from p.
+static inline TriangleView area_triangle(const Globals* g, __global const LightRecord* light, __global const float* data,
+                                         float3 p) {
+  float3 v0 = area_point(data, 0), v1 = area_point(data, 3), v2 = area_point(data, 6);
+  if (light->instance != CAPLET_NONE) {
+    __global const float* m = g->instances[light->instance].world_from_object;
+    v0 = transform_point(m, v0);
+    v1 = transform_point(m, v1);
+    v2 = transform_point(m, v2);
+  }
+  return triangle_view(v0, v1, v2, p);
+}
+
+// A sphere that is not within an instance and not around (or touching) p is sampled by solid angle.
+static inline float area_sphere_cone(__global const LightRecord* light, uint shape, __global const float* data, float3 p) {
+  if (shape != shape_sphere || light->instance != CAPLET_NONE) return 0.0f;
+  const float3 axis = area_point(data, 0) - p;
+  return sphere_cone(dot(axis, axis), data[24]);
+}
+
+// Largest magnitude of the numbers that a point of the primitive was made from, in its own space.
+static inline float area_magnitude(uint shape, __global const float* data) {
+  float magnitude = norm1(area_point(data, 0));
+  if (shape == shape_sphere) return magnitude + data[24];
+  if (shape == shape_disk) return magnitude + data[48];
+  magnitude = fmax(magnitude, norm1(area_point(data, 3)));
+  if (shape == shape_triangle) return fmax(magnitude, norm1(area_point(data, 6)));
+  return magnitude + fmax(data[48], shape == shape_capsule ? 0.0f : data[56]);
+}
+
+// Bound on the distance along the normal between a sampled point and the surface as a shadow ray from p meets it: some eight
+// roundings each of the sampling and of the traversal, of the numbers they go through.
+static inline float area_error(const Globals* g, __global const LightRecord* light, float magnitude, float3 x, float3 p) {
+  float world = magnitude;
+  if (light->instance != CAPLET_NONE) {
+    __global const float* to_world = g->instances[light->instance].world_from_object;
+    __global const float* to_object = g->instances[light->instance].object_from_world;
+    const float3 there = transform_magnitude(to_world, (float3)(magnitude));
+    const float3 back = transform_magnitude(to_object, fmax(there, fabs(p)));
+    world = norm1(transform_magnitude(to_world, fmax(back, (float3)(magnitude))));
+  }
+  return 16.0f * CAPLET_EPS * (world + norm1(x - p));
+}
+
+// Samples primitive light `light` as seen from p: 0 when nothing of it that emits faces p.
+static inline int area_sample(const Globals* g, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
+  __global const GeometryRecord* geometry = g->geometries + light->geometry;
+  __global const float* data = area_data(g, light);
+  const uint shape = geometry->shape;
+  const int both = (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0;
+  const int flip = area_is_open(shape) && (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+  const int placed = light->instance != CAPLET_NONE;
+  float per_area = 0.0f;
+  s->pdf = 0.0f;
+
+  const float cone = area_sphere_cone(light, shape, data, p);
+  if (cone > 0.0f) {
+    const float3 axis = area_point(data, 0) - p;
+    const float distance = sqrt(dot(axis, axis));
+    s->n = sphere_cone_sample(axis / distance, data[24] / distance, cone, u);
+    s->p = area_point(data, 0) + s->n * data[24];
+    s->pdf = 1.0f / (2.0f * CAPLET_PI * cone);
+  } else if (shape == shape_triangle) {
+    const TriangleView view = area_triangle(g, light, data, p);
+    if (!(view.area > 0.0f)) return 0;
+    const int mirrored = placed && (g->instances[light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
+    s->n = view.cross / (2.0f * view.area);
+    if (flip != mirrored) s->n = -s->n;
+    if (!both && !(dot(s->n, view.v0) < 0.0f)) return 0;
+    float pdf;
+    const float2 b = triangle_sample(&view, u, &pdf);
+    s->p = p + (view.v0 + (b.x * (view.v1 - view.v0) + b.y * (view.v2 - view.v0)));
+    if (view.solid_angle > 0.0f)
+      s->pdf = pdf;
+    else
+      per_area = pdf;
+  } else {
+    float3 x, n;
+    const float3 q = placed ? transform_point(g->instances[light->instance].object_from_world, p) : p;
+    if (shape == shape_disk) {
+      const float3 center = area_point(data, 0);
+      n = area_point(data, 3);
+      const Frame frame = frame_from_normal(n);
+      const float2 d = data[48] * sample_disk(u);
+      x = center + (frame.s * d.x + frame.t * d.y);
+      if (flip) n = -n;
+      if (!both && !(dot(q - center, n) > 0.0f)) return 0;
+      per_area = CAPLET_INV_PI / sqr(data[48]);
+    } else {
+      const RoundCone k = area_round_cone(shape, data);
+      const RoundConeView view = round_cone_view(&k, q);
+      if (view.inside && !both) return 0;
+      per_area = round_cone_sample(&k, &view, u, &x, &n);
+      if (!(per_area > 0.0f)) return 0;
+    }
+    if (placed) {
+      __global const InstanceRecord* instance = g->instances + light->instance;
+      per_area /= area_scale(instance, n);
+      x = transform_point(instance->world_from_object, x);
+      n = unit_or(transform_transposed(instance->object_from_world, n), n);
+    }
+    s->p = x;
+    s->n = n;
+  }
+
+  const float3 away = s->p - p;
+  const float distance_squared = dot(away, away);
+  if (!(distance_squared > 0.0f)) return 0;
+  const float facing = -dot(s->n, away) / sqrt(distance_squared);
+  if (both ? facing == 0.0f : !(facing > 0.0f)) return 0;
+  if (per_area > 0.0f) s->pdf = per_area * distance_squared / fabs(facing);
+  s->error = area_error(g, light, area_magnitude(shape, data), s->p, p);
+  s->pdf = fmin(s->pdf, CAPLET_MAX_DENSITY);
+  return s->pdf > 0.0f;
+}
+
+// Solid-angle density that area_sample has from p for the direction wi, which meets the light at x with world normal n.
+static inline float area_pdf(const Globals* g, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
+  const uint shape = g->geometries[light->geometry].shape;
+  __global const float* data = area_data(g, light);
+  const float cone = area_sphere_cone(light, shape, data, p);
+  if (cone > 0.0f) return fmin(1.0f / (2.0f * CAPLET_PI * cone), CAPLET_MAX_DENSITY);
+  const float3 away = x - p;
+  const float facing = fabs(dot(n, wi));
+  float per_area;
+  if (shape == shape_triangle) {
+    const TriangleView view = area_triangle(g, light, data, p);
+    if (view.solid_angle > 0.0f) return 1.0f / view.solid_angle;
+    per_area = 1.0f / view.area;
+  } else {
+    const int placed = light->instance != CAPLET_NONE;
+    float3 object_n = n;
+    float3 q = p, y = x;
+    if (placed) {
+      __global const InstanceRecord* instance = g->instances + light->instance;
+      q = transform_point(instance->object_from_world, p);
+      y = transform_point(instance->object_from_world, x);
+      object_n = unit_or(transform_transposed(instance->world_from_object, n), n);
+    }
+    if (shape == shape_disk) {
+      per_area = CAPLET_INV_PI / sqr(data[48]);
+    } else {
+      const RoundCone k = area_round_cone(shape, data);
+      const RoundConeView view = round_cone_view(&k, q);
+      per_area = round_cone_density(&k, &view, y);
+    }
+    if (placed) per_area /= area_scale(g->instances + light->instance, object_n);
+  }
+  return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
+}
+
+#endif

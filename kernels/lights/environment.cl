@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The image light: layout of the image on the sphere, radiance between texels, and the distribution over texels.
+#ifndef CAPLET_LIGHTS_ENVIRONMENT_CL
+#define CAPLET_LIGHTS_ENVIRONMENT_CL
+
+#include "globals.cl"
+#include "math/spectrum.cl"
+#include "math/vector.cl"
+
+// Equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008): the diamond
+// |u| + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square, the polar cap 1 - z <= r^2 the same share of the sphere.
+static inline float3 square_to_sphere(float2 uv) {
+  const float2 signed_uv = 2.0f * uv - 1.0f;
+  const float2 a = fabs(signed_uv);
+  const float fold = 1.0f - (a.x + a.y);
+  const float r = 1.0f - fabs(fold);
+  const float phi = (r == 0.0f ? 1.0f : (a.y - a.x) / r + 1.0f) * (0.25f * CAPLET_PI);
+  const float across = r * sqrt(fmax(0.0f, 2.0f - r * r));
+  return (float3)(copysign(cos(phi) * across, signed_uv.x), copysign(sin(phi) * across, signed_uv.y),
+                  copysign(1.0f - r * r, fold));
+}
+
+static inline float2 sphere_to_square(float3 d) {
+  // 1 - |z| by the other two coordinates, which does not cancel near the poles.
+  const float r = sqrt(fmax(0.0f, (d.x * d.x + d.y * d.y) / (1.0f + fabs(d.z))));
+  const float v = r * atan2(fabs(d.y), fabs(d.x)) * (2.0f * CAPLET_INV_PI);
+  float2 uv = (float2)(r - v, v);
+  if (d.z < 0.0f) uv = (float2)(1.0f - uv.y, 1.0f - uv.x);
+  return clamp(0.5f * ((float2)(copysign(uv.x, d.x), copysign(uv.y, d.y)) + 1.0f), 0.0f, 1.0f);
+}
+
+// Latitude-longitude: u = phi / 2 pi, v = theta / pi, z up.
+static inline float3 latlong_to_sphere(float2 uv, float* sine) {
+  const float phi = 2.0f * CAPLET_PI * uv.x, theta = CAPLET_PI * uv.y;
+  *sine = sin(theta);
+  return (float3)(*sine * cos(phi), *sine * sin(phi), cos(theta));
+}
+
+static inline float2 sphere_to_latlong(float3 d, float* sine) {
+  *sine = sqrt(d.x * d.x + d.y * d.y);
+  float u = atan2(d.y, d.x) * (0.5f * CAPLET_INV_PI);
+  if (u < 0.0f) u += 1.0f;
+  return (float2)(fmin(u, 1.0f), atan2(*sine, d.z) * CAPLET_INV_PI);
+}
+
+// The texel at (x, y), each at most one beyond the image: around in longitude, the pole's row again in latitude; over the folded
+// edges of the octahedron.
+static inline float4 environment_texel(const Globals* g, int x, int y) {
+  const int width = (int)g->params->environment_width, height = (int)g->params->environment_height;
+  if (g->params->environment_square) {
+    if (x < 0 || x >= width) {
+      x = x < 0 ? -1 - x : 2 * width - 1 - x;
+      y = height - 1 - y;
+    }
+    if (y < 0 || y >= height) {
+      y = y < 0 ? -1 - y : 2 * height - 1 - y;
+      x = width - 1 - x;
+    }
+  } else {
+    x = x < 0 ? x + width : x >= width ? x - width : x;
+    y = clamp(y, 0, height - 1);
+  }
+  return vload4((size_t)y * (size_t)width + (size_t)x, g->environment_texels);
+}
+
+// Radiance (before the light's scale) at uv of the image: bilinear between the radiances of texels, which stand at their centres.
+static inline float4 environment_radiance(const Globals* g, float2 uv, float4 lambda) {
+  const float2 at = uv * (float2)((float)g->params->environment_width, (float)g->params->environment_height) - 0.5f;
+  const float2 low = floor(at), t = at - low;
+  const int x = (int)low.x, y = (int)low.y;
+  const float4 r00 = sigmoid_illuminant(g, environment_texel(g, x, y), lambda);
+  const float4 r10 = sigmoid_illuminant(g, environment_texel(g, x + 1, y), lambda);
+  const float4 r01 = sigmoid_illuminant(g, environment_texel(g, x, y + 1), lambda);
+  const float4 r11 = sigmoid_illuminant(g, environment_texel(g, x + 1, y + 1), lambda);
+  return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
+}
+
+// Cell of `cells` that u falls in, by their running sum cdf (cells + 1 entries, 0 to 1); never one without width.
+static inline uint cdf_cell(__global const float* cdf, uint cells, float u) {
+  uint low = 0, high = cells;  // cdf[low] <= u < cdf[high]
+  while (high - low > 1) {
+    const uint middle = (low + high) / 2;
+    if (cdf[middle] <= u)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static inline __global const float* environment_row(const Globals* g, uint row) {
+  return g->environment_cdf + (g->params->environment_height + 1u) + (size_t)row * (g->params->environment_width + 1u);
+}
+
+// Density over the unit square of the image at cell (column, row).
+static inline float environment_density(const Globals* g, uint column, uint row) {
+  __global const float* conditional = environment_row(g, row);
+  return (g->environment_cdf[row + 1] - g->environment_cdf[row]) * (conditional[column + 1] - conditional[column]) *
+         ((float)g->params->environment_width * (float)g->params->environment_height);
+}
+
+static inline float environment_solid_angle_density(const Globals* g, float per_square, float sine) {
+  if (g->params->environment_square) return per_square * (0.25f * CAPLET_INV_PI);
+  return sine > 0.0f ? per_square * (0.5f * CAPLET_INV_PI * CAPLET_INV_PI) / sine : 0.0f;
+}
+
+// Direction in the light's space, its place in the image and its solid-angle density (0: nothing).
+static inline float environment_sample(const Globals* g, float2 u, float3* direction, float2* uv) {
+  const uint width = g->params->environment_width, height = g->params->environment_height;
+  const uint row = cdf_cell(g->environment_cdf, height, u.y);
+  __global const float* conditional = environment_row(g, row);
+  const uint column = cdf_cell(conditional, width, u.x);
+  const float x_begin = conditional[column], x_step = conditional[column + 1] - x_begin;
+  const float y_begin = g->environment_cdf[row], y_step = g->environment_cdf[row + 1] - y_begin;
+  if (!(x_step > 0.0f && y_step > 0.0f)) return 0.0f;
+  *uv = (float2)(((float)column + clamp((u.x - x_begin) / x_step, 0.0f, 1.0f)) / (float)width,
+                 ((float)row + clamp((u.y - y_begin) / y_step, 0.0f, 1.0f)) / (float)height);
+  float sine = 1.0f;
+  *direction = g->params->environment_square ? square_to_sphere(*uv) : latlong_to_sphere(*uv, &sine);
+  return environment_solid_angle_density(g, environment_density(g, column, row), sine);
+}
+
+// Place of a direction (light's space) in the image, and the density that environment_sample has for it.
+static inline float2 environment_locate(const Globals* g, float3 direction, float* pdf) {
+  const uint width = g->params->environment_width, height = g->params->environment_height;
+  float sine = 1.0f;
+  const float2 uv = g->params->environment_square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
+  const uint column = min((uint)(uv.x * (float)width), width - 1u), row = min((uint)(uv.y * (float)height), height - 1u);
+  *pdf = environment_solid_angle_density(g, environment_density(g, column, row), sine);
+  return uv;
+}
+
+#endif

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// All lights: choice of one by the alias table (Walker 1977, Vose 1991), sampling of it, and the densities that multiple
+// importance sampling needs. The only switch over kinds of light.
+#ifndef CAPLET_LIGHTS_LIGHTS_CL
+#define CAPLET_LIGHTS_LIGHTS_CL
+
+#include "globals.cl"
+#include "lights/area.cl"
+#include "lights/distant.cl"
+#include "lights/infinite.cl"
+#include "lights/point.cl"
+#include "lights/spot.cl"
+#include "math/spectrum.cl"
+#include "math/vector.cl"
+#include "shapes/surface.cl"
+
+// wi: unit, to the light. target: end of the shadow ray of a finite light, off the light's own surface. radiance: that arrives
+// along wi unoccluded (delta lights: irradiance over cos). pdf: of wi by solid angle times the chance of the light; for delta
+// lights that chance alone.
+typedef struct {
+  float3 wi, target;
+  int infinite, delta;
+  float4 radiance;
+  float pdf;
+} LightSample;
+
+// A light with its chance of being chosen; u in [0, 1).
+static inline uint light_select(const Globals* g, float u, float* probability) {
+  const uint count = g->params->light_count;
+  const float x = u * (float)count;
+  const uint i = min((uint)x, count - 1u);
+  __global const AliasRecord* row = g->light_alias + i;
+  const uint chosen = x - (float)i < row->keep ? i : row->alias;
+  *probability = g->light_alias[chosen].probability;
+  return chosen;
+}
+
+// One light sample as seen from p (world). u_select, u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
+static inline int light_sample(const Globals* g, float3 p, float4 lambda, float u_select, float2 u, LightSample* s) {
+  if (g->params->sampled_light_count == 0u) return 0;
+  float chance;
+  __global const LightRecord* light = g->lights + light_select(g, u_select, &chance);
+  if (!(chance > 0.0f)) return 0;
+  __global const float* data = g->light_data + light->data;
+  s->infinite = 0;
+  s->delta = 1;
+  s->pdf = chance;
+  float weight = 1.0f;
+  switch (light->kind) {
+    case light_area: {
+      AreaSample point;
+      if (!area_sample(g, light, p, u, &point)) return 0;
+      const float3 away = point.p - p;
+      s->wi = away / sqrt(dot(away, away));
+      s->target = offset_origin(point.p, point.n, point.error, -s->wi);
+      s->delta = 0;
+      s->pdf = chance * point.pdf;
+      break;
+    }
+    case light_point:
+      weight = point_sample(data, p, &s->wi);
+      s->target = load3(data);
+      break;
+    case light_spot:
+      weight = spot_sample(data, p, &s->wi);
+      s->target = load3(data);
+      break;
+    case light_distant:
+      weight = distant_sample(data, &s->wi);
+      s->target = p + s->wi;
+      s->infinite = 1;
+      break;
+    case light_image:
+      s->pdf = chance * image_sample(g, light, lambda, u, &s->wi, &s->radiance);
+      s->target = p + s->wi;
+      s->infinite = 1;
+      s->delta = 0;
+      return s->pdf > 0.0f;
+    default:
+      return 0;
+  }
+  if (!(weight > 0.0f)) return 0;
+  s->radiance = spectrum_eval(g, light->spectrum, lambda) * (light->scale * weight);
+  return 1;
+}
+
+// Radiance of area light `light` at a point with normal ng (Surface.ng) towards wo; 0 from the dark side.
+static inline float4 light_emitted(const Globals* g, uint light, float3 ng, float3 wo, float4 lambda) {
+  __global const LightRecord* record = g->lights + light;
+  if (!(record->flags & CAPLET_LIGHT_BOTH_SIDES) && !(dot(ng, wo) > 0.0f)) return (float4)(0.0f);
+  return spectrum_eval(g, record->spectrum, lambda) * record->scale;
+}
+
+// Density (solid angle times chance of the light) that light_sample(p) has for the unit direction wi, which meets area light
+// `light` at `hit`.
+static inline float light_area_pdf(const Globals* g, uint light, float3 p, const Surface* hit, float3 wi) {
+  if (g->params->sampled_light_count == 0u) return 0.0f;
+  return g->light_alias[light].probability * area_pdf(g, g->lights + light, p, hit->p, hit->ng, wi);
+}
+
+#endif

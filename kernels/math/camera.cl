@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Camera rays of the thin-lens perspective camera.
+#ifndef CAPLET_MATH_CAMERA_CL
+#define CAPLET_MATH_CAMERA_CL
+
+#include "globals.cl"
+#include "math/vector.cl"
+
+// The ray through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at u_lens in [0, 1)^2.
+// World space, unit direction, t in [0, INFINITY).
+static inline RayRecord camera_ray(const Globals* g, float2 raster, float2 u_lens) {
+  __global const CameraRecord* camera = g->camera;
+  float3 direction = (float3)(camera->screen_min_x + raster.x * camera->screen_per_pixel_x,
+                              camera->screen_min_y + raster.y * camera->screen_per_pixel_y, 1.0f);
+  float3 origin = (float3)(0.0f);
+  if (camera->lens_radius > 0.0f) {
+    const float2 lens = camera->lens_radius * sample_disk(u_lens);
+    origin = (float3)(lens, 0.0f);
+    // What lies at the focal distance stays where it is; dividing by that distance keeps the numbers near 1.
+    direction -= origin / camera->focal_distance;
+  }
+  const float3 o = transform_point(camera->world_from_camera, origin);
+  const float3 d = normalize(transform_vector(camera->world_from_camera, direction));
+  RayRecord ray;
+  ray.ox = o.x;
+  ray.oy = o.y;
+  ray.oz = o.z;
+  ray.t_min = 0.0f;
+  ray.dx = d.x;
+  ray.dy = d.y;
+  ray.dz = d.z;
+  ray.t_max = INFINITY;
+  return ray;
+}
+
+#endif
