@@ -6,6 +6,9 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <map>
+#include <tuple>
+#include <vector>
 
 #include "lower/lower.h"
 #include "scene/spectrum.h"
@@ -29,7 +32,18 @@ class SpectrumTable {
   /// Luminance (CIE Y with the integral of y-bar as unit; 1 for rgb (1 1 1)) of the spectrum that add_illuminant makes.
   double illuminant_luminance(const Spectrum& spectrum) const;
 
+  /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use. An environment whose texels are in
+  /// another space than the constructor's needs it as params.illuminant_table.
+  std::uint32_t illuminant_table(ColorSpace space);
+
  private:
+  using Key = std::tuple<std::uint32_t, float, float, float, float, std::uint32_t>;
+  std::uint32_t add_table(std::vector<float> table);
+  std::uint32_t add_record(const SpectrumRecord& record);
+  std::uint32_t add_samples(std::vector<float> table);
+
+  std::map<std::vector<float>, std::uint32_t> tables_;
+  std::map<Key, std::uint32_t> records_;
   FlatScene& out_;
   ColorSpace space_;
 };
@@ -40,8 +54,8 @@ bool is_constant(const Spectrum& spectrum);
 /// Value at `nm` of a spectrum that is not RGB.
 double evaluate(const Spectrum& spectrum, double nm);
 
-/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of texels
-/// (a table of exact solutions built on first use, interpolated).
+/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of
+/// texels (a table of exact solutions built on first use, interpolated).
 std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
 
 /// 3x3 row-major, linear RGB of `space` from XYZ and back.

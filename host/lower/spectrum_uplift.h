@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// RGB -> spectrum: Jakob and Hanika 2019, "A Low-Dimensional Function Space for Efficient Spectral Upsampling".
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// A sigmoid polynomial (spectrum_color.h: sigmoid_value) and how far its colour is from the one asked for.
+struct SigmoidFit {
+  std::array<double, 3> coefficients{0, 0, 0};  // of l^2, l, 1; l in nm
+  double residual = 0;                          // largest difference in a channel of linear RGB
+};
+
+/// The sigmoid whose colour under the space's illuminant is `rgb`, each channel clamped to [0, 1]. Below 1e-4 for sRGB, whose
+/// colours a sigmoid can all have; the nearest it finds for the colours of wider spaces that no reflectance can have. Grey is
+/// exactly constant.
+SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space);
+
+/// The colour of a sigmoid under the space's illuminant.
+glm::dvec3 sigmoid_rgb(const std::array<double, 3>& coefficients, ColorSpace space);
+
+}  // namespace caplet

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Published spectral tables behind the named spectra.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace caplet {
+
+/// Relative power at `first`, `first` + 5, ... nm.
+struct IlluminantTable {
+  const char* name;
+  double first;
+  std::span<const double> values;
+};
+/// Rows of wavelength (nm), n, k.
+struct MetalTable {
+  const char* name;
+  std::span<const double> rows;
+};
+
+const std::vector<IlluminantTable>& illuminant_tables();
+const std::vector<MetalTable>& metal_tables();
+
+}  // namespace caplet
