@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace caplet {
+
+void lower_camera(const Scene& scene, FlatScene& out) {
+  const Camera& camera = scene.camera;
+  const FilmSettings& film = scene.film;
+  ParamsRecord& params = out.params;
+  params.width = narrow<uint>(film.width);
+  params.height = narrow<uint>(film.height);
+  const std::array<int, 4> window = film.crop.value_or(std::array<int, 4>{0, film.width, 0, film.height});
+  params.crop_x = narrow<uint>(window[0]);
+  params.crop_y = narrow<uint>(window[2]);
+  params.crop_width = narrow<uint>(window[1] - window[0]);
+  params.crop_height = narrow<uint>(window[3] - window[2]);
+
+  const double aspect = camera.frame_aspect_ratio.value_or(static_cast<double>(film.width) / film.height);
+  const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
+  const std::array<double, 4> screen = camera.screen_window.value_or(std::array<double, 4>{-x, x, -y, y});
+  const double unit = std::tan(camera.fov / 2);  // half the shorter side, at distance 1
+
+  CameraRecord& record = out.camera;
+  record = CameraRecord{};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
+  record.screen_min_x = static_cast<float>(unit * screen[0]);
+  record.screen_min_y = static_cast<float>(unit * screen[3]);
+  record.screen_per_pixel_x = static_cast<float>(unit * (screen[1] - screen[0]) / film.width);
+  record.screen_per_pixel_y = static_cast<float>(unit * (screen[2] - screen[3]) / film.height);
+  record.lens_radius = static_cast<float>(camera.lens_radius);
+  record.focal_distance = static_cast<float>(camera.focal_distance);
+}
+
+}  // namespace caplet

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The scene's camera and film window -> CameraRecord and the image fields of the uniforms.
+#pragma once
+
+#include "lower/lower.h"
+
+namespace caplet {
+
+/// Fills out.camera and params.width, height and crop_*. The field of view is that of the shorter side of the frame (its aspect
+/// is frame_aspect_ratio if given, else that of the image), or that of a screen window's unit. The scene must have passed
+/// validate().
+void lower_camera(const Scene& scene, FlatScene& out);
+
+}  // namespace caplet

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/environment.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/check.h"
+#include "lower/spectrum.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+float usable(float x) {
+  if (!(x > 0)) return 0;
+  return std::min(x, std::numeric_limits<float>::max());
+}
+
+/// Luminances of the texels, with the neighbours that bilinear interpolation sees beyond the edges.
+class Luminances {
+ public:
+  explicit Luminances(const EnvironmentImage& image)
+      : width_(image.width), height_(image.height), square_(image.equal_area), values_(image.rgb.size() / 3) {
+    const std::array<double, 9> xyz = xyz_from_rgb(image.space);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, values_.size(), 4096), [&](const tbb::blocked_range<std::size_t>& r) {
+      for (std::size_t i = r.begin(); i < r.end(); ++i) {
+        const float* rgb = &image.rgb[3 * i];
+        values_[i] =
+            static_cast<float>(std::min(xyz[3] * usable(rgb[0]) + xyz[4] * usable(rgb[1]) + xyz[5] * usable(rgb[2]), 3e38));
+      }
+    });
+  }
+
+  double at(int x, int y) const {
+    if (square_) {
+      if (x < 0 || x >= width_) {
+        x = x < 0 ? -1 - x : 2 * width_ - 1 - x;
+        y = height_ - 1 - y;
+      }
+      if (y < 0 || y >= height_) {
+        y = y < 0 ? -1 - y : 2 * height_ - 1 - y;
+        x = width_ - 1 - x;
+      }
+    } else {
+      x = (x + width_) % width_;
+      y = std::clamp(y, 0, height_ - 1);
+    }
+    return values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
+
+  /// Mean over the texel's cell of the bilinear interpolation: 1/8, 6/8, 1/8 of the neighbours along each axis.
+  double cell_mean(int x, int y) const {
+    const auto row = [&](int r) { return at(x - 1, r) + 6 * at(x, r) + at(x + 1, r); };
+    return (row(y - 1) + 6 * row(y) + row(y + 1)) / 64;
+  }
+
+ private:
+  int width_, height_;
+  bool square_;
+  std::vector<float> values_;
+};
+
+/// Running sums of `weights`, 0 to 1, as floats; zeros when there is nothing to sum. Returns the sum.
+double running_sum(const std::vector<double>& weights, float* cdf) {
+  double total = 0;
+  for (const double w : weights) total += w;
+  double sum = 0;
+  cdf[0] = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i];
+    cdf[i + 1] = total > 0 ? static_cast<float>(std::min(sum / total, 1.0)) : 0.f;
+  }
+  // The last cell with a weight ends at 1 exactly, and those after it have no width.
+  for (std::size_t i = weights.size(); total > 0 && i > 0; --i) {
+    cdf[i] = 1;
+    if (weights[i - 1] > 0) break;
+  }
+  return total;
+}
+
+}  // namespace
+
+glm::dvec3 environment_direction(bool equal_area, double u, double v) {
+  if (!equal_area) {
+    const double theta = pi * v, phi = 2 * pi * u;
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+  }
+  const double a = std::abs(2 * u - 1), b = std::abs(2 * v - 1);
+  const double fold = 1 - (a + b), r = 1 - std::abs(fold);
+  const double phi = pi / 4 * (r > 0 ? (b - a) / r + 1 : 1), across = r * std::sqrt(2 - r * r);
+  return {std::copysign(across * std::cos(phi), 2 * u - 1), std::copysign(across * std::sin(phi), 2 * v - 1),
+          std::copysign(1 - r * r, fold)};
+}
+
+EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out) {
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  CHECK_EQ_(image.rgb.size(), 3 * width * height);
+  out.params.environment_width = narrow<uint>(image.width);
+  out.params.environment_height = narrow<uint>(image.height);
+  out.params.environment_square = image.equal_area ? 1 : 0;
+  out.environment_texels.resize(4 * width * height);
+  out.environment_cdf.resize((height + 1) + height * (width + 1));
+
+  const Luminances luminances(image);
+  std::vector<double> rows(height), facing(height);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
+    std::vector<double> weights(width);
+    for (std::size_t y = range.begin(); y < range.end(); ++y) {
+      for (std::size_t x = 0; x < width; ++x) {
+        const float* rgb = &image.rgb[3 * (y * width + x)];
+        const std::array<float, 4> texel =
+            environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
+        std::copy(texel.begin(), texel.end(), &out.environment_texels[4 * (y * width + x)]);
+      }
+      // Solid angle of a cell of this row.
+      const double top = pi * static_cast<double>(y) / static_cast<double>(height);
+      const double bottom = pi * static_cast<double>(y + 1) / static_cast<double>(height);
+      const double cell = image.equal_area ? 4 * pi / static_cast<double>(width * height)
+                                           : (std::cos(top) - std::cos(bottom)) * 2 * pi / static_cast<double>(width);
+      facing[y] = 0;
+      for (std::size_t x = 0; x < width; ++x) {
+        weights[x] = cell * luminances.cell_mean(static_cast<int>(x), static_cast<int>(y));
+        const glm::dvec3 d = environment_direction(image.equal_area, (static_cast<double>(x) + 0.5) / static_cast<double>(width),
+                                                   (static_cast<double>(y) + 0.5) / static_cast<double>(height));
+        facing[y] += weights[x] * std::max(0.0, d.z);
+      }
+      rows[y] = running_sum(weights, &out.environment_cdf[(height + 1) + y * (width + 1)]);
+    }
+  });
+  EnvironmentIntegrals integrals;
+  integrals.luminance = running_sum(rows, out.environment_cdf.data());
+  for (const double row : facing) integrals.illuminance += row;
+  return integrals;
+}
+
+}  // namespace caplet

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The pixel filter -> the tables that kernels/math/filter.cl samples.
+#pragma once
+
+#include "lower/lower.h"
+
+namespace caplet {
+
+/// Value of the filter along one axis at `x` pixels from the centre (0 beyond `radius`); the filter itself is the product of both
+/// axes'. Not normalised. Box 1; triangle radius - |x|; gaussian exp(-x^2 / 2 sigma^2) less its value at the radius; Mitchell and
+/// Netravali 1988 with b and c, stretched to the radius.
+double filter_value(const PixelFilter& filter, double x, double radius);
+
+/// Fills filter_table and params.filter_*. Each axis is piecewise linear over its cells (box and triangle exactly; others within
+/// 1e-3 of the maximum); a cell never holds both signs. The x axis first, then y: cells + 1 positions (pixels), cells + 1 running
+/// integrals of |f| (0 to 1), cells + 1 values of f, and the integral of |f| over that of f.
+void lower_filter(const PixelFilter& filter, FlatScene& out);
+
+}  // namespace caplet

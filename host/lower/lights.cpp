@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/lights.h"
+
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <numbers>
+
+#include "base/check.h"
+#include "lower/environment.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Vose's alias table over `powers` (>= 0); all probabilities 0 when the sum is. M. Vose, "A linear algorithm for generating
+/// random numbers with a given distribution", 1991.
+std::vector<AliasRecord> alias_table(const std::vector<double>& powers) {
+  const std::size_t n = powers.size();
+  double total = 0;
+  for (const double p : powers) total += p;
+  std::vector<AliasRecord> table(n, AliasRecord{});
+  std::vector<double> share(n);
+  std::vector<std::size_t> small, large;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double probability = total > 0 ? powers[i] / total : 0;
+    table[i].probability = static_cast<float>(probability);
+    table[i].keep = 1;
+    table[i].alias = narrow<uint>(i);
+    share[i] = probability * static_cast<double>(n);
+    (share[i] < 1 ? small : large).push_back(i);
+  }
+  while (!small.empty() && !large.empty()) {
+    const std::size_t less = small.back(), more = large.back();
+    small.pop_back();
+    table[less].keep = static_cast<float>(share[less]);
+    table[less].alias = narrow<uint>(more);
+    share[more] -= 1 - share[less];
+    if (share[more] < 1) {
+      large.pop_back();
+      small.push_back(more);
+    }
+  }
+  return table;
+}
+
+/// One light of the scene (not an emissive shape): its record, data and power.
+class LightLowering {
+ public:
+  LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.params.scene_radius) {}
+
+  void add(const Light& light, std::vector<double>& powers) {
+    light_ = &light;
+    LightRecord record{};
+    record.slot = record.instance = record.geometry = CAPLET_NONE;
+    record.data = narrow<uint>(out_.light_data.size());
+    double power = 0;
+    std::visit([&](const auto& model) { power = lower(model, record); }, light.model);
+    out_.lights.push_back(record);
+    powers.push_back(std::isfinite(power) ? power : 0);
+  }
+
+ private:
+  // Every function fills `record` and returns the luminous power that reaches the scene. pbrt's "power" and "illuminance" replace
+  // the magnitude that the spectrum (normalised to luminance 1; rgb as written) has by itself.
+
+  double lower(const PointLight& light, LightRecord& record) {
+    emit(record, light_point, light.intensity, replaced(light_->power, 4 * pi));
+    put(light.position);
+    return 4 * pi * luminance(light.intensity, record);
+  }
+
+  double lower(const SpotLight& light, LightRecord& record) {
+    const double total = std::cos(light.total_angle);
+    const double start = std::cos(std::min(light.falloff_start_angle, light.total_angle));
+    // The mean of the smooth edge is a half.
+    const double cone = 2 * pi * ((1 - start) + (start - total) / 2);
+    emit(record, light_spot, light.intensity, replaced(light_->power, cone));
+    put(light.position);
+    put(light.direction);
+    put(total);
+    put(start);
+    return cone * luminance(light.intensity, record);
+  }
+
+  double lower(const DistantLight& light, LightRecord& record) {
+    emit(record, light_distant, light.irradiance, replaced(light_->illuminance, 1));
+    put(-light.direction);
+    return pi * radius_ * radius_ * luminance(light.irradiance, record);
+  }
+
+  double lower(const InfiniteLight& light, LightRecord& record) {
+    if (!light.image) {
+      const double power = replaced(light_->power, 4 * pi * pi * radius_ * radius_);
+      emit(record, light_constant, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
+      return 0;  // found by BSDF sampling
+    }
+    if (out_.params.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
+    const EnvironmentIntegrals of = lower_environment(*light.image, out_);
+    record.kind = light_image;
+    record.spectrum = spectra_.add_unbounded(ConstantSpectrum{1});
+    const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
+    record.scale =
+        static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) put(light.world_from_light[r][c]);  // the transpose is the inverse
+    return of.luminance * pi * radius_ * radius_ * record.scale;
+  }
+
+  /// What the spectrum is multiplied with so that the quantity which it makes `of_unit` of becomes `wanted`.
+  static double replaced(const std::optional<double>& wanted, double of_unit) {
+    if (!wanted) return 1;
+    return of_unit > 0 ? *wanted / of_unit : 0;
+  }
+
+  void emit(LightRecord& record, int kind, const Spectrum& spectrum, double factor) {
+    record.kind = static_cast<uint>(kind);
+    record.spectrum = spectra_.add_illuminant(spectrum);
+    record.scale = static_cast<float>(light_->scale * factor);
+  }
+  double luminance(const Spectrum& spectrum, const LightRecord& record) const {
+    return spectra_.illuminant_luminance(spectrum) * record.scale;
+  }
+  void put(double value) { out_.light_data.push_back(static_cast<float>(value)); }
+  void put(const glm::dvec3& v) {
+    for (int k = 0; k < 3; ++k) put(v[k]);
+  }
+
+  SpectrumTable& spectra_;
+  FlatScene& out_;
+  const double radius_;
+  const Light* light_ = nullptr;
+};
+
+bool is_infinite(const Light& light) { return std::holds_alternative<InfiniteLight>(light.model); }
+
+}  // namespace
+
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out) {
+  out.lights.clear();
+  out.light_data.clear();
+  out.params.environment_width = out.params.environment_height = out.params.environment_square = 0;
+  std::vector<double> powers;
+  out.lights.reserve(emitters.size() + scene.lights.size());
+  powers.reserve(emitters.size() + scene.lights.size());
+  for (const Emitter& emitter : emitters) {
+    LightRecord record{};
+    record.kind = light_area;
+    record.spectrum = emitter.spectrum;
+    record.scale = static_cast<float>(emitter.scale);
+    record.flags = emitter.two_sided ? CAPLET_LIGHT_BOTH_SIDES : 0;
+    record.slot = emitter.slot;
+    record.instance = emitter.instance;
+    record.geometry = emitter.geometry;
+    out.lights.push_back(record);
+    const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
+    powers.push_back(std::isfinite(power) && power > 0 ? power : 0);
+  }
+  LightLowering lowering(spectra, out);
+  for (const Light& light : scene.lights)
+    if (!is_infinite(light)) lowering.add(light, powers);
+  out.params.infinite_begin = narrow<uint>(out.lights.size());
+  for (const Light& light : scene.lights)
+    if (is_infinite(light)) lowering.add(light, powers);
+  out.params.light_count = narrow<uint>(out.lights.size());
+  out.light_alias = alias_table(powers);
+  out.params.sampled_light_count = 0;
+  for (const AliasRecord& row : out.light_alias)
+    if (row.probability > 0) ++out.params.sampled_light_count;
+}
+
+}  // namespace caplet
