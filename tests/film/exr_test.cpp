@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// EXR files: round trips, files of other programs, broken files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "film/image.h"
+#include "images.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+using test::file_bytes;
+using test::layered_image;
+using test::write_bytes;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string read_error(const std::filesystem::path& path) {
+  try {
+    read_exr(path);
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.messages().size(), 1u);
+    EXPECT_THAT(error.what(), testing::Not(HasSubstr("\n")));
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Exr, KeepsEveryChannelToTheBit) {
+  LayeredImage image = layered_image();
+  image.channels[0].floats[3] = std::numeric_limits<float>::infinity();
+  image.channels[0].floats[4] = std::numeric_limits<float>::denorm_min();
+  image.channels[4].floats[0] = 1e10f;
+  const auto path = test::temporary_folder() / "layers.exr";
+  write_exr(path, image);
+  const LayeredImage back = read_exr(path);
+  ASSERT_EQ(back.channels.size(), image.channels.size());
+  for (const Channel& channel : image.channels) {
+    const Channel* read = back.find(channel.name);
+    ASSERT_NE(read, nullptr) << channel.name;
+    EXPECT_EQ(read->floats, channel.floats) << channel.name;
+    EXPECT_EQ(read->uints, channel.uints) << channel.name;
+  }
+}
+
+TEST(Exr, KeepsWindowsAndMetadata) {
+  LayeredImage image = layered_image();
+  image.metadata = {
+      {"caplet.seed", "17"}, {"software", "Caplet"}, {"caplet.command", "caplet render 'a b.pbrt' -o \xc3\xa4.exr"}};
+  const auto path = test::temporary_folder() / "windows.exr";
+  write_exr(path, image);
+  const LayeredImage back = read_exr(path);
+  EXPECT_EQ(back.width, 16);
+  EXPECT_EQ(back.height, 9);
+  EXPECT_EQ(back.x, 2);
+  EXPECT_EQ(back.y, 1);
+  EXPECT_EQ(back.data_width, 7);
+  EXPECT_EQ(back.data_height, 5);
+  for (const auto& [name, value] : image.metadata) EXPECT_EQ(back.metadata.at(name), value) << name;
+}
+
+TEST(Exr, KeepsTheColorSpaceByItsChromaticities) {
+  for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
+    LayeredImage image = layered_image();
+    image.space = space;
+    const auto path = test::temporary_folder() / "space.exr";
+    write_exr(path, image);
+    const LayeredImage back = read_exr(path);
+    EXPECT_EQ(back.space, space);
+    ASSERT_TRUE(back.chromaticities.has_value());
+    // Single precision in the file.
+    EXPECT_NEAR(back.chromaticities->green[1], chromaticities_of(space).green[1], 1e-7);
+    EXPECT_NEAR(back.chromaticities->white[0], chromaticities_of(space).white[0], 1e-7);
+  }
+}
+
+TEST(Exr, NamesChannelsAsLayers) {
+  const auto path = test::temporary_folder() / "names.exr";
+  write_exr(path, layered_image());
+  const std::string bytes = file_bytes(path);
+  // In the file a channel is its name, a null, and its type: 0 uint, 2 float.
+  const auto entry = [](const char* name, char type) { return name + std::string(1, '\0') + type; };
+  for (const char* name : {"R", "A", "Z", "albedo.R", "N.X", "P.Z", "variance.B"})
+    EXPECT_THAT(bytes, HasSubstr(entry(name, 2))) << name;
+  for (const char* name : {"object.id", "primitive.id"}) EXPECT_THAT(bytes, HasSubstr(entry(name, 0))) << name;
+}
+
+TEST(Exr, WritesThePixelsWhereOthersLookForThem) {
+  // A value whose bytes survive uncompressed in tiny files: OpenEXR stores a block raw when ZIP does not shrink it.
+  LayeredImage image;
+  image.width = image.height = image.data_width = image.data_height = 1;
+  image.channels.push_back({"Y", {1234.5678f}, {}});
+  const auto path = test::temporary_folder() / "one.exr";
+  write_exr(path, image);
+  EXPECT_THAT(file_bytes(path), HasSubstr(test::little_endian(1234.5678f)));
+}
+
+TEST(Exr, AFailedWriteLeavesTheOldFile) {
+  const auto folder = test::temporary_folder();
+  write_exr(folder / "a.exr", layered_image());
+  const std::string before = file_bytes(folder / "a.exr");
+  LayeredImage image = layered_image();
+  image.channels[0].floats.pop_back();
+  EXPECT_THROW(write_exr(folder / "a.exr", image), std::logic_error);
+  EXPECT_THROW(write_exr(folder / "missing" / "a.exr", layered_image()), RunError);
+  EXPECT_EQ(file_bytes(folder / "a.exr"), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+struct KnownFile {
+  const char* path;
+  int width, height;
+};
+void PrintTo(const KnownFile& file, std::ostream* out) { *out << file.path; }
+
+class ExrOfOthers : public testing::TestWithParam<KnownFile> {};
+
+// Sizes from the shared data's NOTICE.md: half and float, PIZ and ZIP.
+INSTANTIATE_TEST_SUITE_P(
+    Shared, ExrOfOthers,
+    testing::Values(KnownFile{"scenes_pbrt/cornell-box/TungstenRender.exr", 1024, 1024},
+                    KnownFile{"scenes_pbrt/veach-mis/TungstenRender.exr", 1280, 720},
+                    KnownFile{"scenes_pbrt/coffee/TungstenRender.exr", 800, 1000},
+                    KnownFile{"reference/ignis/evaluation/references/ref-cbox-d6-4096.exr", 256, 256},
+                    KnownFile{"reference/ignis/evaluation/references/ref-point-4096.exr", 256, 256},
+                    KnownFile{"reference/mitsuba/mis-grey.exr", 128, 128}, KnownFile{"hdr/ignis/constant.exr", 60, 40},
+                    KnownFile{"fibres/embree_curves/round_line_segments_0.ecs.embree_viewer.exr", 512, 512}));
+
+TEST_P(ExrOfOthers, IsRead) {
+  CAPLET_NEEDS_DATA();
+  const LayeredImage image = read_exr(test::data_folder() / GetParam().path);
+  EXPECT_EQ(image.data_width, GetParam().width);
+  EXPECT_EQ(image.data_height, GetParam().height);
+  double sum = 0;
+  for (const char* name : {"R", "G", "B"}) {
+    const Channel* channel = image.find(name);
+    ASSERT_NE(channel, nullptr) << name;
+    ASSERT_EQ(channel->floats.size(), static_cast<std::size_t>(GetParam().width) * static_cast<std::size_t>(GetParam().height));
+    for (const float value : channel->floats) {
+      ASSERT_TRUE(std::isfinite(value));
+      sum += value;
+    }
+  }
+  EXPECT_GT(sum, 0);
+}
+
+TEST(ExrOfOthers, MitsubaBringsVariance) {
+  CAPLET_NEEDS_DATA();
+  const LayeredImage image = read_exr(test::data_folder() / "reference/mitsuba/cornell.exr");
+  for (const char* name : {"variance.R", "variance.G", "variance.B"}) {
+    const Channel* channel = image.find(name);
+    ASSERT_NE(channel, nullptr) << name;
+    for (const float value : channel->floats) ASSERT_GE(value, 0);
+  }
+}
+
+TEST(BrokenExr, MissingFolderGarbageAndEmpty) {
+  const auto folder = test::temporary_folder();
+  EXPECT_THAT(read_error(folder / "none.exr"), AllOf(HasSubstr("none.exr"), HasSubstr("no such file")));
+  EXPECT_THAT(read_error(folder), HasSubstr("not a file"));
+  write_bytes(folder / "empty.exr", "");
+  EXPECT_THAT(read_error(folder / "empty.exr"), HasSubstr("empty.exr"));
+  write_bytes(folder / "text.exr", "this is a text file and no picture at all");
+  EXPECT_THAT(read_error(folder / "text.exr"), HasSubstr("text.exr"));
+  std::mt19937 random(1);
+  std::string noise = file_bytes(folder / "text.exr").substr(0, 0);
+  for (int i = 0; i < 4096; ++i) noise += static_cast<char>(random() & 255u);
+  write_bytes(folder / "noise.exr", noise);
+  EXPECT_THAT(read_error(folder / "noise.exr"), HasSubstr("noise.exr"));
+}
+
+TEST(BrokenExr, TruncatedAnywhere) {
+  const auto folder = test::temporary_folder();
+  write_exr(folder / "whole.exr", layered_image());
+  const std::string bytes = file_bytes(folder / "whole.exr");
+  ASSERT_GT(bytes.size(), 500u);
+  for (std::size_t size = 1; size < bytes.size(); size += 1 + size / 16) {
+    write_bytes(folder / "cut.exr", bytes.substr(0, size));
+    EXPECT_THAT(read_error(folder / "cut.exr"), HasSubstr("cut.exr")) << size << " of " << bytes.size() << " bytes";
+  }
+}
+
+TEST(BrokenExr, FlippedBytesNeverCrash) {
+  const auto folder = test::temporary_folder();
+  write_exr(folder / "whole.exr", layered_image());
+  const std::string bytes = file_bytes(folder / "whole.exr");
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string broken = bytes;
+    for (int flips = 0; flips < 3; ++flips) broken[random() % broken.size()] = static_cast<char>(random() & 255u);
+    write_bytes(folder / "flipped.exr", broken);
+    try {
+      read_exr(folder / "flipped.exr");
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST(BrokenExr, HugeClaimsAreRefusedBeforeMemoryIsTaken) {
+  const auto folder = test::temporary_folder();
+  write_exr(folder / "small.exr", layered_image());
+  const std::string bytes = file_bytes(folder / "small.exr");
+  const std::int32_t huge = std::numeric_limits<std::int32_t>::max() / 2;
+  for (const auto& [width, height] :
+       {std::pair{15999, 15999}, {huge, huge}, {huge, 0}, {0, huge}, {(1 << 20) - 1, (1 << 20) - 1}}) {
+    const std::string box = test::little_endian<std::int32_t>(0, 0, width, height);
+    const std::string claimed =
+        test::with_attribute(test::with_attribute(bytes, "dataWindow", "box2i", box), "displayWindow", "box2i", box);
+    ASSERT_EQ(claimed.size(), bytes.size());
+    write_bytes(folder / "huge.exr", claimed);
+    EXPECT_THAT(read_error(folder / "huge.exr"), HasSubstr("huge.exr")) << width << " x " << height;
+  }
+}
+
+TEST(BrokenExr, ImpossibleWindowsAreRefused) {
+  const auto folder = test::temporary_folder();
+  write_exr(folder / "small.exr", layered_image());
+  const std::string bytes = file_bytes(folder / "small.exr");
+  for (const auto& box : {test::little_endian<std::int32_t>(5, 5, 4, 4), test::little_endian<std::int32_t>(0, 0, -2147483647, 3),
+                          test::little_endian<std::int32_t>(-2147483647, -2147483647, 2147483646, 2147483646)}) {
+    write_bytes(folder / "window.exr", test::with_attribute(bytes, "dataWindow", "box2i", box));
+    EXPECT_THAT(read_error(folder / "window.exr"), HasSubstr("window.exr"));
+  }
+}
+
+}  // namespace
+}  // namespace caplet
