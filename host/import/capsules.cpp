@@ -91,6 +91,8 @@ class LineReader {
   bool read_name(std::string& name, Place& place) {
     skip_blanks();
     place = {chunk_.lines, static_cast<int>(position_) + 1};
+    if (at_number())
+      return fail(position_, fmt::format("{}: material names do not start as numbers do", quoted(line_.substr(position_))));
     if (line_[position_] != '"') {
       const std::size_t begin = position_;
       name = std::string(take_token("<>,\""));
