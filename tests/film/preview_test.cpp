@@ -57,7 +57,7 @@ TEST(ToneMap, IsMonotoneSmoothAndBelowOne) {
   for (int i = 1; i <= 4000; ++i) {
     const float v = 0.005f * static_cast<float>(i);
     const float out = tone_map({v, v, v})[0];
-    ASSERT_GE(out, last) << v;
+    ASSERT_GE(out, last - 1.2e-7f) << v;  // two roundings near 1
     ASSERT_LE(out, 1.0f);
     const float next_slope = (out - last) / 0.005f;
     // exp's slope falls by 2 a unit at most: 0.01 a step, and rounding of out (6e-8) over the step is 2.4e-5.

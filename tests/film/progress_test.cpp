@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace caplet {
@@ -31,7 +32,7 @@ TEST(Progress, Texts) {
   EXPECT_EQ(duration_text(59.4), "59 s");
   EXPECT_EQ(duration_text(187), "3:07");
   EXPECT_EQ(duration_text(5025), "1:23:45");
-  EXPECT_EQ(rate_text(12.345e6), "12.35 Mpaths/s");
+  EXPECT_EQ(rate_text(12.3e6), "12.30 Mpaths/s");
   EXPECT_EQ(rate_text(8100), "8.1 kpaths/s");
   EXPECT_EQ(time_left(0.25, 10).value(), 30);
   EXPECT_FALSE(time_left(0, 10).has_value());
