@@ -103,10 +103,11 @@ class Builder {
       return b;
     };
     if (count < 2 * chunk) return over({0, count}, {});
-    return tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(0, count, chunk), Bounds{}, over, [](Bounds a, const Bounds& b) {
-      a.add(b);
-      return a;
-    });
+    return tbb::parallel_reduce(tbb::blocked_range<std::uint32_t>(0, count, chunk), Bounds{}, over,
+                                [](Bounds a, const Bounds& b) {
+                                  a.add(b);
+                                  return a;
+                                });
   }
 
   Bins fill_bins(std::uint32_t first, std::uint32_t count, const Binning& binning) {

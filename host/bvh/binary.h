@@ -43,7 +43,7 @@ struct Box {
 
 struct BinaryNode {
   Box box;
-  std::uint32_t left = 0, right = 0;  // 0: leaf, since the root is nobody's child
+  std::uint32_t left = 0, right = 0;   // 0: leaf, since the root is nobody's child
   std::uint32_t first = 0, count = 0;  // range of the ordered references
 };
 

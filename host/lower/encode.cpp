@@ -73,8 +73,8 @@ ExactBox exact_box(const FlatPrimitive& p) {
 }
 
 /// The box of every point the shape kernels may report for rays from nearby: their error is at most 16 eps (size + coordinates),
-/// eps = 2^-24, so 2^-20 of that is added, and the result rounded outward. The part that grows with the distance of a ray's origin
-/// is the slab test's (kernels/trace/trace.cl).
+/// eps = 2^-24, so 2^-20 of that is added, and the result rounded outward. The part that grows with the distance of a ray's
+/// origin is the slab test's (kernels/trace/trace.cl).
 bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
   const ExactBox box = exact_box(p);
   double reach = 0;
@@ -117,9 +117,8 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   check_limits(least, node_base + 1);
 
   std::vector<bvh::Reference> references(primitives.size());
-  tbb::parallel_for(std::size_t(0), primitives.size(), [&](std::size_t i) {
-    references[i] = reference_of(primitives[i], static_cast<std::uint32_t>(i));
-  });
+  tbb::parallel_for(std::size_t(0), primitives.size(),
+                    [&](std::size_t i) { references[i] = reference_of(primitives[i], static_cast<std::uint32_t>(i)); });
   const bvh::Tree tree = bvh::build(references, shape_instance);
   CHECK_LE_(tree.depth, bvh::max_depth);
 

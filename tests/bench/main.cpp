@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Camera and bounce rays through the traversal kernels and through Embree, alternating, the same rays in the same order: medians
+// of Mrays/s, one JSON object a line.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdio>
+
+#include "base/error.h"
+#include "device_tracer.h"
+#include "peer.h"
+#include "scenes.h"
+#include "shared/kinds.h"
+
+namespace {
+
+using caplet::HitRecord;
+using caplet::RayRecord;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+void print_json(const std::string& name, double ours, double peer, const std::string& unit, const std::string& more = {}) {
+  fmt::print("{{\"name\": \"{}\", \"ours\": {:.4g}, \"embree\": {:.4g}, \"ratio\": {:.4g}, \"unit\": \"{}\"{}}}\n", name, ours,
+             peer, peer > 0 ? ours / peer : 0.0, unit, more);
+  std::fflush(stdout);
+}
+
+struct Bench {
+  caplet::test::DeviceTracer& tracer;
+  const caplet::bench::Peer& peer;
+  const std::vector<float>& leaves;
+  double seconds;
+
+  /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
+  void run(const std::string& name, const std::vector<RayRecord>& ours, const std::vector<RayRecord>& theirs) {
+    if (ours.empty()) return;
+    std::vector<std::uint32_t> ids(theirs.size());
+    tracer.set_rays(ours);
+    tracer.run_closest();
+    const std::size_t peer_hits = peer.trace(theirs, ids);
+    std::vector<double> a, b;
+    const auto begin = Clock::now();
+    while (a.size() < 3 || seconds_since(begin) < seconds) {
+      auto start = Clock::now();
+      tracer.run_closest();
+      a.push_back(static_cast<double>(ours.size()) / seconds_since(start) * 1e-6);
+      start = Clock::now();
+      peer.trace(theirs, ids);
+      b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
+    }
+    const auto hits = tracer.hits();
+    const auto our_hits = std::count_if(hits.begin(), hits.end(), [](const HitRecord& h) { return h.slot != CAPLET_NONE; });
+    std::string more = fmt::format(", \"rays\": {}, \"hits\": {}, \"embree_hits\": {}", ours.size(), our_hits, peer_hits);
+    if (&ours == &theirs) {
+      std::size_t same = 0;
+      for (std::size_t i = 0; i < hits.size(); i++)
+        same +=
+            ids[i] == (hits[i].slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hits[i].slot])) ? 1 : 0;
+      more += fmt::format(", \"same_primitive\": {:.6f}", static_cast<double>(same) / static_cast<double>(hits.size()));
+    }
+    print_json(name, median(a), median(b), "Mrays/s", more);
+  }
+};
+
+int run(int argc, char** argv) {
+  CLI::App app{"Traversal speed beside Embree 3 (rtcIntersect1, all cores)"};
+  std::string kind, device_name = "cpu";
+  std::size_t count = 1000000;
+  double seconds = 5;
+  int size = 1024, width = 0;
+  bool sorted = false;
+  app.add_option("scene", kind, "capsules or triangles")->required()->check(CLI::IsMember({"capsules", "triangles"}));
+  app.add_option("--n", count, "primitives")->check(CLI::Range(std::size_t(1), std::size_t(1) << 27));
+  app.add_option("--device", device_name, "OpenCL device");
+  app.add_option("--seconds", seconds, "time for each kind of ray")->check(CLI::PositiveNumber);
+  app.add_option("--size", size, "camera rays a side")->check(CLI::Range(1, 8192));
+  app.add_option("--width", width, "8: eight primitives at a time, 1: one; default by device")->check(CLI::IsMember({1, 8}));
+  app.add_flag("--sorted", sorted, "also bounce rays sorted by origin and octant, for ours alone");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+
+  const auto primitives = kind == "triangles" ? caplet::bench::walk_triangles(count) : caplet::bench::walk_capsules(count);
+  std::vector<float> nodes, leaves;
+  const auto start = Clock::now();
+  const caplet::EncodedTree tree = caplet::encode_tree(primitives, nodes, leaves);
+  const double build = seconds_since(start);
+  const caplet::bench::Peer peer(primitives);
+  print_json(kind + " build", build, peer.build_seconds(), "s",
+             fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth, tree.sah));
+  const double n = static_cast<double>(count);
+  print_json(
+      kind + " memory", static_cast<double>((nodes.size() + leaves.size() + count) * sizeof(float)) / n, 0, "bytes/primitive",
+      fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}", static_cast<double>(nodes.size() * sizeof(float)) / n,
+                  static_cast<double>(leaves.size() * sizeof(float)) / n));
+
+  const caplet::Device device = caplet::Device::choose(device_name);
+  caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
+  tracer.upload(nodes, leaves, {}, tree.root);
+  Bench bench{tracer, peer, leaves, seconds};
+  const auto camera = caplet::bench::camera_rays(size);
+  bench.run(kind + " camera", camera, camera);
+  auto bounce = caplet::bench::bounce_rays(primitives, tree.slots, camera, tracer.closest(camera));
+  bench.run(kind + " bounce", bounce, bounce);
+  if (sorted) {
+    auto in_order = bounce;
+    caplet::bench::sort_rays(in_order);
+    bench.run(kind + " bounce sorted", in_order, bounce);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const caplet::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "peer.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "shared/kinds.h"
+
+namespace caplet::bench {
+
+Peer::Peer(std::span<const FlatPrimitive> primitives) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+  const bool triangles = primitives[0].shape == shape_triangle;
+  const std::size_t count = primitives.size();
+  const RTCGeometry geometry =
+      rtcNewGeometry(device_, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  if (triangles) {
+    float* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
+    unsigned* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count));
+    for (std::size_t i = 0; i < count; i++) std::copy(primitives[i].data, primitives[i].data + 9, vertices + 9 * i);
+    for (std::size_t i = 0; i < 3 * count; i++) indices[i] = static_cast<unsigned>(i);
+  } else {
+    float* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * count));
+    unsigned* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), count));
+    for (std::size_t i = 0; i < count; i++) {
+      const float* d = primitives[i].data;
+      const float ends[8] = {d[0], d[1], d[2], d[6], d[3], d[4], d[5], d[6]};
+      std::copy(ends, ends + 8, vertices + 8 * i);
+      indices[i] = static_cast<unsigned>(2 * i);
+    }
+  }
+  const auto start = std::chrono::steady_clock::now();
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
+}
+
+Peer::~Peer() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+std::size_t Peer::trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t i = range.begin(); i < range.end(); i++) {
+      const RayRecord& r = rays[i];
+      RTCRayHit hit{};
+      hit.ray.org_x = r.ox;
+      hit.ray.org_y = r.oy;
+      hit.ray.org_z = r.oz;
+      hit.ray.tnear = r.t_min;
+      hit.ray.dir_x = r.dx;
+      hit.ray.dir_y = r.dy;
+      hit.ray.dir_z = r.dz;
+      hit.ray.tfar = r.t_max;
+      hit.ray.mask = ~0u;
+      hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &hit);
+      ids[i] = hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? CAPLET_NONE : hit.hit.primID;
+    }
+  });
+  return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [](std::uint32_t id) { return id != CAPLET_NONE; }));
+}
+
+}  // namespace caplet::bench

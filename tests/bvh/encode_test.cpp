@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The flat arrays: slots lead back to the data given, boxes hold the primitives with room to spare, limits are errors.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "base/error.h"
+#include "lower/encode.h"
+#include "shared/kinds.h"
+
+namespace caplet {
+namespace {
+
+constexpr std::uint32_t rows_of[] = {
+#define SHAPE(name, rows) rows,
+#include "shared/shapes.def"
+#undef SHAPE
+};
+
+std::vector<FlatPrimitive> mixed(unsigned count) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> u(0.1f, 1);
+  std::vector<FlatPrimitive> out;
+  for (unsigned i = 0; i < count; i++) {
+    FlatPrimitive p{i % shape_instance, 1000 + i, {}};
+    for (float& x : p.data) x = u(engine);
+    if (p.shape == shape_disk) p.data[3] = 0, p.data[4] = 0, p.data[5] = 1;
+    out.push_back(p);
+  }
+  return out;
+}
+
+TEST(Encode, SlotsLeadToTheDataGiven) {
+  const auto primitives = mixed(1003);
+  std::vector<float> nodes, leaves(16, 5.0f);  // something is there already
+  const EncodedTree tree = encode_tree(primitives, nodes, leaves);
+  ASSERT_EQ(tree.slots.size(), primitives.size());
+  EXPECT_EQ(leaves[3], 5.0f);
+  for (std::size_t i = 0; i < primitives.size(); i++) {
+    const std::uint32_t slot = tree.slots[i];
+    ASSERT_GE(slot, 16u);
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(leaves[slot]), primitives[i].id);
+    for (std::uint32_t j = 1; j < rows_of[primitives[i].shape]; j++)
+      EXPECT_EQ(leaves[slot + 8 * j], primitives[i].data[j - 1]) << "shape " << primitives[i].shape << " row " << j;
+  }
+}
+
+TEST(Encode, SecondTreeRefersToItsOwnNodes) {
+  const auto primitives = mixed(300);
+  std::vector<float> nodes, leaves;
+  const EncodedTree first = encode_tree(primitives, nodes, leaves);
+  const std::size_t first_floats = nodes.size();
+  const EncodedTree second = encode_tree(primitives, nodes, leaves);
+  EXPECT_EQ(first.root, 0u);
+  EXPECT_EQ(second.root * CAPLET_NODE_FLOATS, first_floats);
+  for (std::size_t n = second.root; n < nodes.size() / CAPLET_NODE_FLOATS; n++)
+    for (std::size_t i = 0; i < CAPLET_WIDTH; i++) {
+      const auto child = std::bit_cast<std::int32_t>(nodes[n * CAPLET_NODE_FLOATS + 48 + i]);
+      if (child >= 0 && child != 0x7fffffff) {
+        EXPECT_GT(static_cast<std::size_t>(child), n);
+      }
+      if (child < 0) {
+        EXPECT_GE(std::uint32_t(child) & CAPLET_LEAF_ROW_MASK, leaves.size() / 16);
+      }
+    }
+  EXPECT_EQ(second.depth, first.depth);
+}
+
+TEST(Encode, InstancesGetALeafEach) {
+  std::vector<FlatPrimitive> primitives;
+  for (std::uint32_t i = 0; i < 20; i++) {
+    const float x = static_cast<float>(i);
+    primitives.push_back({shape_instance, i, {x, 0, 0, x + 0.5f, 1, 1, 0, 0, 0}});
+  }
+  std::vector<float> nodes, leaves;
+  const EncodedTree tree = encode_tree(primitives, nodes, leaves);
+  for (const std::uint32_t slot : tree.slots) EXPECT_EQ(slot % 8, 0u);
+}
+
+/// Points of the surfaces, pushed out by the error the kernels claim for rays from nearby, are inside the boxes.
+TEST(Encode, BoxesHoldWhatTheKernelsMayReport) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> u(-1, 1);
+  for (const float shift : {0.0f, 1e5f}) {
+    for (int i = 0; i < 500; i++) {
+      FlatPrimitive p{shape_capsule, 0, {}};
+      for (int k = 0; k < 6; k++) p.data[k] = u(engine) + shift;
+      p.data[6] = 0.1f * (1.01f + u(engine));
+      std::vector<float> nodes, leaves;
+      const EncodedTree tree = encode_tree(std::vector<FlatPrimitive>{p}, nodes, leaves);
+      for (int k = 0; k < 3; k++) {
+        const double low = std::min(double(p.data[k]), double(p.data[3 + k])) - double(p.data[6]);
+        const double high = std::max(double(p.data[k]), double(p.data[3 + k])) + double(p.data[6]);
+        const double error = 16 * 0x1p-24 * (high - low);
+        EXPECT_LE(double(tree.min[k]), low - error);
+        EXPECT_GE(double(tree.max[k]), high + error);
+        EXPECT_LT(double(tree.max[k]) - high, 1e-5 * (std::abs(double(shift)) + 8));  // and not much larger
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace caplet

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Placed objects against the same primitives intersected in object space by brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat4x4.hpp>
+
+#include "brute.h"
+#include "device_tracer.h"
+#include "random_scene.h"
+#include "shared/kinds.h"
+
+namespace caplet::test {
+namespace {
+
+void store(const glm::dmat4& m, float* out) {
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) out[4 * row + column] = static_cast<float>(m[column][row]);
+}
+
+/// Rotated, stretched by up to 4 in each direction and, every other one, mirrored.
+glm::dmat4 random_placement(Random& random, unsigned i) {
+  const auto u = [&](float a, float b) { return double(random.uniform(a, b)); };
+  glm::dmat4 m = glm::translate(glm::dmat4(1), glm::dvec3(u(-3, 3), u(-3, 3), u(-3, 3)));
+  m = glm::rotate(m, u(0, 6), glm::normalize(glm::dvec3(u(-1, 1), u(-1, 1), u(0.1f, 1))));
+  return glm::scale(m, glm::dvec3(u(0.5f, 2), u(0.5f, 2), u(0.5f, 2) * (i % 2 == 0 ? 1 : -1)));
+}
+
+TEST(Instances, AgreeWithBruteForceInObjectSpace) {
+  constexpr unsigned instance_count = 40;
+  const auto primitives = random_scene(21, shape_instance, 60, 0.5f);
+  Encoded scene;
+  const EncodedTree object = encode_tree(primitives, scene.nodes, scene.leaves);
+
+  Random random(22);
+  std::vector<InstanceRecord> instances;
+  std::vector<FlatPrimitive> top = random_scene(23, shape_capsule, 30, 0.8f);
+  const auto world_primitives = top;
+  for (unsigned i = 0; i < instance_count; i++) {
+    const glm::dmat4 placement = random_placement(random, i);
+    InstanceRecord record{};
+    store(placement, record.world_from_object);
+    store(glm::inverse(placement), record.object_from_world);
+    record.root = object.root;
+    record.light_base = CAPLET_NONE;
+    instances.push_back(record);
+    FlatPrimitive box{shape_instance, i, {}};
+    for (int k = 0; k < 3; k++) {
+      box.data[k] = INFINITY;
+      box.data[3 + k] = -INFINITY;
+    }
+    for (unsigned corner = 0; corner < 8; corner++) {
+      const glm::dvec4 p = placement * glm::dvec4(double(corner & 1 ? object.max[0] : object.min[0]),
+                                                  double(corner & 2 ? object.max[1] : object.min[1]),
+                                                  double(corner & 4 ? object.max[2] : object.min[2]), 1);
+      for (int k = 0; k < 3; k++) {
+        box.data[k] = std::min(box.data[k], static_cast<float>(p[k]));
+        box.data[3 + k] = std::max(box.data[3 + k], static_cast<float>(p[k]));
+      }
+    }
+    top.push_back(box);
+  }
+  const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
+  auto rays = random_rays(24, 1000);
+  for (RayRecord& r : rays) r.ox *= 2, r.oy *= 2, r.oz *= 2;
+
+  for (const int width : {8, 1}) {
+    DeviceTracer tracer(Device::choose("cpu"), width);
+    tracer.upload(scene.nodes, scene.leaves, instances, world.root);
+    const auto hits = tracer.closest(rays);
+    const auto any = tracer.any(rays);
+    unsigned in_instance = 0, in_world = 0;
+    for (std::size_t i = 0; i < rays.size(); i++) {
+      const HitRecord& hit = hits[i];
+      const double t = hit.slot == CAPLET_NONE ? double(INFINITY) : double(hit.t);
+      EXPECT_EQ(any[i] != 0, hit.slot != CAPLET_NONE);
+      in_instance += hit.slot != CAPLET_NONE && hit.instance != CAPLET_NONE ? 1 : 0;
+      in_world += hit.slot != CAPLET_NONE && hit.instance == CAPLET_NONE ? 1 : 0;
+      const DoubleRay ray = widen(rays[i]);
+      for (unsigned j = 0; j <= instance_count; j++) {
+        const bool placed = j < instance_count;
+        DoubleRay local = ray;
+        double rounding = 0;  // of the ray's transform: 4 products and sums a component, each within eps of its terms
+        if (placed) {
+          const float* m = instances[j].object_from_world;
+          for (std::size_t k = 0; k < 3; k++) {
+            local.o[k] = double(m[4 * k + 3]);
+            local.d[k] = 0;
+            double terms = std::abs(double(m[4 * k + 3]));
+            for (std::size_t c = 0; c < 3; c++) {
+              local.o[k] += double(m[4 * k + c]) * ray.o[c];
+              local.d[k] += double(m[4 * k + c]) * ray.d[c];
+              terms += std::abs(double(m[4 * k + c]) * ray.o[c]);
+              if (std::isfinite(t)) terms += std::abs(double(m[4 * k + c]) * ray.d[c] * t);
+            }
+            rounding += 4 * 0x1p-24 * terms;
+          }
+        }
+        const auto& tested = placed ? primitives : world_primitives;
+        for (std::size_t p = 0; p < tested.size(); p++) {
+          const double error = claimed_error(tested[p], local) + rounding;
+          const std::uint32_t slot = placed ? object.slots[p] : world.slots[p];
+          if (hit.slot == slot && hit.instance == (placed ? j : CAPLET_NONE)) {
+            const Vec x = {local.o[0] + t * local.d[0], local.o[1] + t * local.d[1], local.o[2] + t * local.d[2]};
+            EXPECT_LE(std::abs(surface_distance(tested[p], x)), error) << "ray " << i;
+          }
+          const double latest = latest_hit(tested[p], local, error);
+          EXPECT_TRUE(t <= latest || latest >= ray.t_max) << "ray " << i << " passed primitive " << p << " of instance " << j;
+        }
+      }
+    }
+    EXPECT_GT(in_instance, 100u);
+    EXPECT_GT(in_world, 10u);
+  }
+}
+
+TEST(Instances, EqualHitsGoToTheSmallerInstance) {
+  Encoded scene;
+  const EncodedTree object = encode_tree(random_scene(31, shape_sphere, 20, 1), scene.nodes, scene.leaves);
+  std::vector<InstanceRecord> instances(5);
+  std::vector<FlatPrimitive> top;
+  for (unsigned i = 0; i < instances.size(); i++) {
+    store(glm::dmat4(1), instances[i].world_from_object);
+    store(glm::dmat4(1), instances[i].object_from_world);
+    instances[i].root = object.root;
+    FlatPrimitive box{shape_instance, i, {}};
+    std::copy(object.min, object.min + 3, box.data);
+    std::copy(object.max, object.max + 3, box.data + 3);
+    top.push_back(box);
+  }
+  const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
+  DeviceTracer tracer(Device::choose("cpu"), 8);
+  tracer.upload(scene.nodes, scene.leaves, instances, world.root);
+  int hit = 0;
+  for (const HitRecord& h : tracer.closest(random_rays(32, 500))) {
+    if (h.slot == CAPLET_NONE) continue;
+    EXPECT_EQ(h.instance, 0u);
+    hit++;
+  }
+  EXPECT_GT(hit, 100);
+}
+
+}  // namespace
+}  // namespace caplet::test

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Random primitives and rays from fixed seeds.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "lower/encode.h"
+#include "shared/records.h"
+
+namespace caplet::test {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  float uniform(float low, float high) { return low + (high - low) * (static_cast<float>(engine_() >> 8) * 0x1p-24f); }
+  unsigned below(unsigned n) { return static_cast<unsigned>(engine_() % n); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// One primitive of the kind, in about [-1, 1]^3, of about `size`.
+FlatPrimitive random_primitive(Random& random, unsigned shape, float size);
+/// `count` primitives of one kind, or, with shape_instance, of all kinds mixed.
+std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned count, float size);
+/// Rays from around and inside [-1, 1]^3, of all lengths.
+std::vector<RayRecord> random_rays(unsigned seed, unsigned count);
+
+struct Encoded {
+  std::vector<float> nodes, leaves;
+  EncodedTree tree;
+};
+Encoded encode(const std::vector<FlatPrimitive>& primitives);
+
+}  // namespace caplet::test
