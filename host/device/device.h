@@ -43,6 +43,12 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   bool is_cpu() const { return info_.type == "cpu"; }
+  /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
+  /// keeps the results on disk itself.
+  bool is_pocl() const { return info_.platform.starts_with("Portable Computing Language"); }
+  /// `count` raised so that all launches of one kernel are of one size class: PoCL compiles it once for fewer than 65536
+  /// work-items and again for more. `count` itself on other platforms, and when it is 0. For kernels that check their index.
+  std::size_t steady_count(std::size_t count) const;
   const cl::Context& context() const { return context_; }
   const cl::Device& handle() const { return device_; }
   cl::CommandQueue& queue() const { return *queue_; }
@@ -103,17 +109,28 @@ std::string kernel_source(std::string_view name);
 /// for a file that does not exist.
 std::string flatten_kernels(const std::string& text);
 
-/// A compiled program: one kernel file, one set of options. Cached on disk by device, driver, source hash and options
-/// (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an error).
+enum class BinaryCache {
+  automatic,  // not on PoCL, which caches by itself and would compile every kernel twice to hand out a binary
+  always
+};
+
+/// A compiled program: one kernel file, one set of options. Its binary is cached on disk by device, driver, source hash and
+/// options (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an error).
+/// Compiling that takes noticeable time is logged.
 class Program {
  public:
   /// `options` like "-DCAPLET_REAL_WIDTH=8". "-cl-std=CL1.2" is always added. Throws RunError with the build log.
   Program(const Device& device, const std::string& name, const std::string& options);
   /// From a text that is not embedded (tests, the probe).
-  static Program from_source(const Device& device, const std::string& name, const std::string& source,
-                             const std::string& options);
+  static Program from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
+                             BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
+  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by a launch of steady_count(1)
+  /// work-items with null buffers and zero scalars: the kernel must do nothing when its count is 0. Nothing on other platforms.
+  /// Returns the seconds it took, which build_seconds() then includes.
+  double prepare(const std::string& kernel_name, std::size_t local);
   double build_seconds() const { return build_seconds_; }
+  /// Whether it came from Caplet's own cache.
   bool from_cache() const { return from_cache_; }
 
  private:

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <atomic>
-#include <cctype>
-#include <charconv>
 
 #include "device/accounting.h"
 #include "device/cl_error.h"
 #include "device/device.h"
+#include "device/select.h"
 
 namespace caplet {
 
@@ -66,51 +62,6 @@ std::vector<Found> find_devices() {
   return found;
 }
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-[[noreturn]] void refuse(const std::string& message, const std::vector<Found>& devices) {
-  std::string list;
-  for (const Found& found : devices)
-    list += fmt::format("{}{} '{}' ({})", list.empty() ? "" : ", ", found.info.index, found.info.name, found.info.type);
-  throw InputError(SourceLocation{"--device"}, fmt::format("{}; there is {}", message, list));
-}
-
-const Found& first_of_type(const std::vector<Found>& devices, const std::string& type) {
-  const auto at = std::find_if(devices.begin(), devices.end(), [&](const Found& found) { return found.info.type == type; });
-  if (at == devices.end()) refuse(fmt::format("no device of type '{}'", type), devices);
-  return *at;
-}
-
-const Found& select(const std::vector<Found>& devices, const std::string& choice) {
-  if (devices.empty())
-    throw InputError(SourceLocation{"--device"},
-                     "no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU)");
-  const auto is_gpu = [](const Found& found) { return found.info.type == "gpu"; };
-  if (choice.empty()) {
-    const auto gpu = std::find_if(devices.begin(), devices.end(), is_gpu);
-    return gpu == devices.end() ? devices.front() : *gpu;
-  }
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
-  if (end == choice.data() + choice.size()) {
-    if (error != std::errc() || index >= devices.size()) refuse(fmt::format("no device has the index {}", choice), devices);
-    return devices[index];
-  }
-  const std::string wanted = lower_case(choice);
-  if (wanted == "cpu" || wanted == "gpu") return first_of_type(devices, wanted);
-  const Found* match = nullptr;
-  for (const Found& found : devices) {
-    if (lower_case(found.info.name).find(wanted) == std::string::npos) continue;
-    if (match) refuse(fmt::format("more than one device has '{}' in its name", choice), devices);
-    match = &found;
-  }
-  if (!match) refuse(fmt::format("no device has '{}' in its name", choice), devices);
-  return *match;
-}
-
 }  // namespace
 
 std::vector<DeviceInfo> list_devices() {
@@ -121,7 +72,9 @@ std::vector<DeviceInfo> list_devices() {
 
 Device Device::choose(const std::string& choice) {
   const std::vector<Found> devices = find_devices();
-  const Found& found = select(devices, choice);
+  std::vector<DeviceInfo> infos;
+  for (const Found& candidate : devices) infos.push_back(candidate.info);
+  const Found& found = devices[select_device(infos, choice)];
   Device out;
   out.info_ = found.info;
   out.device_ = found.device;
@@ -135,6 +88,11 @@ Device Device::choose(const std::string& choice) {
 
 void Device::finish() const {
   cl_call("waiting for the device", info_.name, [&] { queue_->finish(); });
+}
+
+std::size_t Device::steady_count(std::size_t count) const {
+  constexpr std::size_t pocl_large_grid = 65536;  // PoCL 3.1's grid width specialization limit of its CPU devices, plus one
+  return is_pocl() && count > 0 ? std::max(count, pocl_large_grid) : count;
 }
 
 std::uint64_t Device::bytes_allocated() const { return accounting_->alive; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 #include "base/log.h"
 #include "device/cache.h"
@@ -15,9 +16,11 @@ namespace {
 
 using Binary = std::vector<unsigned char>;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+using Clock = std::chrono::steady_clock;
+
+constexpr double noticeable_seconds = 0.3;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::string cache_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
   std::string key = "program";
@@ -70,20 +73,34 @@ std::string kernel_name(const Device& device, const cl::Kernel& kernel) {
   return cl_call("a kernel's name", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
 }
 
+/// Null for pointers, zero for scalars and vectors. Which is which is found by trying: the query of argument types needs an
+/// option that would change the program.
+void set_null_arguments(const Device& device, cl::Kernel& kernel) {
+  const cl_uint count = cl_call("a kernel's arguments", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_NUM_ARGS>(); });
+  constexpr unsigned char zeros[128] = {};
+  for (cl_uint i = 0; i < count; ++i) {
+    bool set = clSetKernelArg(kernel(), i, sizeof(cl_mem), nullptr) == CL_SUCCESS;
+    for (std::size_t bytes = 1; !set && bytes <= sizeof(zeros); bytes *= 2)
+      set = clSetKernelArg(kernel(), i, bytes, zeros) == CL_SUCCESS;
+    if (!set) throw RunError(fmt::format("argument {} of kernel '{}' cannot be zero", i, kernel_name(device, kernel)));
+  }
+}
+
 }  // namespace
 
 Program::Program(const Device& device, const std::string& name, const std::string& options)
     : Program(from_source(device, name, kernel_source(name), options)) {}
 
-Program Program::from_source(const Device& device, const std::string& name, const std::string& source,
-                             const std::string& options) {
-  const auto start = std::chrono::steady_clock::now();
+Program Program::from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
+                             BinaryCache cache) {
+  const auto start = Clock::now();
   const std::string all_options = options.empty() ? "-cl-std=CL1.2" : "-cl-std=CL1.2 " + options;
-  const std::string key = cache_key(device.info(), all_options, source);
+  const bool keeps_binary = cache == BinaryCache::always || !device.is_pocl();
+  const std::string key = keeps_binary ? cache_key(device.info(), all_options, source) : "";
   Program out;
   out.device_ = device;
   out.name_ = name;
-  if (const std::optional<Binary> binary = cache_load(key, "program")) {
+  if (const std::optional<Binary> binary = keeps_binary ? cache_load(key, "program") : std::nullopt) {
     if (std::optional<cl::Program> program = from_binary(device, *binary, all_options)) {
       out.program_ = std::move(*program);
       out.from_cache_ = true;
@@ -91,11 +108,27 @@ Program Program::from_source(const Device& device, const std::string& name, cons
   }
   if (!out.from_cache_) {
     out.program_ = from_text(device, name, source, all_options);
-    if (const Binary binary = binary_of(out.program_); !binary.empty()) cache_store(key, "program", binary);
+    if (keeps_binary)
+      if (const Binary binary = binary_of(out.program_); !binary.empty()) cache_store(key, "program", binary);
   }
   out.build_seconds_ = seconds_since(start);
-  if (!out.from_cache_) log::info("compiled {} for {} in {:.1f} s", name, device.info().name, out.build_seconds_);
+  if (!out.from_cache_ && out.build_seconds_ >= noticeable_seconds)
+    log::info("compiled {} for {} in {:.1f} s", name, device.info().name, out.build_seconds_);
   return out;
+}
+
+double Program::prepare(const std::string& kernel_name, std::size_t local) {
+  if (!device_.is_pocl()) return 0;
+  const auto start = Clock::now();
+  cl::Kernel prepared = kernel(kernel_name);
+  set_null_arguments(device_, prepared);
+  launch(device_, prepared, device_.steady_count(1), local);
+  device_.finish();
+  const double seconds = seconds_since(start);
+  build_seconds_ += seconds;
+  if (seconds >= noticeable_seconds)
+    log::info("compiled {} for {} in groups of {} in {:.1f} s", kernel_name, device_.info().name, local, seconds);
+  return seconds;
 }
 
 cl::Kernel Program::kernel(const std::string& name) const {

@@ -2,7 +2,10 @@
 // Copyright Caplet authors
 //
 // Buffers: round trips, accounting, limits.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fmt/format.h>
 
 #include <numeric>
 
@@ -11,27 +14,93 @@
 namespace caplet {
 namespace {
 
-TEST(Buffer, GivesBackWhatItWasMadeFrom) {
-  const Device device = Device::choose("");
+using testing::AllOf;
+using testing::HasSubstr;
+
+class BufferTest : public testing::Test {
+ protected:
+  Device device_ = Device::choose("");
+
+  std::string refusal(std::size_t bytes) {
+    try {
+      const RawBuffer buffer(device_, bytes, false, nullptr);
+    } catch (const RunError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(BufferTest, GivesBackWhatItWasMadeFrom) {
   std::vector<float> values(1000);
   std::iota(values.begin(), values.end(), -3.0f);
-  EXPECT_EQ(Buffer<float>(device, std::span<const float>(values)).read(), values);
+  const Buffer<float> buffer(device_, std::span<const float>(values));
+  EXPECT_EQ(buffer.size(), 1000u);
+  EXPECT_EQ(buffer.read(), values);
 }
 
-TEST(Program, RunsAKernel) {
-  const Device device = Device::choose("");
-  const Program program =
-      Program::from_source(device, "twice",
-                           flatten_kernels("#include \"math/vector.cl\"\n__kernel void twice(__global float* x, uint n) { const "
-                                           "uint i = get_global_id(0); if (i < n) x[i] = sqr(x[i]); }"),
-                           "");
-  Buffer<float> buffer(device, 5);
-  buffer.write(std::vector<float>{1, 2, 3, 4, 5});
-  cl::Kernel kernel = program.kernel("twice");
-  kernel.setArg(0, buffer.handle());
-  kernel.setArg(1, cl_uint{3});
-  launch(device, kernel, 3, 4);
-  EXPECT_EQ(buffer.read(), (std::vector<float>{1, 4, 9, 4, 5}));
+TEST_F(BufferTest, GivesBackWhatWasWritten) {
+  Buffer<cl_uint> buffer(device_, 6);
+  buffer.write(std::vector<cl_uint>{1, 2, 3, 4, 5, 6});
+  const cl_uint changed[] = {30, 40};
+  static_cast<RawBuffer&>(buffer).write(changed, 8, 8);
+  EXPECT_EQ(buffer.read(), (std::vector<cl_uint>{1, 2, 30, 40, 5, 6}));
+  cl_uint one = 0;
+  static_cast<const RawBuffer&>(buffer).read(&one, 16, 4);
+  EXPECT_EQ(one, 5u);
+}
+
+TEST_F(BufferTest, MayBeEmpty) {
+  Buffer<float> none(device_, 0);
+  EXPECT_EQ(none.size(), 0u);
+  EXPECT_EQ(none.read(), std::vector<float>());
+  none.write({});
+  EXPECT_NE(none.handle()(), nullptr);
+  EXPECT_EQ(Buffer<float>(device_, std::span<const float>()).size(), 0u);
+}
+
+TEST_F(BufferTest, RefusesPlacesOutsideIt) {
+  Buffer<float> buffer(device_, 4);
+  float values[8] = {};
+  EXPECT_THROW(buffer.write(std::span<const float>(values, 8)), std::logic_error);
+  EXPECT_THROW(static_cast<RawBuffer&>(buffer).read(values, 12, 8), std::logic_error);
+  EXPECT_THROW(static_cast<RawBuffer&>(buffer).read(values, std::size_t{0} - 4, 8), std::logic_error);
+}
+
+TEST_F(BufferTest, BytesAreCounted) {
+  EXPECT_EQ(device_.bytes_allocated(), 0u);
+  {
+    const Buffer<float> first(device_, 1000);
+    Buffer<float> second(device_, 500);
+    EXPECT_EQ(device_.bytes_allocated(), 6000u);
+    const Device copy = device_;
+    second = Buffer<float>(copy, 100);
+    EXPECT_EQ(device_.bytes_allocated(), 4400u);
+    const Buffer<float> shared = first;
+    EXPECT_EQ(device_.bytes_allocated(), 4400u);
+  }
+  EXPECT_EQ(device_.bytes_allocated(), 0u);
+  EXPECT_EQ(device_.bytes_peak(), 6400u);
+}
+
+TEST_F(BufferTest, TooLargeANeedNamesBothNumbers) {
+  const std::uint64_t limit = device_.info().max_allocation_bytes;
+  EXPECT_THAT(refusal(limit + 1), AllOf(HasSubstr(fmt::format("needs {} bytes, the device allows {} bytes", limit + 1, limit)),
+                                        HasSubstr(device_.info().name)));
+  EXPECT_EQ(device_.bytes_allocated(), 0u);
+}
+
+TEST_F(BufferTest, AllBuffersTogetherMustFit) {
+  const std::uint64_t global = device_.info().global_bytes;
+  std::vector<RawBuffer> buffers;
+  const std::uint64_t part = std::min(device_.info().max_allocation_bytes, global / 4);
+  std::string message;
+  try {
+    for (int i = 0; i < 8; ++i) buffers.emplace_back(device_, part, false, nullptr);
+  } catch (const RunError& error) {
+    message = error.what();
+  }
+  EXPECT_THAT(message, HasSubstr(fmt::format("needs {} bytes", part)));
 }
 
 }  // namespace

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "device/select.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+namespace caplet {
+
+namespace {
+
+using Devices = std::vector<DeviceInfo>;
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& message, const Devices& devices) {
+  std::string list;
+  for (const DeviceInfo& info : devices)
+    list += fmt::format("{}{} '{}' ({})", list.empty() ? "" : ", ", info.index, info.name, info.type);
+  throw InputError(SourceLocation{"--device"}, fmt::format("{}; the devices are {}", message, list));
+}
+
+/// devices.size() when there is none.
+std::size_t first_of_type(const Devices& devices, const std::string& type) {
+  const auto at = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& info) { return info.type == type; });
+  return static_cast<std::size_t>(at - devices.begin());
+}
+
+std::size_t by_name(const Devices& devices, const std::string& choice) {
+  const std::string wanted = lower_case(choice);
+  std::vector<std::size_t> whole, part;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const std::string name = lower_case(devices[i].name);
+    if (name == wanted) whole.push_back(i);
+    if (name.find(wanted) != std::string::npos) part.push_back(i);
+  }
+  const std::vector<std::size_t>& matches = whole.empty() ? part : whole;
+  if (matches.empty()) refuse(fmt::format("no device has '{}' in its name", choice), devices);
+  if (matches.size() > 1) refuse(fmt::format("more than one device has '{}' in its name", choice), devices);
+  return matches.front();
+}
+
+}  // namespace
+
+std::size_t select_device(const Devices& devices, const std::string& choice) {
+  if (devices.empty())
+    throw InputError(SourceLocation{"--device"},
+                     "no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU)");
+  if (choice.empty()) return first_of_type(devices, "gpu") % devices.size();
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
+  if (end == choice.data() + choice.size()) {
+    if (error != std::errc() || index >= devices.size()) refuse(fmt::format("no device has the index {}", choice), devices);
+    return index;
+  }
+  const std::string type = lower_case(choice);
+  if (type != "cpu" && type != "gpu") return by_name(devices, choice);
+  const std::size_t first = first_of_type(devices, type);
+  if (first == devices.size()) refuse(fmt::format("no device of type '{}'", type), devices);
+  return first;
+}
+
+}  // namespace caplet

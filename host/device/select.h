@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Which of some devices a `--device` choice means.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+
+namespace caplet {
+
+/// The number of the chosen device in `devices`; rules and errors as Device::choose.
+std::size_t select_device(const std::vector<DeviceInfo>& devices, const std::string& choice);
+
+}  // namespace caplet

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Choosing among the devices that are there, and where there is none.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "device/device.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Choose, EveryListedDeviceOpensByItsIndex) {
+  const std::vector<DeviceInfo> devices = list_devices();
+  ASSERT_FALSE(devices.empty());
+  for (const DeviceInfo& info : devices) {
+    const Device device = Device::choose(std::to_string(info.index));
+    EXPECT_EQ(device.info().name, info.name);
+    EXPECT_EQ(device.info().index, info.index);
+    EXPECT_GT(info.compute_units, 0u);
+    EXPECT_GT(info.global_bytes, 0u);
+    EXPECT_GE(info.global_bytes, info.max_allocation_bytes);
+    EXPECT_EQ(device.is_cpu(), info.type == "cpu");
+  }
+  EXPECT_THROW(Device::choose(std::to_string(devices.size())), InputError);
+}
+
+TEST(Choose, WithoutAPlatformThereAreNoDevices) {
+  const std::filesystem::path empty = test::temporary_folder();
+  const std::string command = "OCL_ICD_VENDORS='" + empty.string() + "' '" CAPLET_LIST_DEVICES "'";
+  FILE* pipe = ::popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::array<char, 4096> text{};
+  const std::size_t length = std::fread(text.data(), 1, text.size(), pipe);
+  EXPECT_EQ(::pclose(pipe), 0);
+  EXPECT_THAT(std::string(text.data(), length), AllOf(HasSubstr("0 devices\n"), HasSubstr("pocl-opencl-icd")));
+}
+
+TEST(Choose, SteadyCountKeepsPoclInOneSizeClass) {
+  const Device device = Device::choose("cpu");
+  EXPECT_EQ(device.steady_count(0), 0u);
+  EXPECT_EQ(device.steady_count(1u << 20), 1u << 20);
+  EXPECT_EQ(device.steady_count(5), device.is_pocl() ? 65536u : 5u);
+}
+
+}  // namespace
+}  // namespace caplet

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Programs and launches: results, build errors, the cache of binaries.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "device/device.h"
+#include "environment.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string count_up =
+    "__kernel void count_up(__global uint* x, uint n) { const uint i = (uint)get_global_id(0); if (i < n) x[i] += STEP + i; }";
+
+/// x of `n` counted, all `size` values.
+std::vector<cl_uint> run(const Device& device, const Program& program, cl_uint n, std::size_t size, std::size_t local) {
+  Buffer<cl_uint> buffer(device, size);
+  buffer.write(std::vector<cl_uint>(size, 0));
+  cl::Kernel kernel = program.kernel("count_up");
+  set_arguments(device, kernel, buffer, n);
+  launch(device, kernel, n, local);
+  return buffer.read();
+}
+
+template <class Function>
+std::string error_of(Function&& function) {
+  try {
+    function();
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class ProgramTest : public testing::Test {
+ protected:
+  Program build(const std::string& options = "-DSTEP=10") {
+    return Program::from_source(device_, "count_up", count_up, options, BinaryCache::always);
+  }
+  fs::path only_file() const {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) files.push_back(entry.path());
+    EXPECT_EQ(files.size(), 1u);
+    return files.at(0);
+  }
+
+  fs::path folder_ = test::temporary_folder();
+  test::ScopedVariable cache_{"CAPLET_CACHE", folder_.string()};
+  Device device_ = Device::choose("");
+};
+
+TEST_F(ProgramTest, LaunchesRoundUpAndKernelsCheckTheirIndex) {
+  const Program program = build();
+  EXPECT_EQ(run(device_, program, 3, 5, 4), (std::vector<cl_uint>{10, 11, 12, 0, 0}));
+  EXPECT_EQ(run(device_, program, 4, 5, 4), (std::vector<cl_uint>{10, 11, 12, 13, 0}));
+  EXPECT_EQ(run(device_, program, 5, 5, 1), (std::vector<cl_uint>{10, 11, 12, 13, 14}));
+  EXPECT_EQ(run(device_, program, 0, 2, 4), (std::vector<cl_uint>{0, 0}));
+}
+
+TEST_F(ProgramTest, OptionsAreDefinitions) { EXPECT_EQ(run(device_, build("-DSTEP=7"), 1, 1, 1), std::vector<cl_uint>{7}); }
+
+TEST_F(ProgramTest, PrepareChangesNothing) {
+  Program program = build();
+  const double before = program.build_seconds();
+  const double seconds = program.prepare("count_up", 4);
+  EXPECT_EQ(program.build_seconds(), before + seconds);
+  EXPECT_EQ(seconds > 0, device_.is_pocl());
+  EXPECT_EQ(run(device_, program, 2, 3, 4), (std::vector<cl_uint>{10, 11, 0}));
+}
+
+TEST_F(ProgramTest, BuildErrorsCarryTheLogWithTheKernelFile) {
+  const fs::path kernels = test::temporary_folder();
+  fs::create_directories(kernels / "stages");
+  fs::create_directories(kernels / "math");
+  std::ofstream(kernels / "stages" / "broken.cl") << "#include \"math/wrong.cl\"\n__kernel void broken() {}\n";
+  std::ofstream(kernels / "math" / "wrong.cl")
+      << "static int fine(void) { return 1; }\nstatic int wrong(void) { return nothing; }\n";
+  const test::ScopedVariable variable("CAPLET_KERNELS", kernels.string());
+  EXPECT_THAT(error_of([&] { Program(device_, "broken", "-DOPTION=1"); }),
+              AllOf(HasSubstr("program 'broken'"), HasSubstr("CL_BUILD_PROGRAM_FAILURE"), HasSubstr("kernels/math/wrong.cl:2"),
+                    HasSubstr("nothing"), HasSubstr("-DOPTION=1"), HasSubstr(device_.info().name)));
+}
+
+TEST_F(ProgramTest, MissingKernelsAndWrongArgumentsAreNamed) {
+  const Program program = build();
+  EXPECT_THAT(error_of([&] { program.kernel("other"); }),
+              AllOf(HasSubstr("kernel 'other' of program 'count_up'"), HasSubstr("CL_INVALID_KERNEL_NAME")));
+  cl::Kernel kernel = program.kernel("count_up");
+  EXPECT_THAT(error_of([&] { set_arguments(device_, kernel, Buffer<cl_uint>(device_, 1), cl_uint{1}, cl_uint{1}); }),
+              AllOf(HasSubstr("argument 2 of kernel 'count_up'"), HasSubstr("CL_INVALID_ARG_INDEX")));
+  cl::Kernel bare = program.kernel("count_up");
+  EXPECT_THAT(error_of([&] { launch(device_, bare, 1, 1); }),
+              AllOf(HasSubstr("kernel 'count_up' over 1 work-items"), HasSubstr("CL_INVALID_KERNEL_ARGS")));
+}
+
+TEST_F(ProgramTest, TheSecondBuildComesFromTheCache) {
+  EXPECT_FALSE(build().from_cache());
+  const Program again = build();
+  EXPECT_TRUE(again.from_cache());
+  EXPECT_EQ(run(device_, again, 2, 2, 2), (std::vector<cl_uint>{10, 11}));
+  EXPECT_FALSE(build("-DSTEP=20").from_cache());
+  EXPECT_FALSE(Program::from_source(device_, "count_up", count_up + "\n", "-DSTEP=10", BinaryCache::always).from_cache());
+}
+
+TEST_F(ProgramTest, ABrokenCacheFileIsIgnoredAndReplaced) {
+  build();
+  const fs::path file = only_file();
+  fs::resize_file(file, fs::file_size(file) / 2);
+  EXPECT_FALSE(build().from_cache());
+  EXPECT_TRUE(build().from_cache());
+  std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(300).put('~').put('~');
+  const Program rebuilt = build();
+  EXPECT_FALSE(rebuilt.from_cache());
+  EXPECT_EQ(run(device_, rebuilt, 1, 1, 1), std::vector<cl_uint>{10});
+}
+
+TEST_F(ProgramTest, AnUnusableCacheFolderIsNoError) {
+  std::ofstream(folder_ / "file") << "in the way";
+  const test::ScopedVariable variable("CAPLET_CACHE", (folder_ / "file").string());
+  EXPECT_EQ(run(device_, build(), 1, 1, 1), std::vector<cl_uint>{10});
+  EXPECT_FALSE(build().from_cache());
+}
+
+TEST_F(ProgramTest, PoclKeepsItsOwnCache) {
+  if (!device_.is_pocl()) GTEST_SKIP() << "needs PoCL";
+  Program::from_source(device_, "count_up", count_up, "-DSTEP=1");
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace caplet
