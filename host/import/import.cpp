@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/import.h"
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+const Format& format_of(const fs::path& path) {
+  const std::string name = lower_case(path.filename().string());
+  std::string known;
+  for (const Format& format : formats())
+    for (const std::string& extension : format.extensions) {
+      if (name.size() > extension.size() && name.ends_with(extension)) return format;
+      known += (known.empty() ? "" : ", ") + extension;
+    }
+  throw InputError({path.string()}, "no known scene format (known: " + known + ")");
+}
+
+void check_readable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw InputError({path.string()}, "no such file");
+  if (status.type() == fs::file_type::none) throw InputError({path.string()}, "cannot be read (" + error.message() + ")");
+  if (fs::is_directory(status)) throw InputError({path.string()}, "is a folder, not a file");
+  if (!fs::is_regular_file(status)) throw InputError({path.string()}, "is no regular file");
+  if (fs::file_size(path, error) == 0 && !error) throw InputError({path.string()}, "the file is empty");
+}
+
+}  // namespace
+
+Scene import_scene(const fs::path& path, const ImageReader& images) {
+  check_readable(path);
+  Scene scene = format_of(path).import(path, images);
+  Diagnostics diagnostics;
+  validate(scene, diagnostics);
+  diagnostics.finish();
+  return scene;
+}
+
+}  // namespace caplet

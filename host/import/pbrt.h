@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet::pbrt {
+
+/// Imports scene text that is in memory; `file` is its name for messages and for finding the files it names. Throws InputError.
+Scene import_text(const std::string& file, std::string text, const ImageReader& images);
+
+}  // namespace caplet::pbrt

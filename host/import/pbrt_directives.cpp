@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The directives that set options, transforms, materials, lights and shapes.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+
+#include "import/pbrt_lights.h"
+#include "import/pbrt_materials.h"
+#include "import/pbrt_names.h"
+#include "import/pbrt_options.h"
+#include "import/pbrt_parser.h"
+#include "import/pbrt_shapes.h"
+
+namespace caplet::pbrt {
+
+// --- Options ---
+
+void Parser::accelerator() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  if (check_name("Accelerator", type, where_, diagnostics_)) check_accelerator(type, given);
+}
+
+void Parser::camera() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  has_camera_ = true;
+  coordinate_systems_["camera"] = glm::inverse(state_.ctm);
+  if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, state_.ctm, scene_);
+}
+
+void Parser::film() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  if (check_name("Film", type, where_, diagnostics_)) set_film(given, state_.space, scene_);
+}
+
+void Parser::integrator() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  if (check_name("Integrator", type, where_, diagnostics_)) set_integrator(type, given, scene_);
+}
+
+void Parser::pixel_filter() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  if (check_name("PixelFilter", type, where_, diagnostics_)) set_filter(type, given, scene_);
+}
+
+void Parser::sampler() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type));
+  if (check_name("Sampler", type, where_, diagnostics_)) sampler_seed_ = set_sampler(type, given, scene_);
+}
+
+void Parser::option() {
+  std::string name = string_argument("a name");
+  if (const std::size_t blank = name.find_last_of(" \t"); blank != std::string::npos) name = name.substr(blank + 1);
+  const bool bracket = lexer_->peek().kind == Token::Kind::open;
+  if (bracket) lexer_->next();
+  const Token value = lexer_->next();
+  if (value.kind != Token::Kind::word && value.kind != Token::Kind::string)
+    throw SyntaxError{lexer_->place(value), "Option needs a value, found " + in_quotes(value.text)};
+  if (bracket && lexer_->next().kind != Token::Kind::close) throw SyntaxError{where_, "Option takes one value"};
+  if (!check_name("Option", name, where_, diagnostics_)) return;
+  if (const auto seed = set_option(name, value, *lexer_, diagnostics_)) option_seed_ = seed;
+}
+
+void Parser::color_space() {
+  const SourceLocation place = lexer_->place(lexer_->peek());
+  const std::string name = string_argument("a name");
+  if (!check_name("ColorSpace", name, place, diagnostics_)) return;
+  state_.space = name == "srgb"      ? ColorSpace::srgb
+                 : name == "dci-p3"  ? ColorSpace::dci_p3
+                 : name == "rec2020" ? ColorSpace::rec2020
+                                     : ColorSpace::aces2065_1;
+}
+
+// --- Transforms ---
+
+void Parser::multiply(const glm::dmat4& matrix) {
+  const glm::dmat3 a(matrix);
+  const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
+  // Relative to the columns' lengths, so that small and uneven scales pass; 1e-12 leaves four digits of a double.
+  if (!(std::abs(glm::determinant(a)) > 1e-12 * product) || !std::isfinite(product)) {
+    diagnostics_.error(where_, directive_ + " has no inverse");
+    return;
+  }
+  if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1) {
+    diagnostics_.error(where_, directive_ + " is not affine (its last row must be 0 0 0 1)");
+    return;
+  }
+  state_.ctm = state_.ctm * matrix;
+}
+
+void Parser::active_transform() {
+  const Token token = lexer_->next();
+  check_name("ActiveTransform", std::string(token.text), lexer_->place(token), diagnostics_);
+}
+
+void Parser::concat_transform() { multiply(matrix_argument()); }
+
+void Parser::transform() {
+  const glm::dmat4 matrix = matrix_argument();
+  state_.ctm = glm::dmat4(1);
+  multiply(matrix);
+}
+
+void Parser::identity() { state_.ctm = glm::dmat4(1); }
+
+void Parser::coordinate_system() { coordinate_systems_[string_argument("a name")] = state_.ctm; }
+
+void Parser::coord_sys_transform() {
+  const SourceLocation place = lexer_->place(lexer_->peek());
+  const std::string name = string_argument("a name");
+  if (const auto found = coordinate_systems_.find(name); found != coordinate_systems_.end()) {
+    state_.ctm = found->second;
+    return;
+  }
+  std::vector<std::string> known;
+  for (const auto& [system, matrix] : coordinate_systems_) known.push_back(system);
+  const std::string nearest = nearest_name(name, known);
+  diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) +
+                                (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+}
+
+void Parser::look_at() {
+  const glm::dvec3 eye = vector_argument(), target = vector_argument(), up = vector_argument();
+  const glm::dvec3 forward = glm::normalize(target - eye);
+  const glm::dvec3 sideways = glm::cross(glm::normalize(up), forward);
+  // Six digits of text leave an angle of 1e-6 between up and the view undetermined.
+  if (!(glm::length(sideways) > 1e-6)) {
+    diagnostics_.error(where_, "LookAt has no direction (the points coincide, or up lies along the view)");
+    return;
+  }
+  const glm::dvec3 right = glm::normalize(sideways);
+  const glm::dmat4 world_from_camera(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0), glm::dvec4(forward, 0),
+                                     glm::dvec4(eye, 1));
+  state_.ctm = state_.ctm * glm::affineInverse(world_from_camera);
+}
+
+void Parser::rotate() {
+  const double degrees = number_argument();
+  const glm::dvec3 axis = vector_argument();
+  if (glm::length(axis) > 0)
+    multiply(glm::rotate(glm::dmat4(1), degrees * glm::pi<double>() / 180, glm::normalize(axis)));
+  else
+    diagnostics_.error(where_, "Rotate has no axis");
+}
+
+void Parser::scale() { multiply(glm::scale(glm::dmat4(1), vector_argument())); }
+
+void Parser::translate() { multiply(glm::translate(glm::dmat4(1), vector_argument())); }
+
+void Parser::transform_times() {
+  number_argument();
+  number_argument();
+}
+
+void Parser::reverse_orientation() { state_.reverse_orientation = !state_.reverse_orientation; }
+
+// --- Materials, textures, media ---
+
+void Parser::attribute() {
+  static const std::vector<std::string> targets = {"light", "material", "medium", "shape", "texture"};
+  const SourceLocation place = lexer_->place(lexer_->peek());
+  const std::string target = string_argument("a target");
+  std::vector<Parameter> given = parse_parameters(*lexer_, state_.space, diagnostics_);
+  if (std::find(targets.begin(), targets.end(), target) == targets.end()) {
+    diagnostics_.error(place, "unknown Attribute target " + in_quotes(target) + "; the nearest known name is \"" +
+                                  nearest_name(target, targets) + "\"");
+    return;
+  }
+  for (Parameter& parameter : given) {
+    all_attributes_.push_back(std::make_shared<Parameter>(std::move(parameter)));
+    state_.attributes[target].push_back(all_attributes_.back());
+  }
+}
+
+void Parser::material() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type), "material");
+  if (!check_name("Material", type, where_, diagnostics_)) {
+    state_.material = 0;
+    return;
+  }
+  state_.material = static_cast<std::uint32_t>(uses_.size());
+  uses_.push_back({materials_.size(), {}, where_});
+  materials_.push_back({type, {}, std::move(given)});
+}
+
+void Parser::make_named_material() {
+  const std::string name = string_argument("a name");
+  Parameters given = parameters(owner(name), "material");
+  const bool has_type = given.has("type");
+  const std::string type = given.text("type", "");
+  if (const auto found = named_materials_.find(name); found != named_materials_.end()) {
+    diagnostics_.error(where_, "the material " + in_quotes(name) + " is defined twice");
+    return;
+  }
+  named_materials_.emplace(name, materials_.size());
+  if (!has_type) given.error("\"string type\" is missing");
+  const bool known = has_type && check_name("Material", type, given.where("type"), diagnostics_);
+  materials_.push_back({known ? type : "", name, std::move(given)});
+}
+
+std::uint32_t Parser::use_of_name(const std::string& name, const SourceLocation& where) {
+  const auto [at, fresh] = uses_by_name_.emplace(name, static_cast<std::uint32_t>(uses_.size()));
+  if (fresh) uses_.push_back({std::nullopt, name, where});
+  return at->second;
+}
+
+void Parser::named_material() {
+  const SourceLocation place = lexer_->place(lexer_->peek());
+  state_.material = use_of_name(string_argument("a name"), place);
+}
+
+void Parser::make_named_medium() {
+  const std::string name = string_argument("a name");
+  Parameters given = parameters(owner(name), "medium");
+  media_.emplace(name, where_);
+  if (given.has("type"))
+    check_name("MakeNamedMedium", given.text("type", ""), given.where("type"), diagnostics_);
+  else
+    given.error("\"string type\" is missing");
+}
+
+void Parser::medium_interface() {
+  std::vector<std::string> known;
+  for (const auto& [name, where] : media_) known.push_back(name);
+  for (int side = 0; side < 2; ++side) {
+    const SourceLocation place = lexer_->place(lexer_->peek());
+    if (side == 1 && lexer_->peek().kind != Token::Kind::string) return;
+    const std::string name = string_argument("a medium's name (or \"\")");
+    if (!name.empty() && !media_.contains(name)) diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined");
+  }
+}
+
+void Parser::texture() {
+  const std::string name = string_argument("a name");
+  const SourceLocation kind_place = lexer_->place(lexer_->peek());
+  const std::string kind = string_argument("\"float\" or \"spectrum\"");
+  const SourceLocation class_place = lexer_->place(lexer_->peek());
+  const std::string texture_class = string_argument("a class");
+  Parameters given = parameters(owner(name), "texture");
+  if (kind != "float" && kind != "spectrum") {
+    diagnostics_.error(kind_place, "a texture is \"float\" or \"spectrum\", not " + in_quotes(kind));
+    return;
+  }
+  bool known = false;
+  for (const NameTable& table : name_tables())
+    if (table.directive == "Texture")
+      known = std::find(table.refused.begin(), table.refused.end(), texture_class) != table.refused.end() ||
+              check_name("Texture", texture_class, class_place, diagnostics_);
+  if (!known) return;
+  const TextureValue value = make_texture(kind, texture_class, given, textures_);
+  if (!textures_.emplace(name, value).second) diagnostics_.error(where_, "the texture " + in_quotes(name) + " is defined twice");
+}
+
+// --- Lights and shapes ---
+
+void Parser::light_source() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type), "light");
+  if (!check_name("LightSource", type, where_, diagnostics_)) return;
+  if (auto light = make_light(type, given, state_.ctm, images_)) scene_.lights.push_back(std::move(*light));
+}
+
+void Parser::area_light_source() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type), "light");
+  if (check_name("AreaLightSource", type, where_, diagnostics_)) state_.emission = make_area_emission(given);
+}
+
+void Parser::shape() {
+  const std::string type = string_argument("a type");
+  Parameters given = parameters(owner(type), "shape");
+  if (!check_name("Shape", type, where_, diagnostics_)) return;
+  const auto by_name = [this](const std::string& name, const SourceLocation& where) { return use_of_name(name, where); };
+  auto shape = make_shape(type, given, state_.material, textures_, by_name);
+  if (!shape) return;
+  shape->world_from_object = state_.ctm;
+  shape->reverse_orientation = state_.reverse_orientation;
+  shape->emission = state_.emission;
+  (object_ ? scene_.objects[*object_].shapes : scene_.shapes).push_back(std::move(*shape));
+}
+
+void Parser::resolve_materials() {
+  std::vector<std::optional<std::uint32_t>> index_of_statement;
+  for (MaterialStatement& statement : materials_) {
+    index_of_statement.push_back(static_cast<std::uint32_t>(scene_.materials.size()));
+    if (statement.type.empty()) continue;
+    Material material = make_material(statement.type, statement.parameters, textures_);
+    material.name = statement.name;
+    scene_.materials.push_back(std::move(material));
+  }
+  std::vector<std::string> known;
+  for (const auto& [name, index] : named_materials_) known.push_back(name);
+  std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
+  for (std::size_t i = 1; i < uses_.size(); ++i) {
+    const MaterialUse& use = uses_[i];
+    const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
+    if (use.statement || named != named_materials_.end()) {
+      index_of_use[i] = *index_of_statement[use.statement ? *use.statement : named->second];
+      continue;
+    }
+    const std::string nearest = nearest_name(use.name, known);
+    diagnostics_.error(use.where, "the material " + in_quotes(use.name) + " is not defined" +
+                                      (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+  }
+  bool uses_default = false;
+  const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
+  index_of_use[0] = default_index;
+  const auto remap = [&](Shape& shape) {
+    uses_default = uses_default || shape.material == 0;
+    shape.material = index_of_use[shape.material];
+    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+      for (std::uint32_t& material : capsules->materials) {
+        uses_default = uses_default || material == 0;
+        material = index_of_use[material];
+      }
+  };
+  for (Shape& shape : scene_.shapes) remap(shape);
+  for (Object& object : scene_.objects)
+    for (Shape& shape : object.shapes) remap(shape);
+  if (uses_default) scene_.materials.push_back({DiffuseMaterial{}, "default", {main_file_}});
+}
+
+}  // namespace caplet::pbrt

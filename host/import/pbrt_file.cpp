@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_file.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <memory>
+#include <system_error>
+
+namespace caplet::pbrt {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const SourceLocation& where, const fs::path& path, const std::string& what) {
+  if (where.file.empty()) throw InputError(SourceLocation{path.string()}, what);
+  throw InputError(where, path.string() + ": " + what);
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path, const SourceLocation& where, std::size_t limit) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) fail(where, path, "no such file");
+  if (fs::is_directory(status)) fail(where, path, "is a folder, not a file");
+  if (!fs::is_regular_file(status)) fail(where, path, "is no regular file");
+  struct Close {
+    void operator()(gzFile file) const { gzclose(file); }
+  };
+  const std::unique_ptr<gzFile_s, Close> file(gzopen(path.c_str(), "rb"));
+  if (!file) fail(where, path, "cannot be read");
+  gzbuffer(file.get(), 1 << 18);
+  std::string bytes;
+  const auto size = fs::file_size(path, error);
+  if (!error && size < limit) bytes.reserve(size + 1);
+  constexpr unsigned chunk = 1 << 20;
+  for (;;) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + chunk);
+    const int got = gzread(file.get(), bytes.data() + before, chunk);
+    bytes.resize(before + static_cast<std::size_t>(got > 0 ? got : 0));
+    int code = Z_OK;
+    gzerror(file.get(), &code);
+    if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
+      fail(where, path, code == Z_BUF_ERROR ? "the gzip data is truncated" : "cannot be read (broken gzip data or a read error)");
+    if (bytes.size() > limit) fail(where, path, fmt::format("is longer than {} bytes", limit));
+    if (got == 0) return bytes;
+  }
+}
+
+void check_text(const std::string& text, const std::string& file) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte >= 32 || (byte >= '\t' && byte <= '\r')) continue;
+    if (byte == 0 && text.find_first_not_of('\0', i) == std::string::npos) return;
+    int line = 1;
+    std::size_t line_start = 0;
+    for (std::size_t k = 0; k < i; ++k)
+      if (text[k] == '\n') {
+        ++line;
+        line_start = k + 1;
+      }
+    throw InputError(SourceLocation{file, line, static_cast<int>(i - line_start) + 1},
+                     fmt::format("this is no text (byte 0x{:02x})", byte));
+  }
+}
+
+std::string read_text(const fs::path& path, const SourceLocation& where) {
+  std::string text = read_file(path, where);
+  check_text(text, path.string());
+  while (!text.empty() && text.back() == '\0') text.pop_back();
+  return text;
+}
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_lexer.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace caplet::pbrt {
+
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+bool ends_word(char c) { return is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
+
+std::string_view without_plus(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  return text;
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string out = "\"";
+  for (char c : text.substr(0, longest)) out += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+  return out + (text.size() > longest ? "...\"" : "\"");
+}
+
+double parse_number(const Token& token, const Lexer& lexer) {
+  const std::string_view text = without_plus(token.text);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (token.kind != Token::Kind::word || error == std::errc::invalid_argument || end != text.data() + text.size())
+    throw SyntaxError{lexer.place(token), "expected a number, found " + in_quotes(token.text)};
+  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
+  if (!std::isfinite(value)) throw SyntaxError{lexer.place(token), "the number " + in_quotes(token.text) + " is not finite"};
+  return value;
+}
+
+int parse_integer(const Token& token, const Lexer& lexer) {
+  const std::string_view text = without_plus(token.text);
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (token.kind == Token::Kind::word && error == std::errc::result_out_of_range && end == text.data() + text.size())
+    throw SyntaxError{lexer.place(token), "the integer " + in_quotes(token.text) + " is out of range (32 bits)"};
+  if (token.kind != Token::Kind::word || error != std::errc() || end != text.data() + text.size())
+    throw SyntaxError{lexer.place(token), "expected an integer, found " + in_quotes(token.text)};
+  return value;
+}
+
+Lexer::Lexer(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
+  if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+}
+
+void Lexer::advance() {
+  if (text_[at_] == '\n') {
+    ++line_;
+    column_ = 1;
+  } else {
+    ++column_;
+  }
+  ++at_;
+}
+
+void Lexer::skip_blanks() {
+  while (at_ < text_.size()) {
+    if (text_[at_] == '#')
+      while (at_ < text_.size() && text_[at_] != '\n') advance();
+    else if (is_blank(text_[at_]))
+      advance();
+    else
+      return;
+  }
+}
+
+const Token& Lexer::peek() {
+  if (!has_ahead_) {
+    ahead_ = scan();
+    has_ahead_ = true;
+  }
+  return ahead_;
+}
+
+Token Lexer::next() {
+  peek();
+  has_ahead_ = false;
+  return ahead_;
+}
+
+Token Lexer::scan() {
+  skip_blanks();
+  Token token{Token::Kind::end, "end of file", line_, column_};
+  if (at_ == text_.size()) return token;
+  const char first = text_[at_];
+  if (first == '"') return scan_string();
+  const std::size_t start = at_;
+  if (first == '[' || first == ']') {
+    token.kind = first == '[' ? Token::Kind::open : Token::Kind::close;
+    advance();
+  } else {
+    token.kind = Token::Kind::word;
+    while (at_ < text_.size() && !ends_word(text_[at_])) advance();
+  }
+  token.text = std::string_view(text_).substr(start, at_ - start);
+  return token;
+}
+
+Token Lexer::scan_string() {
+  Token token{Token::Kind::string, {}, line_, column_};
+  advance();
+  const std::size_t start = at_;
+  std::string* unescaped = nullptr;
+  bool bad_escape = false;
+  SourceLocation escape_place;
+  while (at_ < text_.size() && text_[at_] != '"' && text_[at_] != '\n') {
+    if (text_[at_] != '\\') {
+      if (unescaped) *unescaped += text_[at_];
+      advance();
+      continue;
+    }
+    if (!unescaped) unescaped = &unescaped_.emplace_back(text_.substr(start, at_ - start));
+    constexpr std::string_view escapes = "nrtbf\\'\"", meanings = "\n\r\t\b\f\\'\"";
+    const SourceLocation here{file_, line_, column_};
+    advance();
+    const std::size_t which = at_ < text_.size() ? escapes.find(text_[at_]) : std::string_view::npos;
+    if (which != std::string_view::npos) {
+      *unescaped += meanings[which];
+      advance();
+    } else if (!bad_escape) {
+      bad_escape = true;
+      escape_place = here;
+    }
+  }
+  if (at_ == text_.size() || text_[at_] == '\n') throw SyntaxError{place(token), "this string is not closed on its line"};
+  token.text = unescaped ? std::string_view(*unescaped) : std::string_view(text_).substr(start, at_ - start);
+  advance();
+  if (bad_escape) throw SyntaxError{escape_place, "unknown escape in a string"};
+  return token;
+}
+
+}  // namespace caplet::pbrt

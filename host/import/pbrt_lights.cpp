@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_lights.h"
+
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
+
+namespace caplet::pbrt {
+
+namespace {
+
+/// pbrt's default illuminant: the colour space's white.
+Spectrum white(Parameters& parameters, std::string_view name) {
+  return parameters.spectrum(name, SpectrumUse::illuminant).value_or(RgbSpectrum{glm::dvec3(1), parameters.space()});
+}
+
+std::optional<double> positive_or_none(Parameters& parameters, std::string_view name) {
+  const double value = parameters.number(name, -1);
+  return value > 0 ? std::optional(value) : std::nullopt;
+}
+
+double scale_of(Parameters& parameters) {
+  const double scale = parameters.number("scale", 1);
+  if (scale < 0) parameters.error("scale", "must not be negative");
+  return scale;
+}
+
+/// from -> to in world space, unit length; reports when both are the same point.
+glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::dvec3& to, const glm::dmat4& world_from_light) {
+  const glm::dvec3 along(world_from_light * glm::dvec4(to - from, 0));
+  const double length = glm::length(along);
+  if (length > 0 && std::isfinite(length)) return along / length;
+  parameters.error("\"from\" and \"to\" give no direction");
+  return {0, 0, 1};
+}
+
+std::shared_ptr<const EnvironmentImage> read_environment(Parameters& parameters, const std::string& name,
+                                                         const ImageReader& images) {
+  const std::string file = resolve_file(name, parameters.where("filename"), parameters.main_file());
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    parameters.error("filename", "no such file " + in_quotes(file));
+    return nullptr;
+  }
+  try {
+    auto image = std::make_shared<EnvironmentImage>(images.read_rgb(file));
+    image->equal_area = image->width == image->height;
+    if (image->equal_area || image->width == 2 * image->height) return image;
+    parameters.error("filename", file + " is " + std::to_string(image->width) + " x " + std::to_string(image->height) +
+                                     " pixels, neither 1:1 (equal-area) nor 2:1 (latitude-longitude)");
+  } catch (const InputError& problem) {
+    parameters.error("filename", problem.messages().front());
+  }
+  return nullptr;
+}
+
+/// The rotation (possibly mirroring) of a similarity transform.
+glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_light) {
+  const glm::dmat3 a(world_from_light);
+  const double scale = glm::length(a[0]);
+  const glm::dmat3 r = a / scale;
+  // Matrices in scene files carry six digits; anything further from orthonormal than 1e-3 is a shear or an uneven scale.
+  const glm::dmat3 error = glm::transpose(r) * r - glm::dmat3(1);
+  double worst = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(error[i][j]));
+  if (!(worst < 1e-3)) parameters.error("an image light cannot be sheared or scaled unevenly");
+  return r;
+}
+
+InfiniteLight make_infinite(Parameters& parameters, const glm::dmat4& world_from_light, const ImageReader& images) {
+  InfiniteLight light;
+  parameters.refuse("portal");
+  const bool has_radiance = parameters.has("L");
+  light.radiance = white(parameters, "L");
+  if (const std::string file = parameters.text("filename", ""); !file.empty()) {
+    if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
+    light.image = read_environment(parameters, file, images);
+    light.world_from_light = rotation_of(parameters, world_from_light);
+  }
+  return light;
+}
+
+SpotLight make_spot(Parameters& parameters, const glm::dmat4& world_from_light) {
+  SpotLight light;
+  light.intensity = white(parameters, "I");
+  const glm::dvec3 from = parameters.point("from", glm::dvec3(0)), to = parameters.point("to", glm::dvec3(0, 0, 1));
+  light.position = glm::dvec3(world_from_light * glm::dvec4(from, 1));
+  light.direction = direction(parameters, from, to, world_from_light);
+  const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
+  if (!(cone > 0 && cone <= 180)) parameters.error("coneangle", "must be above 0 and at most 180 degrees");
+  if (!(delta >= 0 && delta <= cone)) parameters.error("conedeltaangle", "must lie between 0 and \"coneangle\"");
+  light.total_angle = cone * glm::pi<double>() / 180;
+  light.falloff_start_angle = (cone - delta) * glm::pi<double>() / 180;
+  return light;
+}
+
+}  // namespace
+
+std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
+                                const ImageReader& images) {
+  Light light;
+  light.where = parameters.where();
+  light.scale = scale_of(parameters);
+  if (type == "point" || type == "spot") light.power = positive_or_none(parameters, "power");
+  if (type == "distant" || type == "infinite") light.illuminance = positive_or_none(parameters, "illuminance");
+  if (type == "point") {
+    const glm::dvec3 from = parameters.point("from", glm::dvec3(0));
+    light.model = PointLight{white(parameters, "I"), glm::dvec3(world_from_light * glm::dvec4(from, 1))};
+  } else if (type == "spot") {
+    light.model = make_spot(parameters, world_from_light);
+  } else if (type == "distant") {
+    const glm::dvec3 from = parameters.point("from", glm::dvec3(0)), to = parameters.point("to", glm::dvec3(0, 0, 1));
+    light.model = DistantLight{white(parameters, "L"), direction(parameters, from, to, world_from_light)};
+  } else {
+    light.model = make_infinite(parameters, world_from_light, images);
+  }
+  parameters.finish();
+  return light;
+}
+
+AreaEmission make_area_emission(Parameters& parameters) {
+  AreaEmission emission;
+  emission.radiance = white(parameters, "L");
+  emission.scale = scale_of(parameters);
+  emission.power = positive_or_none(parameters, "power");
+  emission.two_sided = parameters.boolean("twosided", false);
+  parameters.refuse("filename");
+  parameters.finish();
+  return emission;
+}
+
+}  // namespace caplet::pbrt

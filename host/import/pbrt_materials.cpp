@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace caplet::pbrt {
+
+namespace {
+
+/// Componentwise `f` of a spectrum that has components; no value for a blackbody.
+template <class F>
+std::optional<Spectrum> map_spectrum(const Spectrum& spectrum, F f) {
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return ConstantSpectrum{f(constant->value)};
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum))
+    return RgbSpectrum{{f(rgb->rgb.x), f(rgb->rgb.y), f(rgb->rgb.z)}, rgb->space};
+  if (const auto* sampled = std::get_if<SampledSpectrum>(&spectrum)) {
+    SampledSpectrum out = *sampled;
+    std::transform(out.values.begin(), out.values.end(), out.values.begin(), f);
+    return out;
+  }
+  return std::nullopt;
+}
+
+std::optional<RgbSpectrum> as_rgb(const Spectrum& spectrum, ColorSpace space) {
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return RgbSpectrum{glm::dvec3(constant->value), space};
+  const auto* rgb = std::get_if<RgbSpectrum>(&spectrum);
+  return rgb && rgb->space == space ? std::optional(*rgb) : std::nullopt;
+}
+
+/// (1 - t) a + t b of constants and RGBs of one colour space, or of spectra sampled at the same wavelengths.
+std::optional<Spectrum> mix_spectra(const Spectrum& a, const Spectrum& b, double t) {
+  const auto *ca = std::get_if<ConstantSpectrum>(&a), *cb = std::get_if<ConstantSpectrum>(&b);
+  if (ca && cb) return ConstantSpectrum{(1 - t) * ca->value + t * cb->value};
+  const auto *sa = std::get_if<SampledSpectrum>(&a), *sb = std::get_if<SampledSpectrum>(&b);
+  if (sa && sb && sa->wavelengths == sb->wavelengths) {
+    SampledSpectrum out = *sa;
+    for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] = (1 - t) * sa->values[i] + t * sb->values[i];
+    return out;
+  }
+  const auto *ra = std::get_if<RgbSpectrum>(&a), *rb = std::get_if<RgbSpectrum>(&b);
+  if (!ra && !rb) return std::nullopt;
+  const ColorSpace space = ra ? ra->space : rb->space;
+  const auto x = as_rgb(a, space), y = as_rgb(b, space);
+  if (!x || !y) return std::nullopt;
+  return RgbSpectrum{(1 - t) * x->rgb + t * y->rgb, space};
+}
+
+/// A spectrum texture's argument: a spectrum, a texture, or the reason why it is not rendered (in `refusal`).
+Spectrum texture_argument(Parameters& parameters, const char* name, double fallback, const TextureTable& textures,
+                          std::string& refusal) {
+  if (const Parameter* named = parameters.values(name, {"texture", "rgb", "spectrum", "blackbody"});
+      named && named->type == "texture")
+    if (const auto found = textures.find(named->strings[0]); found != textures.end() && !found->second.refusal.empty()) {
+      refusal = found->second.refusal;
+      return ConstantSpectrum{fallback};
+    }
+  return parameters.spectrum(name, SpectrumUse::unbounded, &textures).value_or(ConstantSpectrum{fallback});
+}
+
+double float_argument(Parameters& parameters, const char* name, double fallback, const TextureTable& textures,
+                      std::string& refusal) {
+  if (const Parameter* named = parameters.values(name, {"texture", "float"}); named && named->type == "texture")
+    if (const auto found = textures.find(named->strings[0]); found != textures.end() && !found->second.refusal.empty()) {
+      refusal = found->second.refusal;
+      return fallback;
+    }
+  return parameters.number_or_texture(name, fallback, textures);
+}
+
+double alpha_from_roughness(Parameters& parameters, const char* name, double roughness, bool remap) {
+  if (roughness < 0) {
+    parameters.error(parameters.has(name) ? name : "roughness", "must not be negative");
+    return 0;
+  }
+  return remap ? std::sqrt(roughness) : roughness;
+}
+
+void read_roughness(Parameters& parameters, const TextureTable& textures, double& alpha_u, double& alpha_v) {
+  const double both = parameters.number_or_texture("roughness", 0, textures);
+  const bool remap = parameters.boolean("remaproughness", true);
+  alpha_u = alpha_from_roughness(parameters, "uroughness", parameters.number_or_texture("uroughness", both, textures), remap);
+  alpha_v = alpha_from_roughness(parameters, "vroughness", parameters.number_or_texture("vroughness", both, textures), remap);
+}
+
+ConductorMaterial make_conductor(Parameters& parameters, const TextureTable& textures) {
+  ConductorMaterial metal;
+  const bool has_indices = parameters.has("eta") || parameters.has("k");
+  if (parameters.has("reflectance")) {
+    if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
+    const Spectrum reflectance =
+        parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
+    // The k for which Fresnel's normal reflectance with eta = 1 is r: r = k^2 / (4 + k^2).
+    const auto k_of = [](double r) {
+      r = std::clamp(r, 0.0, 0.9999);
+      return 2 * std::sqrt(r) / std::sqrt(1 - r);
+    };
+    metal.eta = ConstantSpectrum{1};
+    if (const auto k = map_spectrum(reflectance, k_of))
+      metal.k = *k;
+    else
+      parameters.error("reflectance", "as a blackbody is not rendered yet");
+  } else {
+    const auto indices = [&](const char* name, const char* fallback) {
+      if (const auto given = parameters.spectrum(name, SpectrumUse::unbounded, &textures)) return *given;
+      return named_spectrum(fallback).value_or(ConstantSpectrum{1});
+    };
+    metal.eta = indices("eta", "metal-Cu-eta");
+    metal.k = indices("k", "metal-Cu-k");
+  }
+  read_roughness(parameters, textures, metal.alpha_u, metal.alpha_v);
+  return metal;
+}
+
+DielectricMaterial make_dielectric(Parameters& parameters, const TextureTable& textures) {
+  DielectricMaterial glass;
+  const Parameter* eta = parameters.values("eta", {"float", "spectrum", "rgb", "blackbody"});
+  if (eta && eta->type == "float")
+    glass.eta = ConstantSpectrum{parameters.number("eta", 1.5)};
+  else if (eta)
+    glass.eta = parameters.spectrum("eta", SpectrumUse::unbounded).value_or(ConstantSpectrum{1.5});
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&glass.eta); constant && constant->value <= 0)
+    parameters.error("eta", "must be positive");
+  read_roughness(parameters, textures, glass.alpha_u, glass.alpha_v);
+  return glass;
+}
+
+}  // namespace
+
+TextureValue make_texture(const std::string& kind, const std::string& texture_class, Parameters& parameters,
+                          const TextureTable& textures) {
+  TextureValue value;
+  value.is_float = kind == "float";
+  value.spectrum = ConstantSpectrum{1};
+  const auto spectrum = [&](const char* name, double fallback) {
+    return texture_argument(parameters, name, fallback, textures, value.refusal);
+  };
+  const auto number = [&](const char* name, double fallback) {
+    return float_argument(parameters, name, fallback, textures, value.refusal);
+  };
+  if (texture_class == "constant") {
+    if (value.is_float)
+      value.number = parameters.number("value", 1);
+    else
+      value.spectrum = spectrum("value", 1);
+  } else if (texture_class == "scale") {
+    const double scale = number("scale", 1);
+    if (value.is_float)
+      value.number = scale * number("tex", 1);
+    else if (const auto scaled = map_spectrum(spectrum("tex", 1), [=](double x) { return scale * x; }))
+      value.spectrum = *scaled;
+    else
+      value.refusal = "a scaled blackbody texture, which is not rendered yet";
+  } else if (texture_class == "mix") {
+    const double amount = number("amount", 0.5);
+    if (value.is_float)
+      value.number = (1 - amount) * number("tex1", 0) + amount * number("tex2", 1);
+    else if (const auto mixed = mix_spectra(spectrum("tex1", 0), spectrum("tex2", 1), amount))
+      value.spectrum = *mixed;
+    else
+      value.refusal = "a mix texture of different kinds of spectra, which is not rendered yet";
+  } else {
+    if (texture_class == "imagemap") {
+      const std::string name = parameters.text("filename", "");
+      const std::string file = resolve_file(name, parameters.where("filename"), parameters.main_file());
+      std::error_code ignored;
+      if (name.empty() && !parameters.has("filename"))
+        parameters.error("\"filename\" is missing");
+      else if (!std::filesystem::is_regular_file(file, ignored))
+        parameters.error("filename", "missing texture: no such file " + in_quotes(file));
+    }
+    value.refusal = "Texture \"" + texture_class + "\" (" + parameters.where().to_string() + "), which is not rendered yet";
+    return value;
+  }
+  parameters.finish();
+  return value;
+}
+
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures) {
+  Material material;
+  material.where = parameters.where();
+  parameters.refuse("displacement");
+  parameters.refuse("normalmap");
+  if (type == "diffuse") {
+    DiffuseMaterial diffuse;
+    if (const auto reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures))
+      diffuse.reflectance = *reflectance;
+    material.model = diffuse;
+  } else if (type == "conductor") {
+    material.model = make_conductor(parameters, textures);
+  } else {
+    material.model = make_dielectric(parameters, textures);
+  }
+  parameters.finish();
+  return material;
+}
+
+}  // namespace caplet::pbrt

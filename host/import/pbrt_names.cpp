@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_names.h"
+
+#include <algorithm>
+
+#include "import/pbrt_lexer.h"
+
+namespace caplet::pbrt {
+
+const std::vector<NameTable>& name_tables() {
+  static const std::vector<NameTable> tables = {
+      {"Accelerator", {"bvh", "kdtree"}, {}},
+      {"ActiveTransform", {"All"}, {"EndTime", "StartTime"}},
+      {"AreaLightSource", {"diffuse"}, {}},
+      {"Camera", {"perspective"}, {"orthographic", "realistic", "spherical"}},
+      {"ColorSpace", {"aces2065-1", "dci-p3", "rec2020", "srgb"}, {}},
+      {"Film", {"rgb"}, {"gbuffer", "spectral"}},
+      {"Integrator",
+       {"bdpt", "mlt", "path", "simplepath", "simplevolpath", "volpath"},
+       {"ambientocclusion", "function", "lightpath", "randomwalk", "sppm"}},
+      {"LightSource", {"distant", "infinite", "point", "spot"}, {"goniometric", "projection"}},
+      {"MakeNamedMedium", {}, {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}},
+      {"Material",
+       {"conductor", "dielectric", "diffuse"},
+       {"coatedconductor", "coateddiffuse", "diffusetransmission", "hair", "interface", "measured", "mix", "subsurface",
+        "thindielectric"}},
+      {"Option",
+       {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale", "forcediffuse",
+        "pixelstats", "rendercoordsys", "seed", "wavefront"},
+       {"msereferenceimage", "msereferenceout"}},
+      {"PixelFilter", {"box", "gaussian", "mitchell", "triangle"}, {"sinc"}},
+      {"Sampler", {"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, {}},
+      {"Shape",
+       {"capsule", "capsules", "disk", "plymesh", "sphere", "trianglemesh"},
+       {"bilinearmesh", "box", "cone", "csg", "curve", "cylinder", "loopsubdiv", "polyhedron"}},
+      {"Texture",
+       {"constant", "mix", "scale"},
+       {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble", "ptex", "windy", "wrinkled"}},
+  };
+  return tables;
+}
+
+const std::vector<std::string>& directive_names() {
+  static const std::vector<std::string> names = {"Accelerator",
+                                                 "ActiveTransform",
+                                                 "AreaLightSource",
+                                                 "Attribute",
+                                                 "AttributeBegin",
+                                                 "AttributeEnd",
+                                                 "Camera",
+                                                 "ColorSpace",
+                                                 "ConcatTransform",
+                                                 "CoordSysTransform",
+                                                 "CoordinateSystem",
+                                                 "Film",
+                                                 "Identity",
+                                                 "Import",
+                                                 "Include",
+                                                 "Integrator",
+                                                 "LightSource",
+                                                 "LookAt",
+                                                 "MakeNamedMaterial",
+                                                 "MakeNamedMedium",
+                                                 "Material",
+                                                 "MediumInterface",
+                                                 "NamedMaterial",
+                                                 "ObjectBegin",
+                                                 "ObjectEnd",
+                                                 "ObjectInstance",
+                                                 "Option",
+                                                 "PixelFilter",
+                                                 "ReverseOrientation",
+                                                 "Rotate",
+                                                 "Sampler",
+                                                 "Scale",
+                                                 "Shape",
+                                                 "Texture",
+                                                 "Transform",
+                                                 "TransformBegin",
+                                                 "TransformEnd",
+                                                 "TransformTimes",
+                                                 "Translate",
+                                                 "WorldBegin"};
+  return names;
+}
+
+namespace {
+
+/// Edit distance (Levenshtein 1966) of strings cut to 64 characters.
+std::size_t distance(std::string_view a, std::string_view b) {
+  a = a.substr(0, 64);
+  b = b.substr(0, 64);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[b.size()];
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = std::string_view::npos;
+  for (const std::string& candidate : known)
+    if (const std::size_t d = distance(name, candidate); d < best_distance) {
+      best = candidate;
+      best_distance = d;
+    }
+  return best;
+}
+
+bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics) {
+  for (const NameTable& table : name_tables()) {
+    if (table.directive != directive) continue;
+    if (contains(table.accepted, name)) return true;
+    if (contains(table.refused, name)) {
+      diagnostics.error(where, table.directive + " \"" + name + "\" is not rendered yet");
+      return false;
+    }
+    std::vector<std::string> known = table.accepted;
+    known.insert(known.end(), table.refused.begin(), table.refused.end());
+    diagnostics.error(where, "unknown " + table.directive + " " + in_quotes(name) + "; the nearest known name is \"" +
+                                 nearest_name(name, known) + "\"");
+    return false;
+  }
+  return false;
+}
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What pbrt-v4 knows by name, and which of it is rendered: the tables behind docs/formats/pbrt.md.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace caplet::pbrt {
+
+struct NameTable {
+  std::string directive;              // "Material"
+  std::vector<std::string> accepted;  // rendered
+  std::vector<std::string> refused;   // known, not rendered yet
+};
+
+/// One row a directive that takes a type name.
+const std::vector<NameTable>& name_tables();
+
+/// All directives.
+const std::vector<std::string>& directive_names();
+
+/// The known name with the smallest edit distance; empty if there is none.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
+
+/// True if `name` is accepted; otherwise reports that it is unknown, or known and not rendered yet.
+bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics);
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_options.h"
+
+#include <cmath>
+#include <cstdint>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/log.h"
+
+namespace caplet::pbrt {
+
+namespace {
+
+double positive(Parameters& parameters, std::string_view name, double fallback) {
+  const double value = parameters.number(name, fallback);
+  if (value > 0) return value;
+  parameters.error(name, "must be positive");
+  return fallback;
+}
+
+int positive_integer(Parameters& parameters, std::string_view name, int fallback) {
+  const int value = parameters.integer(name, fallback);
+  if (value > 0) return value;
+  parameters.error(name, "must be positive");
+  return fallback;
+}
+
+}  // namespace
+
+void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Scene& scene) {
+  Camera camera;
+  camera.world_from_camera = glm::inverse(camera_from_world);
+  const double degrees = parameters.number("fov", 90);
+  if (degrees > 0 && degrees < 180)
+    camera.fov = degrees * glm::pi<double>() / 180;
+  else
+    parameters.error("fov", "must be above 0 and below 180 degrees");
+  if (parameters.has("frameaspectratio")) camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
+  if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
+    const auto& v = window->numbers;
+    if (v.size() != 4)
+      parameters.error("screenwindow", "takes 4 values, not " + std::to_string(v.size()));
+    else if (!(v[0] < v[1] && v[2] < v[3]))
+      parameters.error("screenwindow", "must be x min, x max, y min, y max with min below max");
+    else
+      camera.screen_window = {v[0], v[1], v[2], v[3]};
+  }
+  camera.lens_radius = parameters.number("lensradius", 0);
+  if (camera.lens_radius < 0) parameters.error("lensradius", "must not be negative");
+  camera.focal_distance = positive(parameters, "focaldistance", 1e6);
+  const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
+  if (close > open)
+    scene.film.exposure_time = close - open;
+  else
+    parameters.error("shutterclose", "must be after shutteropen");
+  parameters.finish();
+  scene.camera = camera;
+}
+
+void set_film(Parameters& parameters, ColorSpace space, Scene& scene) {
+  FilmSettings film;
+  film.exposure_time = scene.film.exposure_time;
+  film.space = space;
+  film.width = positive_integer(parameters, "xresolution", film.width);
+  film.height = positive_integer(parameters, "yresolution", film.height);
+  film.filename = parameters.text("filename", "pbrt.exr");
+  if (const Parameter* bounds = parameters.values("pixelbounds", {"integer"})) {
+    const auto& v = bounds->numbers;
+    if (v.size() == 4)
+      film.crop = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
+    else
+      parameters.error("pixelbounds", "takes 4 values, not " + std::to_string(v.size()));
+  }
+  if (const Parameter* window = parameters.values("cropwindow", {"float"})) {
+    const auto& v = window->numbers;
+    const auto pixel = [](double fraction, int size) { return static_cast<int>(std::ceil(fraction * size)); };
+    if (v.size() != 4)
+      parameters.error("cropwindow", "takes 4 values, not " + std::to_string(v.size()));
+    else if (!(0 <= v[0] && v[0] < v[1] && v[1] <= 1 && 0 <= v[2] && v[2] < v[3] && v[3] <= 1))
+      parameters.error("cropwindow", "must be x min, x max, y min, y max within 0 and 1");
+    else if (film.crop)
+      parameters.error("cropwindow", "cannot be combined with \"pixelbounds\"");
+    else
+      film.crop = {pixel(v[0], film.width), pixel(v[1], film.width), pixel(v[2], film.height), pixel(v[3], film.height)};
+  }
+  if (film.crop) {
+    const auto& c = *film.crop;
+    if (!(0 <= c[0] && c[0] < c[1] && c[1] <= film.width && 0 <= c[2] && c[2] < c[3] && c[3] <= film.height))
+      parameters.error(parameters.has("pixelbounds") ? "pixelbounds" : "cropwindow",
+                       "must be x0, x1, y0, y1 of a part of the image that is not empty");
+  }
+  positive(parameters, "diagonal", 35);
+  parameters.boolean("savefp16", true);
+  film.iso = positive(parameters, "iso", 100);
+  if (const std::string sensor = parameters.text("sensor", "cie1931"); sensor != "cie1931")
+    parameters.error("sensor", in_quotes(sensor) + " is not rendered yet; only \"cie1931\" is");
+  if (parameters.number("whitebalance", 0) != 0) parameters.refuse("whitebalance");
+  if (parameters.has("maxcomponentvalue")) film.max_component_value = positive(parameters, "maxcomponentvalue", 1);
+  parameters.finish();
+  scene.film = film;
+}
+
+void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
+  PixelFilter filter;
+  double radius = 2;
+  if (type == "box") {
+    filter.kind = PixelFilter::Kind::box;
+    radius = 0.5;
+  } else if (type == "triangle") {
+    filter.kind = PixelFilter::Kind::triangle;
+  } else if (type == "gaussian") {
+    radius = 1.5;
+    filter.sigma = positive(parameters, "sigma", 0.5);
+  } else {
+    filter.kind = PixelFilter::Kind::mitchell;
+    filter.b = parameters.number("B", 1.0 / 3);
+    filter.c = parameters.number("C", 1.0 / 3);
+  }
+  filter.radius_x = positive(parameters, "xradius", radius);
+  filter.radius_y = positive(parameters, "yradius", radius);
+  parameters.finish();
+  scene.filter = filter;
+}
+
+std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene) {
+  std::optional<std::uint32_t> seed;
+  if (parameters.has("seed")) seed = static_cast<std::uint32_t>(parameters.integer("seed", 0));
+  if (type == "stratified") {
+    const auto samples = std::int64_t{positive_integer(parameters, "xsamples", 4)} * positive_integer(parameters, "ysamples", 4);
+    if (samples > INT32_MAX)
+      parameters.error("xsamples", "times \"ysamples\" is more than 2^31 samples a pixel");
+    else
+      scene.sampler.samples_per_pixel = static_cast<int>(samples);
+    if (!parameters.boolean("jitter", true)) parameters.error("jitter", "false is not rendered yet");
+  } else {
+    scene.sampler.samples_per_pixel = positive_integer(parameters, "pixelsamples", 16);
+  }
+  if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol") parameters.text("randomization", "");
+  parameters.finish();
+  return seed;
+}
+
+void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
+  if (type != "path")
+    parameters.diagnostics().warning(parameters.where(),
+                                     parameters.owner() + ": rendered by the path tracer, which converges to the same image");
+  const int depth = parameters.integer("maxdepth", 5);
+  if (depth < 0)
+    parameters.error("maxdepth", "must not be negative");
+  else
+    scene.integrator.max_depth = depth;
+  if (type == "path" || type == "volpath") parameters.text("lightsampler", "bvh");
+  if (type == "simplepath") {
+    parameters.boolean("samplebsdf", true);
+    parameters.boolean("samplelights", true);
+  }
+  if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
+    if (parameters.boolean("regularize", false)) parameters.refuse("regularize");
+  if (type == "bdpt") {
+    if (parameters.boolean("visualizestrategies", false)) parameters.refuse("visualizestrategies");
+    if (parameters.boolean("visualizeweights", false)) parameters.refuse("visualizeweights");
+  }
+  if (type == "mlt")
+    for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
+      parameters.ignore(name);
+  parameters.finish();
+}
+
+void check_accelerator(const std::string& type, Parameters& parameters) {
+  for (const char* name : {"maxnodeprims", "splitmethod"})
+    if (type == "bvh") parameters.ignore(name);
+  for (const char* name : {"intersectcost", "traversalcost", "emptybonus", "maxprims", "maxdepth"})
+    if (type == "kdtree") parameters.ignore(name);
+  log::info("{}: {} has no effect on the image and is ignored", parameters.where().to_string(), parameters.owner());
+  parameters.finish();
+}
+
+std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const Lexer& lexer,
+                                        Diagnostics& diagnostics) {
+  const auto wrong = [&](const std::string& message) {
+    diagnostics.error(lexer.place(value), "Option \"" + name + "\" " + message);
+  };
+  if (name == "seed") return static_cast<std::uint32_t>(parse_integer(value, lexer));
+  if (name == "displacementedgescale") {
+    parse_number(value, lexer);
+  } else if (name == "rendercoordsys") {
+    if (value.text != "camera" && value.text != "cameraworld" && value.text != "world")
+      wrong("must be \"camera\", \"cameraworld\" or \"world\", not " + in_quotes(value.text));
+  } else if (value.text != "true" && value.text != "false") {
+    wrong("must be true or false, not " + in_quotes(value.text));
+  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "wavefront") {
+    wrong("is not rendered yet");
+  }
+  return std::nullopt;
+}
+
+}  // namespace caplet::pbrt

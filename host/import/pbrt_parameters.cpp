@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_parameters.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "import/pbrt_file.h"
+#include "import/pbrt_names.h"
+#include "import/pbrt_spectrum_file.h"
+
+namespace caplet::pbrt {
+
+namespace {
+
+struct TypeRow {
+  const char* name;
+  const char* canonical;
+  std::size_t multiple;  // of the number of values
+  bool single;           // exactly that many
+};
+
+const std::vector<TypeRow>& type_rows() {
+  static const std::vector<TypeRow> rows = {
+      {"integer", "integer", 1, false},   {"float", "float", 1, false},   {"bool", "bool", 1, false},
+      {"string", "string", 1, false},     {"point2", "point2", 2, false}, {"vector2", "vector2", 2, false},
+      {"point3", "point3", 3, false},     {"point", "point3", 3, false},  {"vector3", "vector3", 3, false},
+      {"vector", "vector3", 3, false},    {"normal", "normal", 3, false}, {"normal3", "normal", 3, false},
+      {"spectrum", "spectrum", 1, false}, {"rgb", "rgb", 3, true},        {"blackbody", "blackbody", 1, true},
+      {"texture", "texture", 1, true}};
+  return rows;
+}
+
+const TypeRow* find_type(std::string_view name) {
+  for (const TypeRow& row : type_rows())
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+std::string unknown_type(std::string_view type) {
+  std::vector<std::string> known;
+  for (const TypeRow& row : type_rows()) known.push_back(row.name);
+  return "unknown parameter type " + in_quotes(type) + "; the nearest known type is \"" + nearest_name(type, known) + "\"";
+}
+
+/// "type name" -> both; empty when it is not two words.
+std::pair<std::string_view, std::string_view> split_declaration(std::string_view text) {
+  constexpr std::string_view blanks = " \t\n\r";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  text.remove_prefix(begin);
+  text = text.substr(0, text.find_last_not_of(blanks) + 1);
+  const std::size_t gap = text.find_first_of(blanks);
+  if (gap == std::string_view::npos) return {};
+  const std::string_view name = text.substr(text.find_first_not_of(blanks, gap));
+  if (name.find_first_of(blanks) != std::string_view::npos) return {};
+  return {text.substr(0, gap), name};
+}
+
+void add_value(Parameter& parameter, const Token& token, const Lexer& lexer) {
+  const bool is_string = token.kind == Token::Kind::string;
+  if (parameter.type == "bool") {
+    if (token.text != "true" && token.text != "false")
+      throw SyntaxError{lexer.place(token), "expected true or false, found " + in_quotes(token.text)};
+    parameter.bools.push_back(token.text == "true");
+  } else if (parameter.type == "string" || parameter.type == "texture" || (parameter.type == "spectrum" && is_string)) {
+    if (!is_string) throw SyntaxError{lexer.place(token), "expected a quoted string, found " + in_quotes(token.text)};
+    parameter.strings.emplace_back(token.text);
+  } else if (parameter.type == "integer") {
+    if (is_string) throw SyntaxError{lexer.place(token), "expected an integer, found the string " + in_quotes(token.text)};
+    parameter.numbers.push_back(parse_integer(token, lexer));
+  } else {
+    if (is_string) throw SyntaxError{lexer.place(token), "expected a number, found the string " + in_quotes(token.text)};
+    parameter.numbers.push_back(parse_number(token, lexer));
+  }
+}
+
+void skip_values(Lexer& lexer) {
+  if (lexer.peek().kind == Token::Kind::close) lexer.next();
+  if (lexer.peek().kind != Token::Kind::open) return;
+  while (lexer.peek().kind != Token::Kind::close && lexer.peek().kind != Token::Kind::end) lexer.next();
+  if (lexer.peek().kind == Token::Kind::close) lexer.next();
+}
+
+/// The values after a declaration; a first wrong value is kept in `problem` while the rest is read over.
+void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>& problem) {
+  const auto add = [&](const Token& token) {
+    if (problem) return;
+    try {
+      add_value(parameter, token, lexer);
+    } catch (const SyntaxError& error) {
+      problem = error;
+    }
+  };
+  if (lexer.peek().kind != Token::Kind::open) {
+    if (lexer.peek().kind != Token::Kind::word && lexer.peek().kind != Token::Kind::string)
+      throw SyntaxError{lexer.place(lexer.peek()),
+                        "the parameter \"" + parameter.type + " " + parameter.name + "\" has no value"};
+    add(lexer.next());
+    return;
+  }
+  const Token open = lexer.next();
+  while (lexer.peek().kind != Token::Kind::close) {
+    if (lexer.peek().kind == Token::Kind::end) throw SyntaxError{lexer.place(open), "this bracket is never closed"};
+    if (lexer.peek().kind == Token::Kind::open) throw SyntaxError{lexer.place(lexer.peek()), "a bracket within brackets"};
+    add(lexer.next());
+  }
+  lexer.next();
+}
+
+std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
+
+/// The complaint about a parameter's number of values, empty when it is right.
+std::string check_count(const Parameter& parameter, const TypeRow& row) {
+  const std::size_t count = parameter.numbers.size() + parameter.strings.size() + parameter.bools.size();
+  const std::string name = "\"" + parameter.type + " " + parameter.name + "\"";
+  if (count == 0) return "the parameter " + name + " has no value";
+  if (parameter.type == "spectrum") {
+    if (!parameter.strings.empty() && !parameter.numbers.empty()) return name + " mixes names and numbers";
+    if (parameter.strings.size() > 1) return name + " takes one name or file, not " + std::to_string(parameter.strings.size());
+    if (parameter.numbers.size() % 2) return name + " takes pairs of wavelength and value, not " + plural(count);
+    for (std::size_t i = 2; i < parameter.numbers.size(); i += 2)
+      if (parameter.numbers[i] <= parameter.numbers[i - 2]) return name + ": wavelengths must ascend";
+    return {};
+  }
+  if (row.single && count != row.multiple) return name + " takes " + plural(row.multiple) + ", not " + std::to_string(count);
+  if (count % row.multiple) return name + " takes a multiple of " + plural(row.multiple) + ", not " + std::to_string(count);
+  return {};
+}
+
+}  // namespace
+
+std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnostics& diagnostics) {
+  std::vector<Parameter> parameters;
+  while (lexer.peek().kind == Token::Kind::string) {
+    const Token declaration = lexer.next();
+    Parameter parameter;
+    parameter.where = lexer.place(declaration);
+    parameter.space = space;
+    const auto [type, name] = split_declaration(declaration.text);
+    const TypeRow* row = find_type(type);
+    if (type.empty() || !row) {
+      diagnostics.error(parameter.where, type.empty()
+                                             ? "expected a parameter (\"type name\"), found " + in_quotes(declaration.text)
+                                             : unknown_type(type));
+      if (lexer.peek().kind == Token::Kind::open || type.empty())
+        skip_values(lexer);
+      else if (lexer.peek().kind == Token::Kind::word || lexer.peek().kind == Token::Kind::string)
+        lexer.next();
+      continue;
+    }
+    parameter.type = row->canonical;
+    parameter.name = name;
+    std::optional<SyntaxError> problem;
+    parse_values(parameter, lexer, problem);
+    if (problem) {
+      diagnostics.error(problem->where, "\"" + parameter.type + " " + parameter.name + "\": " + problem->message);
+      parameter.broken = true;
+    } else if (const std::string complaint = check_count(parameter, *row); !complaint.empty()) {
+      diagnostics.error(parameter.where, complaint);
+      parameter.broken = true;
+    }
+    const auto same = [&](const Parameter& other) { return other.name == parameter.name; };
+    if (const auto first = std::find_if(parameters.begin(), parameters.end(), same); first != parameters.end()) {
+      diagnostics.error(parameter.where,
+                        "the parameter \"" + parameter.name + "\" is given twice (first at " + first->where.to_string() + ")");
+      continue;
+    }
+    parameters.push_back(std::move(parameter));
+  }
+  return parameters;
+}
+
+std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file) {
+  namespace fs = std::filesystem;
+  const fs::path path(name);
+  if (path.is_absolute()) return name;
+  const fs::path beside = fs::path(where.file).parent_path() / path;
+  std::error_code ignored;
+  if (fs::exists(beside, ignored)) return beside.string();
+  const fs::path main = fs::path(main_file).parent_path() / path;
+  return fs::exists(main, ignored) ? main.string() : beside.string();
+}
+
+Parameters::Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
+                       const std::string& main_file, ColorSpace space, Diagnostics& diagnostics)
+    : own_(std::move(own)),
+      attributes_(std::move(attributes)),
+      owner_(std::move(owner)),
+      where_(std::move(where)),
+      main_file_(&main_file),
+      space_(space),
+      diagnostics_(&diagnostics) {}
+
+const Parameter* Parameters::lookup(std::string_view name) const {
+  for (const Parameter& parameter : own_)
+    if (parameter.name == name) return &parameter;
+  for (auto it = attributes_.rbegin(); it != attributes_.rend(); ++it)
+    if ((*it)->name == name) return it->get();
+  return nullptr;
+}
+
+Parameter* Parameters::find(std::string_view name) {
+  asked_.emplace_back(name);
+  Parameter* found = nullptr;
+  for (const auto& attribute : attributes_)
+    if (attribute->name == name) {
+      attribute->used = true;
+      found = attribute.get();
+    }
+  for (Parameter& parameter : own_)
+    if (parameter.name == name) {
+      parameter.used = true;
+      found = &parameter;
+    }
+  return found;
+}
+
+SourceLocation Parameters::where(std::string_view name) const {
+  const Parameter* parameter = lookup(name);
+  return parameter ? parameter->where : where_;
+}
+
+void Parameters::error(std::string_view name, const std::string& message) {
+  diagnostics_->error(where(name), owner_ + ": \"" + std::string(name) + "\" " + message);
+}
+
+bool Parameters::has(std::string_view name) { return find(name) != nullptr; }
+
+const Parameter* Parameters::values(std::string_view name, std::initializer_list<std::string_view> types) {
+  const Parameter* parameter = find(name);
+  if (!parameter || parameter->broken) return nullptr;
+  if (std::find(types.begin(), types.end(), parameter->type) != types.end()) return parameter;
+  std::string wanted;
+  for (std::string_view type : types) wanted += (wanted.empty() ? "" : " or ") + std::string(type);
+  error(name, "must be of type " + wanted + ", not " + parameter->type);
+  return nullptr;
+}
+
+double Parameters::number(std::string_view name, double fallback) {
+  const Parameter* parameter = values(name, {"float"});
+  if (!parameter) return fallback;
+  if (parameter->numbers.size() == 1) return parameter->numbers[0];
+  error(name, "takes 1 value, not " + std::to_string(parameter->numbers.size()));
+  return fallback;
+}
+
+int Parameters::integer(std::string_view name, int fallback) {
+  const Parameter* parameter = values(name, {"integer"});
+  if (!parameter) return fallback;
+  if (parameter->numbers.size() == 1) return static_cast<int>(parameter->numbers[0]);
+  error(name, "takes 1 value, not " + std::to_string(parameter->numbers.size()));
+  return fallback;
+}
+
+bool Parameters::boolean(std::string_view name, bool fallback) {
+  const Parameter* parameter = values(name, {"bool"});
+  if (!parameter) return fallback;
+  if (parameter->bools.size() == 1) return parameter->bools[0];
+  error(name, "takes 1 value, not " + std::to_string(parameter->bools.size()));
+  return fallback;
+}
+
+std::string Parameters::text(std::string_view name, const std::string& fallback) {
+  const Parameter* parameter = values(name, {"string"});
+  if (!parameter) return fallback;
+  if (parameter->strings.size() == 1) return parameter->strings[0];
+  error(name, "takes 1 value, not " + std::to_string(parameter->strings.size()));
+  return fallback;
+}
+
+glm::dvec3 Parameters::point(std::string_view name, const glm::dvec3& fallback) {
+  const Parameter* parameter = values(name, {"point3"});
+  if (!parameter) return fallback;
+  if (parameter->numbers.size() == 3) return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
+  error(name, "takes 1 point, not " + std::to_string(parameter->numbers.size() / 3));
+  return fallback;
+}
+
+std::optional<Spectrum> Parameters::spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures) {
+  const Parameter* parameter =
+      textures ? values(name, {"rgb", "spectrum", "blackbody", "texture"}) : values(name, {"rgb", "spectrum", "blackbody"});
+  return parameter ? spectrum_of(*parameter, use, textures) : std::nullopt;
+}
+
+std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, SpectrumUse use, const TextureTable* textures) {
+  const auto wrong = [&](const std::string& message) {
+    error(parameter.name, message);
+    return std::nullopt;
+  };
+  if (parameter.type == "texture") {
+    const auto found = textures->find(parameter.strings[0]);
+    if (found == textures->end() || found->second.is_float)
+      return wrong(
+          (found == textures->end() ? "names an unknown texture, " : "needs a spectrum texture, not the float texture ") +
+          in_quotes(parameter.strings[0]));
+    if (!found->second.refusal.empty()) return wrong("uses " + found->second.refusal);
+    return found->second.spectrum;
+  }
+  if (parameter.type == "rgb") {
+    const RgbSpectrum rgb{{parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]}, parameter.space};
+    if (std::min({rgb.rgb.x, rgb.rgb.y, rgb.rgb.z}) < 0) return wrong("has a negative component");
+    if (use == SpectrumUse::albedo && std::max({rgb.rgb.x, rgb.rgb.y, rgb.rgb.z}) > 1)
+      return wrong("is a reflectance and has a component above 1");
+    return rgb;
+  }
+  if (parameter.type == "blackbody") {
+    if (parameter.numbers[0] <= 0) return wrong("must be a positive temperature in kelvin");
+    return BlackbodySpectrum{parameter.numbers[0]};
+  }
+  SampledSpectrum sampled;
+  if (!parameter.strings.empty()) {
+    if (auto named = named_spectrum(parameter.strings[0])) return named;
+    const std::string file = resolve_file(parameter.strings[0], parameter.where, *main_file_);
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+      return wrong("names neither a known spectrum nor a file, " + in_quotes(parameter.strings[0]) +
+                   "; the nearest known name is \"" + nearest_name(parameter.strings[0], named_spectrum_names()) + "\"");
+    try {
+      sampled = read_spectrum_file(file, parameter.where);
+    } catch (const InputError& problem) {
+      for (const std::string& message : problem.messages()) diagnostics_->error({}, message);
+      return std::nullopt;
+    }
+  }
+  for (std::size_t i = 0; i < parameter.numbers.size(); i += 2) {
+    sampled.wavelengths.push_back(parameter.numbers[i]);
+    sampled.values.push_back(parameter.numbers[i + 1]);
+  }
+  if (*std::min_element(sampled.values.begin(), sampled.values.end()) < 0) return wrong("has a negative value");
+  if (use == SpectrumUse::albedo && *std::max_element(sampled.values.begin(), sampled.values.end()) > 1)
+    return wrong("is a reflectance and has a value above 1");
+  return sampled;
+}
+
+double Parameters::number_or_texture(std::string_view name, double fallback, const TextureTable& textures) {
+  const Parameter* parameter = values(name, {"float", "texture"});
+  if (!parameter) return fallback;
+  if (parameter->type == "float") return number(name, fallback);
+  const auto found = textures.find(parameter->strings[0]);
+  if (found == textures.end())
+    error(name, "names an unknown texture, " + in_quotes(parameter->strings[0]));
+  else if (!found->second.is_float)
+    error(name, "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
+  else if (!found->second.refusal.empty())
+    error(name, "uses " + found->second.refusal);
+  else
+    return found->second.number;
+  return fallback;
+}
+
+void Parameters::refuse(std::string_view name) {
+  if (find(name)) error(name, "is not rendered yet");
+}
+
+void Parameters::ignore(std::string_view name) { find(name); }
+
+void Parameters::finish() {
+  for (const auto& attribute : attributes_) attribute->consulted = true;
+  for (const Parameter& parameter : own_) {
+    if (parameter.used) continue;
+    std::string message = owner_ + ": unknown parameter " + in_quotes(parameter.name);
+    if (!asked_.empty()) message += "; the nearest known name is \"" + nearest_name(parameter.name, asked_) + "\"";
+    diagnostics_->error(parameter.where, message);
+  }
+}
+
+}  // namespace caplet::pbrt

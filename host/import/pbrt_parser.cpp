@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/pbrt_parser.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/log.h"
+#include "import/pbrt_file.h"
+#include "import/pbrt_names.h"
+#include "import/presentation.h"
+
+namespace caplet::pbrt {
+
+namespace fs = std::filesystem;
+
+namespace {
+constexpr std::size_t deepest_include = 64;
+}
+
+const std::vector<Parser::Handler>& Parser::handlers() {
+  using enum Handler::Allowed;
+  static const std::vector<Handler> rows = {
+      {"Accelerator", &Parser::accelerator, options},
+      {"ActiveTransform", &Parser::active_transform, anywhere},
+      {"AreaLightSource", &Parser::area_light_source, world},
+      {"Attribute", &Parser::attribute, anywhere},
+      {"AttributeBegin", &Parser::attribute_begin, world},
+      {"AttributeEnd", &Parser::attribute_end, world},
+      {"Camera", &Parser::camera, options},
+      {"ColorSpace", &Parser::color_space, anywhere},
+      {"ConcatTransform", &Parser::concat_transform, anywhere},
+      {"CoordSysTransform", &Parser::coord_sys_transform, anywhere},
+      {"CoordinateSystem", &Parser::coordinate_system, anywhere},
+      {"Film", &Parser::film, options},
+      {"Identity", &Parser::identity, anywhere},
+      {"Import", &Parser::import, world},
+      {"Include", &Parser::include, anywhere},
+      {"Integrator", &Parser::integrator, options},
+      {"LightSource", &Parser::light_source, world},
+      {"LookAt", &Parser::look_at, anywhere},
+      {"MakeNamedMaterial", &Parser::make_named_material, world},
+      {"MakeNamedMedium", &Parser::make_named_medium, anywhere},
+      {"Material", &Parser::material, world},
+      {"MediumInterface", &Parser::medium_interface, anywhere},
+      {"NamedMaterial", &Parser::named_material, world},
+      {"ObjectBegin", &Parser::object_begin, world},
+      {"ObjectEnd", &Parser::object_end, world},
+      {"ObjectInstance", &Parser::object_instance, world},
+      {"Option", &Parser::option, options},
+      {"PixelFilter", &Parser::pixel_filter, options},
+      {"ReverseOrientation", &Parser::reverse_orientation, world},
+      {"Rotate", &Parser::rotate, anywhere},
+      {"Sampler", &Parser::sampler, options},
+      {"Scale", &Parser::scale, anywhere},
+      {"Shape", &Parser::shape, world},
+      {"Texture", &Parser::texture, world},
+      {"Transform", &Parser::transform, anywhere},
+      {"TransformBegin", &Parser::attribute_begin, world},
+      {"TransformEnd", &Parser::attribute_end, world},
+      {"TransformTimes", &Parser::transform_times, options},
+      {"Translate", &Parser::translate, anywhere},
+      {"WorldBegin", &Parser::world_begin, options},
+  };
+  return rows;
+}
+
+Scene Parser::parse(std::string text) {
+  scene_.source = main_file_;
+  std::error_code ignored;
+  open_files_.push_back(fs::weakly_canonical(main_file_, ignored).string());
+  parse_file(main_file_, std::move(text));
+  report_unclosed(0);
+  if (!in_world_ && !diagnostics_.has_errors()) diagnostics_.error({main_file_}, "the scene is empty: there is no WorldBegin");
+  finish_attributes();
+  resolve_materials();
+  resolve_instances();
+  diagnostics_.finish();
+  scene_.sampler.seed = sampler_seed_.value_or(option_seed_.value_or(0));
+  present();
+  return std::move(scene_);
+}
+
+void Parser::parse_file(const std::string& file, std::string text) {
+  Lexer lexer(file, std::move(text));
+  Lexer* const outer = std::exchange(lexer_, &lexer);
+  for (bool more = true; more;) {
+    try {
+      more = lexer.peek().kind != Token::Kind::end;
+      if (more) parse_statement();
+    } catch (const SyntaxError& error) {
+      diagnostics_.error(error.where, error.message);
+      skip_to_directive();
+    }
+  }
+  lexer_ = outer;
+}
+
+void Parser::parse_statement() {
+  static const auto by_name = [] {
+    std::unordered_map<std::string_view, const Handler*> map;
+    for (const Handler& row : handlers()) map.emplace(row.name, &row);
+    return map;
+  }();
+  const Token token = lexer_->next();
+  where_ = lexer_->place(token);
+  if (token.kind != Token::Kind::word)
+    throw SyntaxError{where_, "expected a directive, found " +
+                                  std::string(token.kind == Token::Kind::string ? "the string " : "") + in_quotes(token.text)};
+  const auto found = by_name.find(token.text);
+  if (found == by_name.end())
+    throw SyntaxError{where_, "unknown directive " + in_quotes(token.text) + "; the nearest known name is \"" +
+                                  nearest_name(token.text, directive_names()) + "\""};
+  directive_ = token.text;
+  const Handler& handler = *found->second;
+  if (handler.allowed == Handler::Allowed::options && in_world_)
+    throw SyntaxError{where_,
+                      directive_ + (directive_ == "WorldBegin" ? " is given twice" : " is only allowed before WorldBegin")};
+  if (handler.allowed == Handler::Allowed::world && !in_world_)
+    throw SyntaxError{where_, directive_ + " is only allowed after WorldBegin"};
+  (this->*handler.run)();
+}
+
+void Parser::skip_to_directive() {
+  static const std::unordered_set<std::string_view> names(directive_names().begin(), directive_names().end());
+  for (;;) {
+    try {
+      const Token& token = lexer_->peek();
+      if (token.kind == Token::Kind::end || (token.kind == Token::Kind::word && names.contains(token.text))) return;
+      lexer_->next();
+    } catch (const SyntaxError& error) {
+      diagnostics_.error(error.where, error.message);
+    }
+  }
+}
+
+std::string Parser::string_argument(const char* what) {
+  const Token& token = lexer_->peek();
+  if (token.kind != Token::Kind::string)
+    throw SyntaxError{lexer_->place(token), directive_ + " needs " + what + " in quotes, found " + in_quotes(token.text)};
+  return std::string(lexer_->next().text);
+}
+
+double Parser::number_argument() {
+  const Token& token = lexer_->peek();
+  if (token.kind != Token::Kind::word)
+    throw SyntaxError{lexer_->place(token), directive_ + " needs a number, found " + in_quotes(token.text)};
+  const double value = parse_number(token, *lexer_);
+  lexer_->next();
+  return value;
+}
+
+glm::dvec3 Parser::vector_argument() {
+  const double x = number_argument(), y = number_argument(), z = number_argument();
+  return {x, y, z};
+}
+
+glm::dmat4 Parser::matrix_argument() {
+  const bool bracket = lexer_->peek().kind == Token::Kind::open;
+  if (bracket) lexer_->next();
+  glm::dmat4 matrix;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) matrix[column][row] = number_argument();
+  if (!bracket) return matrix;
+  if (lexer_->peek().kind != Token::Kind::close)
+    throw SyntaxError{lexer_->place(lexer_->peek()), directive_ + " takes 16 numbers, found " + in_quotes(lexer_->peek().text)};
+  lexer_->next();
+  return matrix;
+}
+
+Parameters Parser::parameters(const std::string& owner, const char* attribute_target) {
+  SharedParameters attributes;
+  if (attribute_target)
+    if (const auto found = state_.attributes.find(attribute_target); found != state_.attributes.end()) attributes = found->second;
+  return {parse_parameters(*lexer_, state_.space, diagnostics_),
+          std::move(attributes),
+          owner,
+          where_,
+          main_file_,
+          state_.space,
+          diagnostics_};
+}
+
+// --- Files ---
+
+std::string Parser::included_file() {
+  const SourceLocation place = lexer_->place(lexer_->peek());
+  const std::string name = string_argument("a file name");
+  const std::string file = resolve_file(name, place, main_file_);
+  std::error_code ignored;
+  const std::string canonical = fs::weakly_canonical(file, ignored).string();
+  if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
+    throw SyntaxError{place, "recursive " + directive_ + " of " + file};
+  if (open_files_.size() >= deepest_include)
+    throw SyntaxError{place, "more than " + std::to_string(deepest_include) + " files within each other"};
+  where_ = place;
+  open_files_.push_back(canonical);
+  return file;
+}
+
+void Parser::read_included(const std::string& file) {
+  try {
+    parse_file(file, read_text(file, where_));
+  } catch (const InputError& problem) {
+    if (diagnostics_.has_errors()) throw;
+    for (const std::string& message : problem.messages()) diagnostics_.error({}, message);
+  }
+  open_files_.pop_back();
+}
+
+void Parser::include() { read_included(included_file()); }
+
+void Parser::import() {
+  const std::string file = included_file();
+  const State saved = state_;
+  const auto saved_systems = coordinate_systems_;
+  const std::size_t blocks = blocks_.size();
+  read_included(file);
+  report_unclosed(blocks);
+  state_ = saved;
+  coordinate_systems_ = saved_systems;
+}
+
+// --- Blocks ---
+
+void Parser::open_block() { blocks_.push_back({directive_, where_, state_}); }
+
+void Parser::close_block(const std::string& opener) {
+  if (blocks_.empty()) throw SyntaxError{where_, directive_ + " without " + opener};
+  Block& block = blocks_.back();
+  if (block.opener != opener)
+    throw SyntaxError{where_, directive_ + " while the " + block.opener + " of " + block.where.to_string() + " is open"};
+  state_ = std::move(block.saved);
+  blocks_.pop_back();
+}
+
+void Parser::report_unclosed(std::size_t first_block) {
+  for (; blocks_.size() > first_block; blocks_.pop_back())
+    diagnostics_.error(blocks_.back().where, blocks_.back().opener + " is never closed");
+  if (first_block == 0) object_.reset();
+}
+
+void Parser::attribute_begin() {
+  if (directive_ == "TransformBegin" && !std::exchange(warned_transform_begin_, true))
+    diagnostics_.warning(where_, "TransformBegin is deprecated in pbrt-v4 and does what AttributeBegin does");
+  open_block();
+}
+
+void Parser::attribute_end() { close_block(directive_ == "AttributeEnd" ? "AttributeBegin" : "TransformBegin"); }
+
+void Parser::object_begin() {
+  const std::string name = string_argument("a name");
+  if (object_) throw SyntaxError{where_, "ObjectBegin within the ObjectBegin of " + object_where_.to_string()};
+  if (const auto [at, fresh] = object_names_.emplace(name, static_cast<std::uint32_t>(scene_.objects.size())); !fresh)
+    diagnostics_.error(where_, "the object " + in_quotes(name) + " is defined twice (first at " +
+                                   scene_.objects[at->second].where.to_string() + ")");
+  open_block();
+  object_ = scene_.objects.size();
+  object_where_ = where_;
+  scene_.objects.push_back({name, {}, where_});
+}
+
+void Parser::object_end() {
+  close_block("ObjectBegin");
+  object_.reset();
+}
+
+void Parser::object_instance() {
+  const std::string name = string_argument("an object's name");
+  if (object_) throw SyntaxError{where_, "ObjectInstance within the ObjectBegin of " + object_where_.to_string()};
+  instances_.push_back({name, state_.ctm, where_});
+}
+
+void Parser::world_begin() {
+  in_world_ = true;
+  state_.ctm = glm::dmat4(1);
+  coordinate_systems_["world"] = state_.ctm;
+}
+
+// --- The end ---
+
+void Parser::finish_attributes() {
+  for (const auto& parameter : all_attributes_)
+    if (parameter->consulted && !parameter->used && !parameter->broken)
+      diagnostics_.error(parameter->where, "no statement after this Attribute knows the parameter " + in_quotes(parameter->name));
+}
+
+void Parser::resolve_instances() {
+  std::vector<std::string> known;
+  for (const auto& [name, index] : object_names_) known.push_back(name);
+  for (const InstanceUse& use : instances_) {
+    if (const auto found = object_names_.find(use.name); found != object_names_.end()) {
+      scene_.instances.push_back({found->second, use.world_from_object, use.where});
+      continue;
+    }
+    const std::string nearest = nearest_name(use.name, known);
+    diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" +
+                                      (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+  }
+}
+
+void Parser::present() {
+  const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
+  const bool lit = !scene_.lights.empty() || std::any_of(scene_.shapes.begin(), scene_.shapes.end(), emits) ||
+                   std::any_of(scene_.objects.begin(), scene_.objects.end(), [&](const Object& object) {
+                     return std::any_of(object.shapes.begin(), object.shapes.end(), emits);
+                   });
+  if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
+  if (has_camera_) return;
+  if (bounds_of(scene_).empty()) return;
+  if (lit)
+    frame_camera(scene_);
+  else
+    add_presentation(scene_);
+}
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Reads pbrt-v4 statements in order, keeps the graphics state, and builds the scene. One method a directive.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "import/pbrt_lexer.h"
+#include "import/pbrt_parameters.h"
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet::pbrt {
+
+class Parser {
+ public:
+  Parser(std::string main_file, const ImageReader& images) : main_file_(std::move(main_file)), images_(images) {}
+
+  /// The scene of the main file's text. Throws InputError with everything that is wrong.
+  Scene parse(std::string text);
+
+ private:
+  struct State {
+    glm::dmat4 ctm{1};
+    bool reverse_orientation = false;
+    ColorSpace space = ColorSpace::srgb;
+    std::uint32_t material = 0;  // index into uses_
+    std::optional<AreaEmission> emission;
+    std::map<std::string, SharedParameters> attributes;
+  };
+  struct Block {
+    std::string opener;
+    SourceLocation where;
+    State saved;
+  };
+  struct MaterialStatement {
+    std::string type, name;
+    Parameters parameters;
+  };
+  /// What shapes refer to until all materials are known: the default, a Material statement, or a name.
+  struct MaterialUse {
+    std::optional<std::size_t> statement;
+    std::string name;
+    SourceLocation where;
+    bool used = false;
+  };
+  struct InstanceUse {
+    std::string name;
+    glm::dmat4 world_from_object;
+    SourceLocation where;
+  };
+  struct Handler {
+    const char* name;
+    void (Parser::*run)();
+    enum class Allowed { anywhere, options, world } allowed;
+  };
+  static const std::vector<Handler>& handlers();
+
+  // Reading
+  void parse_file(const std::string& file, std::string text);
+  void parse_statement();
+  void skip_to_directive();
+  std::string string_argument(const char* what);
+  double number_argument();
+  glm::dvec3 vector_argument();
+  glm::dmat4 matrix_argument();
+  Parameters parameters(const std::string& owner, const char* attribute_target = nullptr);
+  std::string owner(const std::string& type) const { return directive_ + " \"" + type + "\""; }
+
+  // Directives
+  void accelerator();
+  void active_transform();
+  void area_light_source();
+  void attribute();
+  void attribute_begin();
+  void attribute_end();
+  void camera();
+  void color_space();
+  void concat_transform();
+  void coord_sys_transform();
+  void coordinate_system();
+  void film();
+  void identity();
+  void import();
+  void include();
+  void integrator();
+  void light_source();
+  void look_at();
+  void make_named_material();
+  void make_named_medium();
+  void material();
+  void medium_interface();
+  void named_material();
+  void object_begin();
+  void object_end();
+  void object_instance();
+  void option();
+  void pixel_filter();
+  void reverse_orientation();
+  void rotate();
+  void sampler();
+  void scale();
+  void shape();
+  void texture();
+  void transform();
+  void transform_times();
+  void translate();
+  void world_begin();
+
+  // Help for directives
+  void multiply(const glm::dmat4& matrix);
+  void open_block();
+  void close_block(const std::string& opener);
+  void report_unclosed(std::size_t first_block);
+  std::string included_file();
+  void read_included(const std::string& file);
+  std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
+  void collect_attribute(const std::shared_ptr<Parameter>& parameter) { all_attributes_.push_back(parameter); }
+
+  // At the end
+  void finish_attributes();
+  void resolve_materials();
+  void resolve_instances();
+  void present();
+
+  std::string main_file_;
+  const ImageReader& images_;
+  Diagnostics diagnostics_;
+  Scene scene_;
+
+  Lexer* lexer_ = nullptr;
+  std::string directive_;
+  SourceLocation where_;
+  std::vector<std::string> open_files_;  // canonical
+  State state_;
+  std::vector<Block> blocks_;
+  bool in_world_ = false, has_camera_ = false, warned_transform_begin_ = false;
+  std::optional<std::uint32_t> option_seed_, sampler_seed_;
+  std::map<std::string, glm::dmat4> coordinate_systems_;
+  std::optional<std::size_t> object_;  // being defined
+  SourceLocation object_where_;
+  std::map<std::string, std::uint32_t> object_names_;
+  std::vector<InstanceUse> instances_;
+  std::vector<MaterialStatement> materials_;
+  std::map<std::string, std::size_t> named_materials_;
+  std::vector<MaterialUse> uses_{1};
+  std::map<std::string, std::uint32_t> uses_by_name_;
+  std::map<std::string, SourceLocation> media_;
+  TextureTable textures_;
+  SharedParameters all_attributes_;
+};
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped; polygons are triangulated as fans.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// Vertices keep their order and are neither merged nor split; faces keep order and winding. `where` is the statement that names
+/// the file. Throws InputError when the file is missing, broken, or does not hold what its header says.
+TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where);
+/// The same from bytes; `file` is the name for messages.
+TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes);
+
+namespace ply {
+
+enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class Encoding { ascii, little, big };
+
+struct Property {
+  std::string name;
+  Type type = Type::float32;
+  bool is_list = false;
+  Type count_type = Type::uint8;
+};
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+struct Header {
+  Encoding encoding = Encoding::ascii;
+  std::vector<Element> elements;
+  std::size_t size = 0;  // bytes, where the body starts
+  int lines = 0;
+  std::size_t vertex = 0, face = 0, indices = 0;  // of the vertex and face elements, and of the face's list of vertices
+};
+
+std::size_t size_of(Type type);
+bool is_float(Type type);
+/// "vertex_indices" and its variants.
+bool is_index_list(const Property& property);
+
+/// Reads and checks the header, the counts against the file's size. Throws InputError.
+Header parse_header(const std::string& file, std::string_view bytes);
+
+/// Walks over the whole body and throws InputError unless every value is there and readable, positions are finite and indices in
+/// range. With `rewritten`, also writes the mesh into it as a little-endian PLY of the plainest form: vertices before faces,
+/// floats x y z nx ny nz u v as far as given, then one list of 32-bit indices a face, nothing else.
+void check_body(const std::string& file, std::string_view bytes, const Header& header, std::string* rewritten);
+
+}  // namespace ply
+
+}  // namespace caplet

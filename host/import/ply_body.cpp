@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Walks over the body of a PLY file, because assimp reads on beyond the end of truncated ones.
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "import/ply.h"
+
+namespace caplet::ply {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the rewritten body is written in the host's byte order");
+
+/// One value after the other, from text or bytes.
+class Values {
+ public:
+  Values(const std::string& file, std::string_view bytes, const Header& header)
+      : file_(file), bytes_(bytes), at_(header.size), line_(header.lines + 1), encoding_(header.encoding) {}
+
+  double number(Type type) {
+    if (encoding_ == Encoding::ascii) return is_float(type) ? ascii_float() : static_cast<double>(ascii_integer(type));
+    switch (type) {
+      case Type::int8:
+        return binary<std::int8_t>();
+      case Type::uint8:
+        return binary<std::uint8_t>();
+      case Type::int16:
+        return binary<std::int16_t>();
+      case Type::uint16:
+        return binary<std::uint16_t>();
+      case Type::int32:
+        return binary<std::int32_t>();
+      case Type::uint32:
+        return binary<std::uint32_t>();
+      case Type::float32:
+        return static_cast<double>(binary<float>());
+      default:
+        return binary<double>();
+    }
+  }
+
+  /// Skips `count` values of a binary file at once; false for ascii.
+  bool skip(Type type, std::uint64_t count) {
+    if (encoding_ == Encoding::ascii) return false;
+    if (count > (bytes_.size() - at_) / size_of(type)) truncated();
+    at_ += count * size_of(type);
+    return true;
+  }
+
+  bool fits(std::uint64_t count, Type type) const {
+    return count <= (bytes_.size() - at_ + 1) / (encoding_ == Encoding::ascii ? 2 : size_of(type));
+  }
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError(SourceLocation{file_, encoding_ == Encoding::ascii ? line_ : 0}, message);
+  }
+  [[noreturn]] void truncated() const { fail("the PLY file is truncated: it ends before all that its header promises"); }
+
+ private:
+  template <class T>
+  T binary() {
+    if (bytes_.size() - at_ < sizeof(T)) truncated();
+    std::array<char, sizeof(T)> raw;
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[encoding_ == Encoding::little ? i : sizeof(T) - 1 - i] = bytes_[at_ + i];
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, raw.data(), sizeof(T));
+    return value;
+  }
+
+  std::string_view token() {
+    constexpr std::string_view blanks = " \t\r\n";
+    while (at_ < bytes_.size() && blanks.find(bytes_[at_]) != std::string_view::npos)
+      if (bytes_[at_++] == '\n') ++line_;
+    if (at_ == bytes_.size()) truncated();
+    const std::size_t end = std::min(bytes_.find_first_of(blanks, at_), bytes_.size());
+    std::string_view out = bytes_.substr(at_, end - at_);
+    at_ = end;
+    if (out.size() > 1 && out[0] == '+' && out[1] != '-') out.remove_prefix(1);
+    return out;
+  }
+
+  [[noreturn]] void bad(std::string_view word, const char* what) const {
+    std::string shown;
+    for (char c : word.substr(0, 40)) shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+    fail("\"" + shown + "\" is no " + what);
+  }
+
+  double ascii_float() {
+    const std::string_view word = token();
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error == std::errc::invalid_argument || end != word.data() + word.size()) bad(word, "number");
+    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
+    return value;
+  }
+
+  std::int64_t ascii_integer(Type type) {
+    const std::string_view word = token();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const std::size_t bits = size_of(type) * 8;
+    const bool is_signed = type == Type::int8 || type == Type::int16 || type == Type::int32;
+    const std::int64_t low = is_signed ? -(std::int64_t{1} << (bits - 1)) : 0;
+    const std::int64_t high = (std::int64_t{1} << (is_signed ? bits - 1 : bits)) - 1;
+    if (error != std::errc() || end != word.data() + word.size() || value < low || value > high)
+      bad(word, "integer of the declared type");
+    return value;
+  }
+
+  const std::string& file_;
+  std::string_view bytes_;
+  std::size_t at_;
+  int line_;
+  Encoding encoding_;
+};
+
+template <class T>
+void append(std::string& out, T value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+/// The plain name of a vertex property that a mesh has a use for; empty otherwise.
+std::string_view plain_name(std::string_view name) {
+  for (std::string_view same : {"x", "y", "z", "nx", "ny", "nz", "u", "v"})
+    if (name == same) return same;
+  if (name == "s" || name == "texture_u" || name == "texture_s") return "u";
+  if (name == "t" || name == "texture_v" || name == "texture_t") return "v";
+  return {};
+}
+
+class Walk {
+ public:
+  Walk(const std::string& file, std::string_view bytes, const Header& header, bool rewrites)
+      : header_(header), values_(file, bytes, header), rewrites_(rewrites) {}
+
+  void run() {
+    for (std::size_t e = 0; e < header_.elements.size(); ++e)
+      for (std::uint64_t i = 0; i < header_.elements[e].count; ++i)
+        if (e == header_.vertex)
+          vertex(header_.elements[e]);
+        else
+          for (std::size_t p = 0; p < header_.elements[e].properties.size(); ++p)
+            property(header_.elements[e].properties[p], e == header_.face && p == header_.indices);
+  }
+
+  std::string rewritten() const {
+    std::string out =
+        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(header_.elements[header_.vertex].count) + "\n";
+    for (const Property& property : header_.elements[header_.vertex].properties)
+      if (const std::string_view name = plain_name(property.name); !name.empty() && !property.is_list)
+        out += "property float " + std::string(name) + "\n";
+    out += "element face " + std::to_string(header_.elements[header_.face].count) +
+           "\nproperty list uint uint vertex_indices\nend_header\n";
+    return out + vertices_ + faces_;
+  }
+
+ private:
+  void vertex(const Element& element) {
+    for (const Property& p : element.properties) {
+      const std::string_view name = p.is_list ? std::string_view() : plain_name(p.name);
+      if (name.empty()) {
+        property(p, false);
+        continue;
+      }
+      const double value = values_.number(p.type);
+      const bool is_position = name == "x" || name == "y" || name == "z";
+      if (is_position && !(std::abs(value) <= 3.4028234663852886e38))
+        values_.fail("a vertex position is not finite (\"" + p.name + "\")");
+      if (rewrites_) append(vertices_, static_cast<float>(value));
+    }
+  }
+
+  void property(const Property& p, bool is_indices) {
+    if (!p.is_list) {
+      if (!values_.skip(p.type, 1)) values_.number(p.type);
+      return;
+    }
+    const double given = values_.number(p.count_type);
+    if (given < 0) values_.fail("a PLY list has a negative length");
+    const auto length = static_cast<std::uint64_t>(given);
+    if (!values_.fits(length, p.type)) values_.truncated();
+    if (!is_indices && values_.skip(p.type, length)) return;
+    if (is_indices && rewrites_) append(faces_, static_cast<std::uint32_t>(length));
+    for (std::uint64_t i = 0; i < length; ++i) {
+      const double value = values_.number(p.type);
+      if (!is_indices) continue;
+      if (value < 0 || value >= static_cast<double>(header_.elements[header_.vertex].count))
+        values_.fail("a PLY face has the vertex index " + std::to_string(static_cast<std::int64_t>(value)) + ", but there are " +
+                     std::to_string(header_.elements[header_.vertex].count) + " vertices");
+      if (rewrites_) append(faces_, static_cast<std::uint32_t>(value));
+    }
+  }
+
+  const Header& header_;
+  Values values_;
+  bool rewrites_;
+  std::string vertices_, faces_;
+};
+
+}  // namespace
+
+void check_body(const std::string& file, std::string_view bytes, const Header& header, std::string* rewritten) {
+  Walk walk(file, bytes, header, rewritten != nullptr);
+  walk.run();
+  if (rewritten) *rewritten = walk.rewritten();
+}
+
+}  // namespace caplet::ply
