@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Runs the light kernels over a lowered scene, and points on the surface of a light by the test's own parametrisation.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "lower/lower.h"
+#include "scene/scene.h"
+
+namespace caplet::test {
+
+/// What light_sample returned; `pdf` 0: nothing. `occluded`: something of the scene lies between p and the target.
+struct SampledLight {
+  glm::dvec3 wi{0}, target{0};
+  double pdf = 0, radiance = 0;
+  bool infinite = false, delta = false, occluded = false;
+};
+
+/// A point of a light's surface with its share of the area (world).
+struct SurfacePoint {
+  glm::dvec3 p, n;  // n unit; outward of solids, emitting side of open shapes
+  double area;
+};
+
+/// The device, its buffers for one scene, and the kernels.
+class LightBench {
+ public:
+  explicit LightBench(const FlatScene& scene);
+
+  /// light_sample at p with `count` independent uniform random numbers (fixed seed), at wavelengths 450 to 600 nm; the radiance
+  /// is that at the first.
+  std::vector<SampledLight> sample(const glm::dvec3& p, std::size_t count);
+  /// light_area_pdf of light `light` at p for the directions to `points`.
+  std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points);
+  /// Radiance of the sky, and its sampling density times the chance of selection, for unit directions.
+  std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions);
+  /// How often light_select chose each light, over `count` equally spaced numbers.
+  std::vector<double> selections(std::size_t count);
+
+ private:
+  void bind_scene(cl::Kernel& kernel);
+  const FlatScene& scene_;
+  Device device_;
+  std::vector<RawBuffer> scene_buffers_;
+};
+
+/// `n` x 2n points a smooth part of the shape's surface, by the midpoint rule in its own coordinates; areas from the derivatives
+/// of the transformed parametrisation, taken by differences.
+std::vector<SurfacePoint> surface_points(const Shape& shape, int n);
+
+}  // namespace caplet::test
