@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The probe's kernels and their host side.
+#include "probe.h"
+
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <limits>
+
+#include "shared/kinds.h"
+
+namespace caplet::test {
+
+namespace {
+
+const char* const kernel_text = R"(
+#include "trace/trace.cl"
+#include "shapes/surface.cl"
+
+typedef struct {
+  float p[3], error, ng[3], u, ns[3], v, dpdu[3], pad;
+  uint geometry, primitive, surface, light, leaving, any, pad0, pad1;
+} SurfaceOut;
+
+__kernel void probe_trace(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                          __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
+                          __global const uint* mesh_indices, __global const float* mesh_uvs, __global const uint* roots,
+                          __global const RayRecord* rays, __global HitRecord* hits, __global SurfaceOut* surfaces, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  Globals g;
+  g.nodes = nodes;
+  g.leaves = leaves;
+  g.instances = instances;
+  g.geometries = geometries;
+  g.primitive_geometry = primitive_geometry;
+  g.mesh_indices = mesh_indices;
+  g.mesh_uvs = mesh_uvs;
+  g.mesh_normals = mesh_uvs;
+  const RayRecord ray = rays[i];
+  const HitRecord hit = trace_closest(nodes, leaves, instances, roots[i], ray);
+  hits[i] = hit;
+  surfaces[i].any = trace_any(nodes, leaves, instances, roots[i], ray);
+  if (hit.slot == CAPLET_NONE) return;
+  const Surface s = surface_at(&g, &ray, &hit);
+  vstore3(s.p, 0, surfaces[i].p);
+  vstore3(s.ng, 0, surfaces[i].ng);
+  vstore3(s.ns, 0, surfaces[i].ns);
+  vstore3(s.dpdu, 0, surfaces[i].dpdu);
+  surfaces[i].error = s.error;
+  surfaces[i].u = s.uv.x;
+  surfaces[i].v = s.uv.y;
+  surfaces[i].geometry = s.geometry;
+  surfaces[i].primitive = s.primitive;
+  surfaces[i].surface = s.surface;
+  surfaces[i].light = s.light;
+  surfaces[i].leaving = (uint)s.leaving;
+}
+
+__kernel void probe_leave(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                          __global const uint* roots, __global const SurfaceOut* surfaces, __global const float* directions,
+                          __global float* origins, __global HitRecord* hits, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  const float3 d = vload3(i, directions);
+  const float3 o = offset_origin(vload3(0, surfaces[i].p), vload3(0, surfaces[i].ng), surfaces[i].error, d);
+  vstore3(o, i, origins);
+  RayRecord ray;
+  ray.ox = o.x;
+  ray.oy = o.y;
+  ray.oz = o.z;
+  ray.t_min = 0.0f;
+  ray.dx = d.x;
+  ray.dy = d.y;
+  ray.dz = d.z;
+  ray.t_max = INFINITY;
+  hits[i] = trace_closest(nodes, leaves, instances, roots[i], ray);
+}
+)";
+
+constexpr std::size_t local_size = 16;
+
+std::vector<PlacedPrimitive> unplaced(const std::vector<FlatPrimitive>& primitives) {
+  std::vector<PlacedPrimitive> out;
+  for (const FlatPrimitive& p : primitives) out.push_back({p, false, {}, {}});
+  return out;
+}
+
+template <class T>
+Buffer<T> upload(const Device& device, const std::vector<T>& values) {
+  return Buffer<T>(device, std::span<const T>(values));
+}
+
+glm::dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
+
+FlatPrimitive make(int shape, std::initializer_list<float> values) {
+  FlatPrimitive p{static_cast<std::uint32_t>(shape), 0, {}};
+  std::copy(values.begin(), values.end(), p.data);
+  return p;
+}
+
+}  // namespace
+
+reference::Primitive witness_of(const FlatPrimitive& p) {
+  const float* d = p.data;
+  switch (p.shape) {
+    case shape_sphere:
+      return reference::Sphere{point(d), d[3]};
+    case shape_capsule:
+      return reference::Capsule{point(d), point(d + 3), d[6], d[6]};
+    case shape_tapered_capsule:
+      return reference::Capsule{point(d), point(d + 3), d[6], d[7]};
+    case shape_triangle:
+      return reference::Triangle{point(d), point(d + 3), point(d + 6)};
+    default:
+      return reference::Disk{point(d), point(d + 3), d[6]};
+  }
+}
+
+FlatPrimitive make_sphere(std::array<float, 3> c, float r) { return make(shape_sphere, {c[0], c[1], c[2], r}); }
+FlatPrimitive make_capsule(std::array<float, 3> p0, std::array<float, 3> p1, float r) {
+  return make(shape_capsule, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r});
+}
+FlatPrimitive make_tapered(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1) {
+  return make(shape_tapered_capsule, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r0, r1});
+}
+FlatPrimitive make_triangle(std::array<float, 3> v0, std::array<float, 3> v1, std::array<float, 3> v2) {
+  return make(shape_triangle, {v0[0], v0[1], v0[2], v1[0], v1[1], v1[2], v2[0], v2[1], v2[2]});
+}
+FlatPrimitive make_disk(std::array<float, 3> c, std::array<float, 3> n, float r) {
+  return make(shape_disk, {c[0], c[1], c[2], n[0], n[1], n[2], r});
+}
+
+Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& primitives)
+    : Probe(device, width, unplaced(primitives)) {}
+
+Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives) : device_(device) {
+  const Program program =
+      Program::from_source(device, "shape probe", flatten_kernels(kernel_text), "-DCAPLET_REAL_WIDTH=" + std::to_string(width));
+  trace_ = program.kernel("probe_trace");
+  leave_ = program.kernel("probe_leave");
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const PlacedPrimitive& placed = primitives[i];
+    FlatPrimitive p = placed.primitive;
+    p.id = i;
+    GeometryRecord geometry{};
+    geometry.shape = p.shape;
+    geometry.primitive_begin = i;
+    geometry.light_offset = placed.placed ? 3 : i % 2 == 0 ? CAPLET_NONE : i;
+    geometry.index_begin = 3 * i;
+    geometry.normal_begin = geometry.uv_begin = CAPLET_NONE;
+    geometries_.push_back(geometry);
+    primitive_geometry_.push_back(i);
+    for (std::uint32_t k = 0; k < 3; ++k) mesh_indices_.push_back(3 * i + k);
+    trees_.push_back(encode_tree(std::span(&p, 1), nodes_, leaves_));
+    if (placed.placed) {
+      InstanceRecord instance{};
+      std::copy(placed.object_from_world.begin(), placed.object_from_world.end(), instance.object_from_world);
+      std::copy(placed.world_from_object.begin(), placed.world_from_object.end(), instance.world_from_object);
+      instance.root = trees_.back().root;
+      instance.light_base = i % 2 == 0 ? CAPLET_NONE : 100 + i;
+      instances_.push_back(instance);
+      // A box that holds everything: what is tested is the primitive.
+      constexpr float far = 1e30f;
+      const FlatPrimitive top{
+          shape_instance, static_cast<std::uint32_t>(instances_.size() - 1), {-far, -far, -far, far, far, far}};
+      trees_.back() = encode_tree(std::span(&top, 1), nodes_, leaves_);
+    }
+    roots_.push_back(trees_.back().root);
+  }
+}
+
+std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const std::vector<RayRecord>& rays) const {
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t i : which) roots.push_back(roots_[i]);
+  std::vector<GeometryRecord> geometries = geometries_;
+  if (!mesh_uvs.empty())
+    for (GeometryRecord& geometry : geometries) geometry.uv_begin = 0;
+  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
+  const auto instances = upload(device_, instances_);
+  const auto geometry_buffer = upload(device_, geometries);
+  const auto primitive_geometry = upload(device_, primitive_geometry_), indices = upload(device_, mesh_indices_),
+             root_buffer = upload(device_, roots);
+  const auto ray_buffer = upload(device_, rays);
+  const Buffer<HitRecord> hits(device_, rays.size());
+  const Buffer<SurfaceOut> surfaces(device_, rays.size());
+  cl::Kernel kernel = trace_;
+  set_arguments(device_, kernel, nodes, leaves, instances, geometry_buffer, primitive_geometry, indices, uvs, root_buffer,
+                ray_buffer, hits, surfaces, static_cast<cl_uint>(rays.size()));
+  launch(device_, kernel, rays.size(), local_size);
+  const std::vector<HitRecord> hit_records = hits.read();
+  const std::vector<SurfaceOut> surface_records = surfaces.read();
+  std::vector<Probed> out;
+  for (std::size_t i = 0; i < rays.size(); ++i) out.push_back({hit_records[i], surface_records[i], surface_records[i].any != 0});
+  return out;
+}
+
+std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const std::vector<Probed>& from,
+                               const std::vector<std::array<float, 3>>& directions) const {
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t i : which) roots.push_back(roots_[i]);
+  std::vector<SurfaceOut> surfaces;
+  for (const Probed& probed : from) surfaces.push_back(probed.surface);
+  std::vector<float> flat;
+  for (const auto& d : directions) flat.insert(flat.end(), d.begin(), d.end());
+  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_), direction_buffer = upload(device_, flat);
+  const auto instances = upload(device_, instances_);
+  const auto root_buffer = upload(device_, roots);
+  const auto surface_buffer = upload(device_, surfaces);
+  const Buffer<float> origins(device_, 3 * from.size());
+  const Buffer<HitRecord> hits(device_, from.size());
+  cl::Kernel kernel = leave_;
+  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, surface_buffer, direction_buffer, origins, hits,
+                static_cast<cl_uint>(from.size()));
+  launch(device_, kernel, from.size(), local_size);
+  const std::vector<float> origin_values = origins.read();
+  const std::vector<HitRecord> hit_records = hits.read();
+  std::vector<Left> out;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    out.push_back({{origin_values[3 * i], origin_values[3 * i + 1], origin_values[3 * i + 2]}, hit_records[i]});
+  return out;
+}
+
+RayRecord make_ray(const glm::dvec3& o, const glm::dvec3& d) {
+  return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,
+          static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
+}
+
+reference::Ray witness_ray(const RayRecord& r) { return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max}; }
+
+}  // namespace caplet::test
