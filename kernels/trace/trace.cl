@@ -113,7 +113,7 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
   hit.surface = 0;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
   const float dd = dot(world_d, world_d), oo = fabs(ray.ox) + fabs(ray.oy) + fabs(ray.oz);
-  if (!(dd > 0.0f && dd < INFINITY && oo < INFINITY)) return hit;
+  if (!(dd > 0.0f && dd < INFINITY && oo < INFINITY && ray.t_min < ray.t_max)) return hit;
   const float t_min = fmax(ray.t_min, 0.0f);
   float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
   if (!(t_min < t_best)) return hit;

@@ -43,7 +43,7 @@ Hull hull(const FlatPrimitive& p) {
 double hull_distance(const Hull& h, const Vec& x) {
   const Vec axis = sub(h.c1, h.c0), w = sub(x, h.c0);
   const double l = length(axis);
-  double s = 0;
+  double s = h.r1 > h.r0 ? 1 : 0;  // no axis: the larger sphere
   if (l > 0) {
     const double along = dot(w, axis) / l;
     const Vec across = {w[0] - along * axis[0] / l, w[1] - along * axis[1] / l, w[2] - along * axis[2] / l};
