@@ -239,7 +239,8 @@ void frame_camera(Scene& scene) {
 void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
-  light.image = std::make_shared<const EnvironmentImage>(studio());
+  static const auto image = std::make_shared<const EnvironmentImage>(studio());
+  light.image = image;
   const glm::dmat3 camera(scene.camera.world_from_camera);
   light.world_from_light = glm::dmat3(-camera[2], camera[0], camera[1]);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
