@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// PLY in all its encodings, and broken.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "import/ply.h"
+#include "import_text.h"
+
+namespace caplet::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Appends values to a PLY body in one of the three encodings.
+class Writer {
+ public:
+  explicit Writer(std::string encoding) : encoding_(std::move(encoding)) { head_ = "ply\nformat " + encoding_ + " 1.0\n"; }
+  Writer& header(const std::string& lines) {
+    head_ += lines;
+    return *this;
+  }
+  template <class T>
+  Writer& value(T value) {
+    if (encoding_ == "ascii") {
+      std::ostringstream text;
+      text.precision(17);
+      text << +value << ' ';
+      body_ += text.str();
+      return *this;
+    }
+    std::string raw(reinterpret_cast<const char*>(&value), sizeof(value));
+    if (encoding_ == "binary_big_endian") std::reverse(raw.begin(), raw.end());
+    body_ += raw;
+    return *this;
+  }
+  Writer& line() {
+    if (encoding_ == "ascii") body_ += "\n";
+    return *this;
+  }
+  std::string bytes() const { return head_ + "end_header\n" + body_; }
+
+ private:
+  std::string encoding_, head_, body_;
+};
+
+constexpr const char* xyz = "property float x\nproperty float y\nproperty float z\n";
+
+class PlyEncodings : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlyEncodings, PolygonsExtrasNormalsAndUvs) {
+  Writer ply(GetParam());
+  ply.header("comment a square and a triangle\nelement vertex 5\n")
+      .header("property double x\nproperty double y\nproperty double z\nproperty uchar red\n")
+      .header("property float nx\nproperty float ny\nproperty float nz\nproperty float confidence\n")
+      .header("property float s\nproperty float t\nelement face 2\nproperty list uint ushort vertex_index\n");
+  for (int i = 0; i < 5; ++i) {
+    ply.value(0.1 * i).value(1.0 + i).value(-0.5 * i).value(static_cast<std::uint8_t>(200));
+    ply.value(0.f).value(0.f).value(1.f).value(0.25f).value(static_cast<float>(i) / 8).value(0.5f).line();
+  }
+  ply.value(std::uint32_t{4});
+  for (std::uint16_t k : {0, 1, 2, 3}) ply.value(k);
+  ply.line().value(std::uint32_t{3});
+  for (std::uint16_t k : {4, 2, 0}) ply.value(k);
+  const TriangleMeshShape mesh = parse_ply("test.ply", ply.line().bytes());
+  ASSERT_EQ(mesh.positions.size(), 5u);
+  for (int i = 0; i < 5; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(mesh.positions[at],
+              glm::vec3(static_cast<float>(0.1 * i), static_cast<float>(1.0 + i), static_cast<float>(-0.5 * i)));
+    EXPECT_EQ(mesh.normals[at], glm::vec3(0, 0, 1));
+    EXPECT_EQ(mesh.uvs[at], glm::vec2(static_cast<float>(i) / 8, 0.5f));
+  }
+  using T = std::array<std::uint32_t, 3>;
+  EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{0, 1, 2}, T{0, 2, 3}, T{4, 2, 0}));
+}
+
+TEST_P(PlyEncodings, OtherElementsAndFacesFirst) {
+  Writer ply(GetParam());
+  ply.header("element edge 2\nproperty int a\nproperty list uchar float b\nelement face 1\n")
+      .header("property uchar flags\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n")
+      .header(std::string("element vertex 3\n") + xyz);
+  ply.value(7).value(std::uint8_t{0}).line().value(8).value(std::uint8_t{2}).value(1.f).value(2.f).line();
+  ply.value(std::uint8_t{1}).value(std::uint8_t{3}).value(2).value(1).value(0);
+  ply.value(std::uint8_t{2}).value(0.f).value(0.f).line();
+  for (float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 9.876543e-5f}) ply.value(v);
+  const TriangleMeshShape mesh = parse_ply("test.ply", ply.line().bytes());
+  using T = std::array<std::uint32_t, 3>;
+  EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{2, 1, 0}));
+  EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 9.876543e-5f)));
+}
+
+TEST_P(PlyEncodings, TruncationAtEveryByte) {
+  Writer ply(GetParam());
+  ply.header(std::string("element vertex 3\n") + xyz + "element face 2\nproperty list uchar int vertex_indices\n");
+  for (float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) ply.value(v);
+  for (int face = 0; face < 2; ++face) ply.line().value(std::uint8_t{3}).value(0).value(1).value(2);
+  const std::string whole = ply.bytes();
+  EXPECT_EQ(parse_ply("test.ply", whole).triangles.size(), 2u);
+  // The last byte of the ascii form is a blank, and the one before it a whole digit.
+  const std::size_t last = whole.size() - (std::string(GetParam()) == "ascii" ? 2 : 1);
+  for (std::size_t size = 0; size <= last; ++size)
+    EXPECT_THROW(parse_ply("test.ply", whole.substr(0, size)), InputError) << size << " bytes of " << whole.size();
+}
+
+INSTANTIATE_TEST_SUITE_P(Import, PlyEncodings, testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
+
+TEST(Ply, CarriageReturnsAndGzip) {
+  const std::string text =
+      "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
+      "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n";
+  const fs::path path = temporary_folder() / "mesh.ply.gz";
+  const gzFile file = gzopen(path.c_str(), "wb");
+  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(file);
+  EXPECT_EQ(read_ply(path, {}).triangles.size(), 1u);
+}
+
+TEST(Ply, BrokenFiles) {
+  const std::string vertex = std::string("element vertex 3\n") + xyz;
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string ascii = "ply\nformat ascii 1.0\n", points = "0 0 0\n1 0 0\n0 1 0\n";
+  const auto complaint = [](const std::string& bytes) { return complaint_of([&] { parse_ply("m.ply", bytes); }); };
+  EXPECT_EQ(complaint("solid"), "m.ply:1: this is no PLY file (it does not start with \"ply\")");
+  EXPECT_EQ(complaint(ascii + "element vertex 3\n"), "m.ply:4: the PLY header does not end (no end_header)");
+  EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 3\n"),
+            "m.ply:12: a PLY face has the vertex index 3, but there are 3 vertices");
+  EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 -1\n"),
+            "m.ply:12: a PLY face has the vertex index -1, but there are 3 vertices");
+  EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
+            "m.ply:10: a vertex position is not finite (\"y\")");
+  EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n"),
+            "m.ply:10: \"zero\" is no number");
+  EXPECT_EQ(complaint(ascii + "element vertex 4000000000\n" + xyz + face + "end_header\n" + points),
+            "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more than fit into its 185 bytes");
+  EXPECT_EQ(complaint(ascii + vertex + "end_header\n" + points), "m.ply: the PLY file has no face");
+  EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"), "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
+}
+
+TEST(Ply, IgnisMeshesHaveTheirCounts) {
+  CAPLET_NEEDS_DATA();
+  struct Row {
+    const char* name;
+    std::size_t vertices, polygons;
+  };
+  const fs::path folder = data_folder() / "reference" / "ignis" / "evaluation" / "meshes";
+  for (const Row& row : {Row{"Back", 4, 2},
+                         {"Bottom", 4, 2},
+                         {"Cone", 65, 33},
+                         {"Cube", 24, 6},
+                         {"Cylinder", 130, 124},
+                         {"GroundPlane", 4, 1},
+                         {"IcosphereHQ", 1859, 960},
+                         {"Plane.001", 4, 2},
+                         {"Plane", 4, 1},
+                         {"Suzanne", 3043, 1968}}) {
+    const fs::path path = folder / (std::string(row.name) + ".ply");
+    const TriangleMeshShape mesh = read_ply(path, {});
+    EXPECT_EQ(mesh.positions.size(), row.vertices) << row.name;
+    EXPECT_GE(mesh.triangles.size(), row.polygons) << row.name;
+  }
+  EXPECT_EQ(read_ply(folder / "Cube.ply", {}).triangles.size(), 12u);
+  EXPECT_EQ(read_ply(folder / "Back.ply", {}).triangles.size(), 2u);
+}
+
+}  // namespace
+}  // namespace caplet::test
