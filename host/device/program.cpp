@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "base/check.h"
 #include "base/log.h"
 #include "device/cache.h"
 #include "device/cl_error.h"
@@ -18,7 +19,7 @@ using Binary = std::vector<unsigned char>;
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double noticeable_seconds = 0.3;
+constexpr double noticeable_seconds = 0.5;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -144,6 +145,7 @@ void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint inde
 
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local) {
   if (count == 0) return;
+  CHECK_LT_(std::size_t{0}, local);
   const std::string& device_name = device.info().name;
   const std::string name = cl_call("a kernel's name", device_name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
   const std::size_t global = (count + local - 1) / local * local;

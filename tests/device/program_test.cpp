@@ -69,6 +69,11 @@ TEST_F(ProgramTest, LaunchesRoundUpAndKernelsCheckTheirIndex) {
   EXPECT_EQ(run(device_, program, 0, 2, 4), (std::vector<cl_uint>{0, 0}));
 }
 
+TEST_F(ProgramTest, AGroupOfNothingIsRefused) {
+  cl::Kernel kernel = build().kernel("count_up");
+  EXPECT_THROW(launch(device_, kernel, 1, 0), std::logic_error);
+}
+
 TEST_F(ProgramTest, OptionsAreDefinitions) { EXPECT_EQ(run(device_, build("-DSTEP=7"), 1, 1, 1), std::vector<cl_uint>{7}); }
 
 TEST_F(ProgramTest, PrepareChangesNothing) {
