@@ -49,9 +49,18 @@ Response make_response(ColorSpace space, int step) {
       for (int row = 0; row < 3; ++row) rgb[row] += m[3 * static_cast<std::size_t>(row) + c] * observer[c][at] * light[at] * end;
     total += rgb;
     const auto node = static_cast<std::size_t>(i / step);
-    const double fraction = static_cast<double>(i % step) / step;
-    out.weight[node] += (1 - fraction) * rgb;
-    if (fraction > 0) out.weight[node + 1] += fraction * rgb;
+    const double f = static_cast<double>(i % step) / step;
+    if (f == 0) {
+      out.weight[node] += rgb;
+    } else if (node == 0 || node + 2 >= out.t.size()) {
+      out.weight[node] += (1 - f) * rgb;
+      out.weight[node + 1] += f * rgb;
+    } else {
+      out.weight[node - 1] += -f * (f - 1) * (f - 2) / 6 * rgb;
+      out.weight[node] += (f + 1) * (f - 1) * (f - 2) / 2 * rgb;
+      out.weight[node + 1] += -(f + 1) * f * (f - 2) / 2 * rgb;
+      out.weight[node + 2] += (f + 1) * f * (f - 1) / 6 * rgb;
+    }
   }
   for (glm::dvec3& weight : out.weight) weight /= total;
   return out;

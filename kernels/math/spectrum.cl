@@ -93,9 +93,9 @@ static inline float3 xyz_from_spectrum(const Globals* g, float4 radiance, float4
 // Linear sRGB from XYZ: primaries of IEC 61966-2-1 with the white of the tabulated D65 (host: rgb_from_xyz, a test compares
 // them).
 static inline float3 rgb_from_xyz(float3 xyz) {
-  return (float3)(dot((float3)(3.24044507f, -1.53713420f, -0.49853001f), xyz),
-                  dot((float3)(-0.96926654f, 1.87601184f, 0.04155604f), xyz),
-                  dot((float3)(0.05564360f, -0.20402653f, 1.05722837f), xyz));
+  return (float3)(dot((float3)(3.24042342f, -1.53712393f, -0.49852668f), xyz),
+                  dot((float3)(-0.96926724f, 1.87601319f, 0.04155607f), xyz),
+                  dot((float3)(0.05564430f, -0.20402909f, 1.05724167f), xyz));
 }
 
 #endif
