@@ -22,6 +22,7 @@ typedef struct {
 typedef struct {
   float3 e, f;
   float a, rho;
+  float height, angle;     // of q over the axis, for sampling by angle, and the angle that z0 .. z1 fill
   float cone, cap0, cap1;  // probabilities; all 0: nothing faces q
   float low0, high0, low1, high1;
   int inside;
@@ -118,6 +119,10 @@ static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
   v.low1 = k->s;
   v.high1 = k->single ? k->s : 1.0f;
   v.cone = 0.0f;
+  // Any height is right as long as it is one and the same; near the axis, where rho is of no use, a small one.
+  const float extent = k->z1 - k->z0;
+  v.height = fmax(v.rho, 1e-4f * extent);
+  v.angle = atan2(v.height * extent, sqr(v.height) + (k->z0 - v.a) * (k->z1 - v.a));
   if (v.inside) {
     // All of it faces a point within: in proportion to area.
     v.cap0 = k->r0 * k->r0 * (v.high0 - v.low0);
@@ -131,9 +136,10 @@ static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
     v.cap1 = k->single ? 0.0f : sqr(k->r1 / d1) * (v.high1 - v.low1) * cap_arc(&v, a1, k->r1, 0.5f * (v.low1 + v.high1));
     const float arc = k->single ? 0.0f : cone_arc(k, &v);
     if (arc > 0.0f) {
-      const float near = clamp(v.a, k->z0, k->z1);
-      const float radius = cone_is_long(k, &v) ? cone_radius(k, near) : 0.5f * k->c * (k->r0 + k->r1);
-      v.cone = arc * radius / (k->c * v.rho) * (atan2(k->z1 - v.a, v.rho) - atan2(k->z0 - v.a, v.rho));
+      // Between the radius nearest to q and the mean one: never 0, even at a tip.
+      const float mean = 0.5f * k->c * (k->r0 + k->r1);
+      const float radius = cone_is_long(k, &v) ? 0.5f * (mean + cone_radius(k, clamp(v.a, k->z0, k->z1))) : mean;
+      v.cone = arc * radius * v.angle / (k->c * v.height);
     }
   }
   const float sum = v.cone + v.cap0 + v.cap1;
@@ -147,16 +153,17 @@ static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
 // Density per area at height z of the cone, the part's own chance included.
 static inline float cone_density(const RoundCone* k, const RoundConeView* v, float z) {
   const float arc = cone_arc(k, v), begin = k->c * k->r0, end = k->c * k->r1;
+  if (!(arc > 0.0f)) return 0.0f;
   // Per unit of z and of arc length across: dA = R(z) dpsi dz / c.
   if (!cone_is_long(k, v)) return v->cone * k->c * 2.0f / ((begin + end) * (k->z1 - k->z0) * 2.0f * arc);
-  const float angle = atan2(k->z1 - v->a, v->rho) - atan2(k->z0 - v->a, v->rho);
-  const float per_z = v->rho / (angle * (sqr(v->rho) + sqr(z - v->a)));
+  const float per_z = v->height / (v->angle * (sqr(v->height) + sqr(z - v->a)));
   return v->cone * k->c * per_z / (2.0f * arc * cone_radius(k, z));
 }
 
 static inline float cap_density(const RoundConeView* v, float a, float r, float h, float low, float high, float chance) {
   const float arc = cap_arc(v, a, r, h);
-  return chance / (r * r * (high - low) * 2.0f * arc);
+  // At the very silhouette rounding may leave no arc: such a point is never sampled.
+  return arc > 0.0f && high > low ? chance / (r * r * (high - low) * 2.0f * arc) : 0.0f;
 }
 
 // A point *x and its outward unit normal *n; returns the density per area, 0: nothing.
@@ -165,8 +172,10 @@ static inline float round_cone_sample(const RoundCone* k, const RoundConeView* v
     const float t = u.x / v->cone, arc = cone_arc(k, v);
     float z;
     if (cone_is_long(k, v)) {
-      const float begin = atan2(k->z0 - v->a, v->rho), end = atan2(k->z1 - v->a, v->rho);
-      z = clamp(v->a + v->rho * tan(mix(begin, end, t)), k->z0, k->z1);
+      // height * tan(angle of z0 + t * angle), by the addition theorem: no digits are lost where both are near a right angle.
+      const float begin = k->z0 - v->a, sine = sin(t * v->angle), cosine = cos(t * v->angle);
+      z = v->a + v->height * (begin * cosine + v->height * sine) / (v->height * cosine - begin * sine);
+      z = clamp(z, k->z0, k->z1);
     } else {
       z = mix(k->z0, k->z1, sample_linear(t, k->r0, k->r1));
     }

@@ -204,7 +204,7 @@ std::vector<double> LightBench::selections(std::size_t count) {
   return counts;
 }
 
-std::vector<SurfacePoint> surface_points(const Shape& shape, int n) {
+std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) {
   using Map = std::function<glm::dvec3(double, double)>;  // of [0, 1]^2
   std::vector<Map> parts;
   bool open = false;
@@ -258,19 +258,21 @@ std::vector<SurfacePoint> surface_points(const Shape& shape, int n) {
   const glm::dvec3 world_open_normal = glm::transpose(glm::inverse(glm::dmat3(m))) * open_normal;
   const glm::dvec3 world_center = place(center);
   std::vector<SurfacePoint> points;
+  // Roberts' sequence: the plane's counterpart of the golden ratio's multiples.
+  const double plastic = 1.32471795724474602596;
   for (const Map& part : parts)
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < 2 * n; ++j) {
-        const double u = (i + 0.5) / n, v = (j + 0.5) / (2 * n), h = 1e-5;
-        const glm::dvec3 du = (place(part(u + h, v)) - place(part(u - h, v))) / (2 * h);
-        const glm::dvec3 dv = (place(part(u, v + h)) - place(part(u, v - h))) / (2 * h);
-        const glm::dvec3 across = glm::cross(du, dv);
-        SurfacePoint point{place(part(u, v)), glm::normalize(across), glm::length(across) / (2.0 * n * n)};
-        const glm::dvec3 outward = open ? world_open_normal : point.p - world_center;
-        if (glm::dot(point.n, outward) < 0) point.n = -point.n;
-        if (open && shape.reverse_orientation) point.n = -point.n;
-        points.push_back(point);
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double step = static_cast<double>(i) + 0.5, h = 1e-5;
+      const double u = std::fmod(step / plastic, 1.0), v = std::fmod(step / (plastic * plastic), 1.0);
+      const glm::dvec3 du = (place(part(u + h, v)) - place(part(u - h, v))) / (2 * h);
+      const glm::dvec3 dv = (place(part(u, v + h)) - place(part(u, v - h))) / (2 * h);
+      const glm::dvec3 across = glm::cross(du, dv);
+      SurfacePoint point{place(part(u, v)), glm::normalize(across), glm::length(across) / static_cast<double>(count)};
+      const glm::dvec3 outward = open ? world_open_normal : point.p - world_center;
+      if (glm::dot(point.n, outward) < 0) point.n = -point.n;
+      if (open && shape.reverse_orientation) point.n = -point.n;
+      points.push_back(point);
+    }
   return points;
 }
 

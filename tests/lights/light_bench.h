@@ -51,8 +51,8 @@ class LightBench {
   std::vector<RawBuffer> scene_buffers_;
 };
 
-/// `n` x 2n points a smooth part of the shape's surface, by the midpoint rule in its own coordinates; areas from the derivatives
-/// of the transformed parametrisation, taken by differences.
-std::vector<SurfacePoint> surface_points(const Shape& shape, int n);
+/// `count` points a smooth part of the shape's surface, evenly spread in its own coordinates; areas from the derivatives of the
+/// transformed parametrisation, taken by differences.
+std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count);
 
 }  // namespace caplet::test
