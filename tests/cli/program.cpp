@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "program.h"
+
+#include <fcntl.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#include "support/data.h"
+
+namespace caplet::test {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, const fs::path& folder,
+                                 const std::map<std::string, std::string>& environment) {
+  if (::chdir(folder.c_str()) != 0) ::_exit(126);
+  for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+  std::vector<std::string> owned{CAPLET_PROGRAM};
+  owned.insert(owned.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& argument : owned) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+void redirect(const fs::path& path, int descriptor) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (file < 0 || ::dup2(file, descriptor) < 0) ::_exit(126);
+  ::close(file);
+}
+
+void set_exit(Result& result, int status) {
+  if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+}
+
+Clock::time_point deadline_in(double seconds) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+Running::Running(const std::vector<std::string>& arguments, const fs::path& folder,
+                 const std::map<std::string, std::string>& environment)
+    : streams_(temporary_folder()) {
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("fork failed");
+  if (process_ > 0) return;
+  redirect(streams_ / "out", STDOUT_FILENO);
+  redirect(streams_ / "err", STDERR_FILENO);
+  become_program(arguments, folder, environment);
+}
+
+Running::~Running() {
+  if (!ended()) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, &status_, 0);
+  }
+}
+
+bool Running::ended() {
+  if (!ended_) ended_ = ::waitpid(process_, &status_, WNOHANG) == process_;
+  return ended_;
+}
+
+void Running::send(int signal) const { ::kill(process_, signal); }
+
+bool Running::wait_for_stderr(const std::string& text, double seconds) {
+  const auto deadline = deadline_in(seconds);
+  for (;;) {
+    const bool over = ended() || Clock::now() > deadline;
+    if (read_file(streams_ / "err").find(text) != std::string::npos) return true;
+    if (over) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+Result Running::wait(double seconds) {
+  const auto deadline = deadline_in(seconds);
+  while (!ended()) {
+    if (Clock::now() > deadline) ::kill(process_, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  Result result;
+  set_exit(result, status_);
+  result.out = read_file(streams_ / "out");
+  result.err = read_file(streams_ / "err");
+  return result;
+}
+
+Result run_program(const std::vector<std::string>& arguments, const fs::path& folder,
+                   const std::map<std::string, std::string>& environment) {
+  return Running(arguments, folder, environment).wait();
+}
+
+Result run_on_terminal(const std::vector<std::string>& arguments, const fs::path& folder) {
+  int terminal = -1;
+  winsize size{};
+  size.ws_col = 100;
+  size.ws_row = 30;
+  const pid_t process = ::forkpty(&terminal, nullptr, nullptr, &size);
+  if (process < 0) throw std::runtime_error("forkpty failed");
+  if (process == 0) become_program(arguments, folder, {{"TERM", "xterm"}});
+  Result result;
+  char buffer[4096];
+  for (ssize_t count; (count = ::read(terminal, buffer, sizeof buffer)) > 0;)
+    result.err.append(buffer, static_cast<std::size_t>(count));
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  ::close(terminal);
+  set_exit(result, status);
+  return result;
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+void write_file(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace caplet::test

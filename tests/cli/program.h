@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Runs the built program in a folder of its own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace caplet::test {
+
+struct Result {
+  int code = -1;   // exit code; -1 when a signal ended it
+  int signal = 0;  // that signal
+  std::string out, err;
+};
+
+/// The program at work: its streams go to files beside `folder`, so that the folder shows only what the program makes.
+class Running {
+ public:
+  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+          const std::map<std::string, std::string>& environment = {});
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  void send(int signal) const;
+  /// Waits until stderr holds `text`; false when the program ended or `seconds` passed first.
+  bool wait_for_stderr(const std::string& text, double seconds = 120);
+  /// Waits for the end; kills the program after `seconds`.
+  Result wait(double seconds = 300);
+
+ private:
+  bool ended();
+  pid_t process_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+  std::filesystem::path streams_;
+};
+
+/// Runs to the end.
+Result run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                   const std::map<std::string, std::string>& environment = {});
+
+/// Runs with a terminal as its stderr and stdout; what it printed there.
+Result run_on_terminal(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+
+/// Names in a folder, sorted.
+std::vector<std::string> names_in(const std::filesystem::path& folder);
+
+std::vector<std::string> lines_of(const std::string& text);
+
+void write_file(const std::filesystem::path& path, const std::string& text);
+std::string read_file(const std::filesystem::path& path);
+
+}  // namespace caplet::test
