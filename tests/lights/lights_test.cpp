@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Lights without a shape against closed forms, the image light against its density, and the choice among lights.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "light_bench.h"
+#include "lower/environment.h"
+#include "support/chi_square.h"
+
+namespace caplet::test {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Scene scene_with(const std::vector<Light>& lights) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Shape small;
+  small.geometry = SphereShape{0.01};
+  small.world_from_object[3] = glm::dvec4(0, 0, -50, 1);
+  scene.shapes = {small};
+  scene.lights = lights;
+  return scene;
+}
+
+template <class T>
+Light light_of(const T& model) {
+  Light light;
+  light.model = model;
+  return light;
+}
+
+Light image_light(int width, int height, bool equal_area, const std::vector<float>& rgb) {
+  auto image = std::make_shared<EnvironmentImage>();
+  image->width = width;
+  image->height = height;
+  image->equal_area = equal_area;
+  image->rgb = rgb;
+  InfiniteLight model;
+  model.image = image;
+  return light_of(model);
+}
+
+std::vector<float> uneven_image(int texels) {
+  std::mt19937 engine(5);
+  std::vector<float> rgb;
+  for (int i = 0; i < texels; ++i) {
+    const float grey = std::exp(-static_cast<float>(engine() >> 8) * 0x1p-24f * 6);
+    rgb.insert(rgb.end(), {grey, grey, grey});
+  }
+  return rgb;
+}
+
+/// Directions evenly spread over the sphere.
+std::vector<glm::dvec3> sphere_directions(std::size_t n) {
+  std::vector<glm::dvec3> directions;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n), r = std::sqrt(1 - z * z);
+    const double phi = static_cast<double>(i) * pi * (3 - std::sqrt(5.0));
+    directions.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
+  }
+  return directions;
+}
+
+std::size_t cell_of(const glm::dvec3& d) {
+  const double turn = std::atan2(d.y, d.x) / (2 * pi) + 0.5;
+  return static_cast<std::size_t>(std::min(static_cast<int>((d.z + 1) * 6), 11) * 24 + std::min(static_cast<int>(turn * 24), 23));
+}
+
+class ImageLight : public testing::TestWithParam<bool> {};
+
+}  // namespace
+
+TEST(DeltaLights, PointLightIsIntensityOverSquaredDistance) {
+  PointLight model;
+  model.position = {1, 2, 3};
+  Light light = light_of(model);
+  light.scale = 7;
+  const FlatScene flat = lower(scene_with({light}));
+  for (const SampledLight& s : LightBench(flat).sample({1, 0, 0}, 4)) {
+    EXPECT_NEAR(s.radiance, 7.0 / 13, 1e-6);
+    EXPECT_EQ(s.pdf, 1);
+    EXPECT_TRUE(s.delta);
+    EXPECT_FALSE(s.infinite);
+    EXPECT_FALSE(s.occluded);
+    EXPECT_NEAR(s.wi.z, 3 / std::sqrt(13), 1e-6);
+    EXPECT_EQ(s.target, glm::dvec3(1, 2, 3));
+  }
+}
+
+TEST(DeltaLights, PowerOfAPointLightIsOverTheWholeSphere) {
+  Light light = light_of(PointLight{});
+  light.power = 100;
+  const FlatScene flat = lower(scene_with({light}));
+  EXPECT_NEAR(LightBench(flat).sample({0, 0, 2}, 1)[0].radiance, 100 / (4 * pi) / 4, 1e-4);
+}
+
+TEST(DeltaLights, SpotFallsOffSmoothlyBetweenItsAngles) {
+  SpotLight model;
+  model.direction = {0, 0, 1};
+  model.total_angle = 0.5;
+  model.falloff_start_angle = 0.3;
+  const FlatScene flat = lower(scene_with({light_of(model)}));
+  LightBench bench(flat);
+  const auto at = [&](double angle) { return bench.sample({2 * std::sin(angle), 0, 2 * std::cos(angle)}, 1)[0]; };
+  EXPECT_NEAR(at(0.2).radiance, 0.25, 1e-6);
+  const double t = (std::cos(0.4) - std::cos(0.5)) / (std::cos(0.3) - std::cos(0.5));
+  EXPECT_NEAR(at(0.4).radiance, 0.25 * (3 * t * t - 2 * t * t * t), 1e-5);
+  EXPECT_EQ(at(0.51).pdf, 0);
+}
+
+TEST(DeltaLights, PowerOfASpotIsWhatItsConeCarries) {
+  SpotLight model;
+  model.direction = {0, 0, 1};
+  model.total_angle = 0.5;
+  model.falloff_start_angle = 0.3;
+  Light light = light_of(model);
+  light.power = 10;
+  const FlatScene flat = lower(scene_with({light}));
+  LightBench bench(flat);
+  double carried = 0;
+  constexpr int steps = 400;
+  for (int i = 0; i < steps; ++i) {
+    const double angle = (i + 0.5) * 0.5 / steps;
+    const SampledLight s = bench.sample({std::sin(angle), 0, std::cos(angle)}, 1)[0];
+    carried += (s.pdf > 0 ? s.radiance : 0) * 2 * pi * std::sin(angle) * 0.5 / steps;
+  }
+  EXPECT_NEAR(carried, 10, 1e-3);
+}
+
+TEST(DeltaLights, DistantLightComesAgainstItsDirection) {
+  DistantLight model;
+  model.direction = {0, -0.6, -0.8};
+  Light light = light_of(model);
+  light.illuminance = 3;
+  const FlatScene flat = lower(scene_with({light}));
+  const SampledLight s = LightBench(flat).sample({5, 6, 7}, 1)[0];
+  EXPECT_NEAR(s.radiance, 3, 1e-6);
+  EXPECT_NEAR(glm::length(s.wi - glm::dvec3(0, 0.6, 0.8)), 0, 1e-6);
+  EXPECT_TRUE(s.infinite);
+  EXPECT_TRUE(s.delta);
+}
+
+TEST(ConstantLight, IsNeverSampledAndFoundByEveryRay) {
+  Light light = light_of(InfiniteLight{});
+  light.scale = 2.5;
+  const FlatScene flat = lower(scene_with({light}));
+  EXPECT_EQ(flat.params.sampled_light_count, 0u);
+  LightBench bench(flat);
+  EXPECT_EQ(bench.sample({0, 0, 0}, 1)[0].pdf, 0);
+  for (const glm::dvec2& sky : bench.sky(sphere_directions(10))) {
+    EXPECT_NEAR(sky.x, 2.5, 1e-6);
+    EXPECT_EQ(sky.y, 0);
+  }
+}
+
+TEST_P(ImageLight, SamplesFollowTheDensity) {
+  const int width = GetParam() ? 12 : 16, height = GetParam() ? 12 : 8;
+  Light light = image_light(width, height, GetParam(), uneven_image(width * height));
+  auto& model = std::get<InfiniteLight>(light.model);
+  model.world_from_light = glm::dmat3(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
+  const FlatScene flat = lower(scene_with({light}));
+  LightBench bench(flat);
+  constexpr std::size_t sample_count = 100000, direction_count = 2000000;
+  const std::vector<glm::dvec3> directions = sphere_directions(direction_count);
+  const std::vector<glm::dvec2> sky = bench.sky(directions);
+  std::vector<double> expected(12 * 24, 0), observed(12 * 24, 0);
+  double total = 0, flux = 0;
+  for (std::size_t i = 0; i < direction_count; ++i) {
+    const double share = sky[i].y * 4 * pi / direction_count;
+    total += share;
+    flux += sky[i].x * 4 * pi / direction_count;
+    expected[cell_of(directions[i])] += share * sample_count;
+    if (sky[i].x > 0) {
+      EXPECT_GT(sky[i].y, 0) << "light that is never sampled";
+    }
+  }
+  // The weight that gives the density away is near 1 where it is small: binary32 leaves 1e-3 of it there, both ways.
+  EXPECT_NEAR(total, 1, 1e-3);
+  double estimate = 0, squares = 0;
+  for (const SampledLight& s : bench.sample({0, 0, 0}, sample_count)) {
+    ASSERT_GT(s.pdf, 0);
+    EXPECT_TRUE(s.infinite);
+    EXPECT_FALSE(s.delta);
+    observed[cell_of(s.wi)] += 1;
+    estimate += s.radiance / s.pdf / sample_count;
+    squares += s.radiance / s.pdf * s.radiance / s.pdf / sample_count;
+  }
+  const ChiSquareResult chi = chi_square(observed, expected);
+  EXPECT_GT(chi.p_value, 0.001) << chi.statistic << " / " << chi.degrees_of_freedom;
+  EXPECT_NEAR(estimate, flux, 4 * std::sqrt((squares - estimate * estimate) / sample_count) + 1e-3 * flux);
+}
+
+TEST_P(ImageLight, ConstantImageGivesIrradiancePi) {
+  const int width = 8, height = GetParam() ? 8 : 4;
+  const FlatScene flat = lower(scene_with(
+      {image_light(width, height, GetParam(), std::vector<float>(static_cast<std::size_t>(3 * width * height), 1.f))}));
+  LightBench bench(flat);
+  double sum = 0, squares = 0;
+  constexpr int n = 100000;
+  // White in RGB is the illuminant, not 1 at every wavelength: its own value at the wavelength is the unit.
+  const double unit = bench.sky({{0, 0, 1}})[0].x;
+  for (const SampledLight& s : bench.sample({0, 0, 0}, n)) {
+    const double x = std::max(0.0, s.wi.z) * s.radiance / s.pdf / unit;
+    sum += x / n;
+    squares += x * x / n;
+  }
+  EXPECT_NEAR(sum, pi, 3 * std::sqrt((squares - sum * sum) / n));
+}
+
+TEST_P(ImageLight, ABrightTexelIsWhereTheLayoutSays) {
+  const bool square = GetParam();
+  const int width = square ? 16 : 32, height = 16;
+  struct Place {
+    int x, y;
+    glm::dvec3 direction;
+  };
+  // Latitude-longitude: (sin t cos p, sin t sin p, cos t), p = 2 pi u, t = pi v. Square: the middle is +z, the corners -z, the
+  // middles of the right and the bottom edge +x and +y.
+  const double t = 2.5 / 16 * pi, p = 10.5 / 32 * 2 * pi;
+  const std::vector<Place> places =
+      square ? std::vector<Place>{{7, 7, {-0.1, -0.1, 1}}, {15, 8, {1, 0.1, 0}}, {8, 15, {0.1, 1, 0}}, {15, 15, {0.1, 0.1, -1}}}
+             : std::vector<Place>{{10, 2, {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)}},
+                                  {0, 8, {1, 0.1, -0.1}},
+                                  {8, 7, {-0.1, 1, 0.1}},
+                                  {3, 0, {0.05, 0.05, 1}}};
+  for (const Place& place : places) {
+    std::vector<float> rgb(static_cast<std::size_t>(3 * width * height), 0.f);
+    for (std::size_t k = 0; k < 3; ++k) rgb[static_cast<std::size_t>(3 * (place.y * width + place.x)) + k] = 1;
+    const FlatScene flat = lower(scene_with({image_light(width, height, square, rgb)}));
+    glm::dvec3 mean(0);
+    for (const SampledLight& s : LightBench(flat).sample({0, 0, 0}, 2000)) mean += s.wi * s.radiance / s.pdf;
+    // A texel and its bilinear surroundings are at most 0.3 rad wide.
+    EXPECT_GT(glm::dot(glm::normalize(mean), glm::normalize(place.direction)), std::cos(0.15)) << place.x << ' ' << place.y;
+  }
+}
+
+TEST_P(ImageLight, IlluminanceReplacesTheMagnitude) {
+  const int width = 16, height = GetParam() ? 16 : 8;
+  Light light = image_light(width, height, GetParam(), uneven_image(width * height));
+  light.illuminance = 5;
+  const FlatScene flat = lower(scene_with({light}));
+  LightBench bench(flat);
+  const std::vector<glm::dvec3> directions = sphere_directions(100000);
+  const std::vector<glm::dvec2> sky = bench.sky(directions);
+  const FlatScene white = lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))}));
+  const double unit = LightBench(white).sky({{0, 0, 1}})[0].x;
+  double e = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) e += sky[i].x / unit * std::max(0.0, directions[i].z) * 4 * pi / 100000;
+  // The host integrates over texels with the cosine at their centres: 16 of them across, an error of about (pi / 16)^2 / 24.
+  EXPECT_NEAR(e, 5, 0.02 * 5);
+}
+
+TEST_P(ImageLight, ABlackImageIsNotSampled) {
+  const int width = 4, height = GetParam() ? 4 : 2;
+  const FlatScene flat = lower(scene_with(
+      {image_light(width, height, GetParam(), std::vector<float>(static_cast<std::size_t>(3 * width * height), 0.f))}));
+  EXPECT_EQ(flat.params.sampled_light_count, 0u);
+  EXPECT_EQ(LightBench(flat).sky({{0, 0, 1}})[0].x, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, ImageLight, testing::Bool(),
+                         [](const testing::TestParamInfo<bool>& row) { return row.param ? "square" : "latlong"; });
+
+TEST(ImageLights, TwoAreRefused) {
+  const Light light = image_light(2, 1, false, std::vector<float>(6, 1.f));
+  EXPECT_THROW(lower(scene_with({light, light})), InputError);
+}
+
+TEST(LightSelection, FollowsPower) {
+  std::vector<Light> lights;
+  double total = 0;
+  for (int i = 0; i < 37; ++i) {
+    Light light = light_of(PointLight{});
+    light.scale = i % 5 == 0 ? 0 : std::exp(0.2 * i);
+    total += light.scale;
+    lights.push_back(light);
+  }
+  lights.push_back(light_of(InfiniteLight{}));
+  const FlatScene flat = lower(scene_with(lights));
+  EXPECT_EQ(flat.params.sampled_light_count, 29u);
+  constexpr std::size_t n = 1 << 20;
+  const std::vector<double> counts = LightBench(flat).selections(n);
+  std::vector<double> from_table(lights.size(), 0);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const AliasRecord& row = flat.light_alias[i];
+    from_table[i] += row.keep / static_cast<double>(lights.size());
+    from_table[row.alias] += (1 - row.keep) / static_cast<double>(lights.size());
+  }
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const double share = i < 37 ? lights[i].scale / total : 0;
+    // Roundings of `keep`, of which a light may collect one a row.
+    EXPECT_NEAR(from_table[i], share, 1e-6) << i;
+    EXPECT_NEAR(flat.light_alias[i].probability, share, 1e-6 * share) << i;
+    // Equally spaced numbers are counted within two at every boundary of an interval.
+    EXPECT_NEAR(counts[i] / n, share, 2.0 * static_cast<double>(lights.size()) / n) << i;
+  }
+}
+
+}  // namespace caplet::test
