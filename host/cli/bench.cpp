@@ -35,15 +35,12 @@ void run_bench(std::vector<std::string> arguments) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, const Invocation& invocation) {
+void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Measure ray tracing speed side by side with Embree");
   command->footer(
       "Arguments go to the benchmark program: `caplet bench capsules --n 1000000`; `caplet bench -- --help` lists them.");
   command->prefix_command();
-  command->callback([command, &invocation] {
-    (void)invocation;
-    run_bench(command->remaining());
-  });
+  command->callback([command] { run_bench(command->remaining()); });
 }
 
 }  // namespace caplet::cli

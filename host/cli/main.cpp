@@ -17,6 +17,8 @@ void print_error(const std::string& message) { std::fprintf(stderr, "caplet: err
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
+  if (const auto unknown = app.remaining(); app.get_subcommands().empty() && !unknown.empty())
+    message = "unknown command or option '" + unknown.front() + "'";
   for (char& c : message)
     if (c == '\n') c = ' ';
   print_error(message);
@@ -59,6 +61,6 @@ int main(int argc, char** argv) {
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
-  caplet::cli::add_bench(app, invocation);
+  caplet::cli::add_bench(app);
   return run(app, argc, argv);
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -43,7 +44,9 @@ void check_crop(const std::array<int, 4>& crop, const FilmSettings& film) {
 
 /// Keeps a crop's place in the picture when the picture's size changes; never empty.
 std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& film, const ImageSize& size) {
-  const auto scaled = [](int value, int to, int from) { return static_cast<int>(std::lround(double{1} * value * to / from)); };
+  const auto scaled = [](int value, int to, int from) {
+    return static_cast<int>(std::lround(static_cast<double>(value) * to / from));
+  };
   std::array<int, 4> out{scaled(crop[0], size.width, film.width), scaled(crop[1], size.width, film.width),
                          scaled(crop[2], size.height, film.height), scaled(crop[3], size.height, film.height)};
   out[0] = std::min(out[0], size.width - 1);
