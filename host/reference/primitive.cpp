@@ -30,6 +30,7 @@ double value_of(const Sphere& s, const dvec3& x) { return glm::length(x - s.cent
 double value_of(const Capsule& c, const dvec3& x) {
   const dvec3 axis = c.p1 - c.p0;
   const double growth = c.radius1 - c.radius0;
+  if (growth == 0) return distance_to_segment(x, c.p0, c.p1) - c.radius0;
   const auto at = [&](double s) { return glm::length(x - (c.p0 + s * axis)) - (c.radius0 + s * growth); };
   // Slope of `at`, times the distance; it rises with s, since `at` is convex.
   const auto rises = [&](double s) {

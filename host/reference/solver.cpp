@@ -176,14 +176,18 @@ Verdict referee(const Primitive& primitive, const Ray& ray, double tolerance) {
     return m > tolerance ? Verdict::hit : m < -tolerance ? Verdict::miss : Verdict::tangent;
   }
   const Line line = line_near(primitive, ray);
-  bool near = false;
-  for (double s = -line.reach; s <= line.reach;) {
-    const double f = value(primitive, line.foot + s * line.unit);
-    if (f < -tolerance) return Verdict::hit;
-    near = near || f <= tolerance;
-    s += std::max(f - 0.5 * tolerance, 0.25 * tolerance);
+  // Everywhere first, then ever closer around the least sample.
+  double least = HUGE_VAL, where = 0, low = -line.reach, high = line.reach;
+  for (const int samples : {2048, 64, 64, 64, 64, 64}) {
+    const double step = (high - low) / samples;
+    for (int i = 0; i <= samples; ++i) {
+      const double s = low + i * step, f = value(primitive, line.foot + s * line.unit);
+      if (f < least) least = f, where = s;
+    }
+    low = where - 2 * step;
+    high = where + 2 * step;
   }
-  return near ? Verdict::tangent : Verdict::miss;
+  return least < -tolerance ? Verdict::hit : least > tolerance ? Verdict::miss : Verdict::tangent;
 }
 
 }  // namespace caplet::reference

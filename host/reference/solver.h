@@ -37,8 +37,8 @@ double margin(const Primitive& primitive, const Ray& ray);
 
 enum class Verdict { hit, miss, tangent };
 
-/// Says by dense sampling of value() along the line (steps of the Lipschitz bound, at least `tolerance` / 4) whether it enters
-/// the solid deeper than `tolerance`, stays further away than that, or neither. For open surfaces: by margin().
+/// Says by dense sampling of value() along the line, which assumes nothing of its shape, whether it enters the solid deeper than
+/// `tolerance`, stays further away than that, or neither. For open surfaces: by margin().
 Verdict referee(const Primitive& primitive, const Ray& ray, double tolerance);
 
 }  // namespace caplet::reference

@@ -14,10 +14,12 @@ static inline LocalSurface surface_disk(__global const float* data, float3 x) {
   LocalSurface s;
   const float3 v = x - center;
   const float3 in_plane = v - dot(v, normal) * normal;
-  const float3 spoke = in_plane - dot(in_plane, normal) * normal;
+  const float3 flat_spoke = in_plane - dot(in_plane, normal) * normal;
+  const float distance = fmin(length(flat_spoke), radius);
+  // The hit's rounding may lie beyond the rim; the point does not.
+  const float3 spoke = distance < radius ? flat_spoke : unit_or(flat_spoke, (float3)(0.0f)) * radius;
   s.ng = s.ns = normal;
   s.p = center + spoke;
-  const float distance = length(spoke);
   s.uv = (float2)(distance > 0.0f ? turn_around(normal, spoke / distance) : 0.0f,
                   radius > 0.0f ? fmax(0.0f, 1.0f - distance / radius) : 0.0f);
   s.dpdu = 2.0f * CAPLET_PI * cross(normal, spoke);

@@ -42,7 +42,11 @@ static inline LocalSurface surface_triangle(const Globals* g, const GeometryReco
   s.p = v0 + (b1 * e1 + b2 * e2);
   s.ng = (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) ? -n : n;
   s.ns = s.ng;
-  s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
+  // The last term covers the ray-triangle test: its edge functions are off by eps of the edges' product, which a thin triangle
+  // magnifies by that product over its area.
+  const float edges = norm1(e1) + norm1(e2);
+  s.error = CAPLET_EPS * (12.0f * edges + 4.0f * norm1(s.p));
+  if (area > 0.0f) s.error += CAPLET_EPS * fmin(4.0f * edges * norm1(e1) * norm1(e2) / area, 65536.0f * edges);
 
   const uint corner = geometry.index_begin + 3u * (primitive - geometry.primitive_begin);
   if (geometry.normal_begin != CAPLET_NONE) {
@@ -62,7 +66,7 @@ static inline LocalSurface surface_triangle(const Globals* g, const GeometryReco
     const float determinant = difference_of_products(d1.x, d2.y, d1.y, d2.x);
     s.dpdu = determinant != 0.0f ? (d2.y * e1 - d1.y * e2) / determinant : (float3)(0.0f);
   } else {
-    s.uv = (float2)(b1 + b2, b2);
+    s.uv = (float2)(1.0f - b0, b2);
     s.dpdu = e1;
   }
   return s;

@@ -37,7 +37,7 @@ FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
   const dvec3 c = place * dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
   dvec3 axis = direction();
   if (below(8) == 0) axis = dvec3(below(3) == 0, 0, 0) + dvec3(0, 0, 1) * double(axis.x < 0);
-  if (axis == dvec3(0)) axis = dvec3(0, 1, 0);
+  axis = axis == dvec3(0) ? dvec3(0, 1, 0) : glm::normalize(axis);
   const double length = r * std::pow(10.0, hard ? uniform(-2, 4) : uniform(-1, 1.5));
   const auto p0 = floats(c - 0.5 * length * axis), p1 = floats(c + 0.5 * length * axis);
   const auto radius = static_cast<float>(r);

@@ -72,7 +72,10 @@ void check_ray(const FlatPrimitive& p, const RayRecord& ray, const Probed& probe
       tally.worst = std::max(tally.worst, distance / bound);
     }
     if (!(t > 0)) tally.fail(fmt::format("t = {}", t), p, ray);
-    if (!(distance <= bound)) tally.fail(fmt::format("the hit is {} off the surface, allowed {}", distance, bound), p, ray);
+    // Within the bound of its plane a triangle is seen edge-on: the kernel then reports a point of the ray beside it.
+    if (!(distance <= bound) && !(p.shape == shape_triangle && distance <= extent_of(p).reach &&
+                                  reference::referee(witness, exact, bound) == reference::Verdict::tangent))
+      tally.fail(fmt::format("the hit is {} off the surface, allowed {}", distance, bound), p, ray);
   }
   const bool same = hit == expected.has_value() && (!hit || leaving == expected->leaving);
   if (same && hit) {
@@ -224,13 +227,12 @@ void expect_same(const CaseSet& a, const CaseSet& b) {
     const reference::Ray exact = witness_ray(a.rays[i]);
     const double bound = surface_bound(p, a.rays[i]) + surface_bound(b.primitives[b.which[i]], b.rays[i]);
     const bool hit = first[i].hit.slot != CAPLET_NONE, other = second[i].hit.slot != CAPLET_NONE;
-    const bool unclear = std::abs(reference::value(witness, exact.origin)) <= bound ||
-                         reference::referee(witness, exact, bound) == reference::Verdict::tangent;
-    if (!unclear) {
-      ASSERT_EQ(hit, other) << i;
-      ASSERT_EQ(first[i].hit.surface, second[i].hit.surface) << i;
-    }
-    if (hit && other && !unclear) {
+    if (hit != other || first[i].hit.surface != second[i].hit.surface) {
+      ASSERT_TRUE(std::abs(reference::value(witness, exact.origin)) <= bound ||
+                  reference::referee(witness, exact, bound) == reference::Verdict::tangent)
+          << i;
+    } else if (hit) {
+      // Between both parameters the ray stays near the surface: the same crossing.
       const double middle = 0.5 * (double(first[i].hit.t) + double(second[i].hit.t));
       EXPECT_LE(std::abs(reference::value(witness, exact.origin + middle * exact.direction)), bound) << i;
       ++hits;

@@ -93,7 +93,7 @@ TEST(Witness, MarginIsTheDistanceToTangency) {
   EXPECT_NEAR(margin(capsule, {{5, 0.7, 2}, {-1, 0, 0}}), -0.2, rounding);
 }
 
-// The solver uses convexity, the referee only the Lipschitz bound.
+// The solver uses convexity, the referee does not.
 TEST(Witness, SolverAgreesWithReferee) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;
