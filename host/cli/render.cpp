@@ -90,7 +90,8 @@ RenderResult render_with_progress(const FlatScene& flat, const Device& device, c
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   return render(flat, device, render_options, [&](const Progress& progress) {
     reporter.update(progress.fraction, progress.samples_per_second,
-                    fmt::format("{}/{} samples", progress.samples_done, render_options.samples_per_pixel));
+                    fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
+                                render_options.samples_per_pixel));
   });
 }
 
