@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What BSDFs obey whatever their parameters: weights, reciprocity, Fresnel's closed forms, finite numbers; and values of
+// Mitsuba 3.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "bsdf_device.h"
+#include "mitsuba_values.h"
+
+namespace caplet::test {
+namespace {
+
+std::vector<BsdfParameters> rough_ones() {
+  std::vector<BsdfParameters> all;
+  for (const auto& [u, v] : {std::pair(0.05f, 0.05f), std::pair(0.3f, 0.3f), std::pair(0.8f, 0.8f), std::pair(0.1f, 0.4f)}) {
+    all.push_back({"conductor " + std::to_string(u), material_conductor, 0, 1, 0.2f, 3.9f, u, v});
+    all.push_back({"dielectric " + std::to_string(u), material_dielectric, 0, 1, 1.5f, 0, u, v});
+  }
+  all.push_back({"diffuse", material_diffuse, 0, 0.7f});
+  return all;
+}
+
+std::vector<float> random_numbers(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> u(count);
+  for (float& value : u) value = static_cast<float>(random() >> 8) * 0x1p-24f;
+  return u;
+}
+
+// The weight is computed without dividing by the density; eval computes the half vector anew from wo and wi, which moves it by
+// 2e-7 and the density by about 8 * 2e-7 / alpha relative; refraction near eta 1.5 magnifies that by 1.5 / 0.5 squared: 3e-4, and
+// ten times that is allowed as cosines near grazing lose digits too.
+TEST(BsdfSampling, WeightIsValueOverDensity) {
+  for (const BsdfParameters& bsdf : rough_ones())
+    for (const double theta : {0.1, 0.9, 1.4, 2.0, 3.0})
+      for (const SampleRow& row : bsdf_on_device().sample(bsdf, direction(theta, 2), random_numbers(6000, 1))) {
+        if (row.scattered == 0) continue;
+        ASSERT_GT(row.pdf, 0);
+        ASSERT_NEAR(row.value_pdf / row.pdf, 1, 3e-3) << bsdf.name << " at " << theta;
+        ASSERT_NEAR(row.value / row.value_pdf, row.weight, 3e-3 * row.weight) << bsdf.name << " at " << theta;
+        ASSERT_EQ(row.transmitted, row.wi[2] * std::cos(theta) < 0 ? 1.0f : 0.0f);
+        ASSERT_FLOAT_EQ(row.eta_scale, row.transmitted == 0 ? 1 : theta < 1.6 ? 2.25f : 1 / 2.25f);
+      }
+}
+
+// f(wo, wi) = f(wi, wo) for reflection, and n_i^2 f(wo, wi) = n_o^2 f(wi, wo) for refraction of radiance (Veach 1997, 5.2). Both
+// sides come from the same half vector to rounding: 1e-5 of relative error over alpha squared at the worst.
+TEST(BsdfReciprocity, ReflectionAndRefraction) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> normal;
+  std::vector<Direction> wo, wi;
+  for (int i = 0; i < 4000; ++i)
+    for (std::vector<Direction>* list : {&wo, &wi}) {
+      Direction d = {normal(random), normal(random), normal(random)};
+      const float length = std::hypot(d[0], d[1], d[2]);
+      for (float& c : d) c /= length;
+      list->push_back(d);
+    }
+  for (const BsdfParameters& bsdf : rough_ones()) {
+    const std::vector<EvalRow> values = bsdf_on_device().evaluate(bsdf, wo, wi);
+    int compared = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double forward = double{values[i].value} / std::abs(double{wi[i][2]});
+      double backward = double{values[i].exchanged} / std::abs(double{wo[i][2]});
+      if (wo[i][2] * wi[i][2] < 0) backward /= wo[i][2] > 0 ? 2.25 : 1 / 2.25;
+      if (!(std::abs(wo[i][2]) > 0.01f && std::abs(wi[i][2]) > 0.01f)) continue;
+      ASSERT_NEAR(forward, backward, 4e-3 * std::max(forward, backward) + 1e-5) << bsdf.name;
+      compared += forward > 1e-4;
+    }
+    EXPECT_GT(compared, 200) << bsdf.name;
+  }
+}
+
+// --- Fresnel ---
+
+/// Reflectance at n + i k by complex arithmetic in double.
+double reflectance(double cos_i, std::complex<double> index) {
+  const std::complex<double> sin2 = 1 - cos_i * cos_i, cos_t = std::sqrt(1.0 - sin2 / (index * index));
+  const std::complex<double> s = (cos_i - index * cos_t) / (cos_i + index * cos_t),
+                             p = (index * cos_i - cos_t) / (index * cos_i + cos_t);
+  return 0.5 * (std::norm(s) + std::norm(p));
+}
+
+SampleRow first_sample(const BsdfParameters& bsdf, double theta, float component) {
+  return bsdf_on_device().sample(bsdf, direction(theta, 0.4), {component, 0.3f, 0.6f}).front();
+}
+
+TEST(BsdfFresnel, SmoothMetal) {
+  const std::pair<double, double> metals[] = {{0.2, 3.9}, {1.5, 7.6}, {0.05, 4.4}, {2.9, 3.0}, {1.5, 0.0}, {4.0, 0.01}};
+  for (const auto& [n, k] : metals)
+    for (const double theta : {0.0, 0.3, 0.9, 1.3, 1.5, 1.57}) {
+      const BsdfParameters metal = {"", material_conductor, 0, 1, static_cast<float>(n), static_cast<float>(k)};
+      const SampleRow row = first_sample(metal, theta, 0.5f);
+      ASSERT_EQ(row.scattered, 1);
+      EXPECT_EQ(row.specular, 1);
+      // e = n^2 - k^2 - sin^2 cancels to 1e-7 of n^2 + k^2, and its root to the square root of that where n or k vanishes.
+      EXPECT_NEAR(row.weight, reflectance(double{direction(theta, 0.4)[2]}, {n, k}), k < 0.1 ? 2e-4 : 2e-5)
+          << n << ' ' << k << ' ' << theta;
+      EXPECT_EQ(row.value, 0);  // nothing but a delta
+    }
+}
+
+TEST(BsdfFresnel, ClearGlass) {
+  for (const float eta : {1.33f, 1.5f, 2.4f, 0.8f})
+    for (const double theta : {0.0, 0.5, 1.0, 1.4, 1.7, 2.2, 2.8, 3.1}) {
+      const BsdfParameters glass = {"", material_dielectric, 0, 1, eta, 0};
+      const double cos_o = std::cos(theta), relative = cos_o > 0 ? double{eta} : 1 / double{eta};
+      const double sin_t = std::sin(theta) / relative, expected = sin_t < 1 ? reflectance(std::abs(cos_o), relative) : 1;
+      const SampleRow mirrored = first_sample(glass, theta, 0);
+      ASSERT_EQ(mirrored.scattered, 1);
+      EXPECT_NEAR(mirrored.pdf, expected, 1e-5);
+      EXPECT_EQ(mirrored.weight, 1);
+      EXPECT_NEAR(mirrored.wi[2], cos_o, 1e-6);
+      const SampleRow refracted = first_sample(glass, theta, 0x1.fffffep-1f);
+      ASSERT_EQ(refracted.scattered, 1);
+      if (sin_t >= 1) {
+        EXPECT_EQ(refracted.transmitted, 0);  // total internal reflection
+        continue;
+      }
+      EXPECT_NEAR(refracted.pdf, 1 - expected, 1e-5);
+      EXPECT_NEAR(refracted.weight, 1 / (relative * relative), 1e-5 / (relative * relative));
+      EXPECT_NEAR(std::hypot(refracted.wi[0], refracted.wi[1]), sin_t, 2e-6);  // Snell
+      EXPECT_NEAR(refracted.eta_scale, relative * relative, 1e-5 * relative * relative);
+      EXPECT_LT(refracted.wi[2] * cos_o, 0);
+      // In the plane of incidence, to the other side.
+      if (theta > 0) {
+        EXPECT_NEAR(std::atan2(refracted.wi[1], refracted.wi[0]), 0.4 - std::numbers::pi, 1e-5);
+      }
+    }
+}
+
+TEST(BsdfFresnel, RoughnessTowardsZeroIsSmooth) {
+  const BsdfParameters rough = {"", material_conductor, 0, 1, 0.2f, 3.9f, 2e-3f, 2e-3f};
+  const double expected = reflectance(std::cos(0.9), {0.2, 3.9});
+  for (const SampleRow& row : bsdf_on_device().sample(rough, direction(0.9, 0.4), random_numbers(3000, 2))) {
+    ASSERT_EQ(row.scattered, 1);
+    ASSERT_EQ(row.specular, 0);
+    ASSERT_NEAR(row.weight, expected, 3e-3);  // masking is 1 - O(alpha^2), Fresnel's slope times the lobe's width
+  }
+  BsdfParameters matched = {"", material_dielectric, 0, 1, 1, 0, 0.5f, 0.5f};  // no interface at all
+  const SampleRow row = first_sample(matched, 0.9, 0.5f);
+  EXPECT_EQ(row.specular, 1);
+  EXPECT_EQ(row.transmitted, 1);
+  EXPECT_EQ(row.weight, 1);
+}
+
+TEST(BsdfDispersion, HeroWavelengthAlone) {
+  BsdfParameters glass = {"", material_dielectric, CAPLET_MATERIAL_DISPERSIVE, 1, 1.5f, 0, 0.2f, 0.2f};
+  SampleRow row = first_sample(glass, 0.3, 0.9f);
+  EXPECT_GT(row.weight, 0);
+  EXPECT_EQ(row.weight_second, 0);
+  glass.flags = 0;
+  row = first_sample(glass, 0.3, 0.9f);
+  EXPECT_EQ(row.weight_second, row.weight);
+}
+
+// --- Numbers ---
+
+TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  const float alphas[] = {0, 1e-4f, 9e-4f, 1e-3f, 0.01f, 0.1f, 1.0f},
+              etas[] = {1e-2f, 0.5f, 1.0f, 1.0001f, 1.0002f, 1.5f, 3.0f, 1e2f}, extinctions[] = {0, 1e-3f, 1, 1e4f};
+  const float edges[] = {0, 0x1p-24f, 0.5f, 1 - 0x1p-24f};
+  const double thetas[] = {0, 1e-4, 0.5, 1.57, 1.5707, 1.570796, 1.5708, 1.571, 2.5, std::numbers::pi};
+  for (int i = 0; i < 400; ++i) {
+    BsdfParameters bsdf;
+    bsdf.kind = i % 5 == 0 ? material_diffuse : i % 2 == 0 ? material_conductor : material_dielectric;
+    bsdf.alpha_u = alphas[random() % 7];
+    bsdf.alpha_v = alphas[random() % 7];
+    if (std::max(bsdf.alpha_u, bsdf.alpha_v) >= 1e-3f) {  // as bsdf_make
+      bsdf.alpha_u = std::max(bsdf.alpha_u, 1e-4f);
+      bsdf.alpha_v = std::max(bsdf.alpha_v, 1e-4f);
+    }
+    bsdf.eta = etas[random() % 8];
+    bsdf.k = extinctions[random() % 4];
+    const Direction wo = direction(thetas[random() % 10], 6 * uniform(random));
+    std::vector<float> u = random_numbers(3 * 128, static_cast<unsigned>(i));
+    for (std::size_t j = 0; j < 96; ++j) u[j] = edges[random() % 4];
+    const float most = bsdf.kind == material_dielectric ? std::max(bsdf.eta * bsdf.eta, 1 / (bsdf.eta * bsdf.eta)) : 1.0f;
+    std::vector<Direction> other, same;
+    for (const SampleRow& row : bsdf_on_device().sample(bsdf, wo, u)) {
+      for (const float value : {row.wi[0], row.wi[1], row.wi[2], row.pdf, row.weight, row.value, row.value_pdf, row.eta_scale})
+        ASSERT_TRUE(std::isfinite(value)) << i;
+      ASSERT_GE(row.weight, 0) << i;
+      ASSERT_LE(row.weight, most * 1.00001f) << i;
+      if (row.scattered == 0) continue;
+      ASSERT_GT(row.pdf, 0) << i;
+      ASSERT_NEAR(std::hypot(row.wi[0], row.wi[1], row.wi[2]), 1, 2e-6) << i;
+      other.push_back(direction(thetas[random() % 10], 6 * uniform(random)));
+      same.push_back(wo);
+    }
+    if (other.empty()) continue;
+    for (const EvalRow& row : bsdf_on_device().evaluate(bsdf, same, other))
+      for (const float value : {row.value, row.pdf, row.exchanged, row.exchanged_pdf}) {
+        ASSERT_TRUE(std::isfinite(value)) << i;
+        ASSERT_GE(value, 0) << i;
+      }
+  }
+}
+
+// --- Another renderer ---
+
+TEST(BsdfAgainstMitsuba, ValuesAndDensities) {
+  for (const MitsubaRow& row : mitsuba_rows) {
+    const bool metal = row.kind == material_conductor;
+    const BsdfParameters bsdf = {"", row.kind, 0, 1, metal ? 0.2f : 1.5f, metal ? 3.9f : 0, row.alpha_u, row.alpha_v};
+    const EvalRow ours = bsdf_on_device().evaluate(bsdf, {row.wo}, {row.wi}).front();
+    // Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to the fourth power.
+    EXPECT_NEAR(ours.value, row.value, 2e-4 * row.value) << row.kind << ' ' << row.alpha_u;
+    EXPECT_NEAR(ours.pdf, row.pdf, 2e-4 * row.pdf) << row.kind << ' ' << row.alpha_u;
+  }
+}
+
+}  // namespace
+}  // namespace caplet::test
