@@ -177,7 +177,7 @@ TEST(BadInput, Files) {
   EXPECT_EQ(import("garbage.pbrt"), at + "garbage.pbrt:1:6: this is no text (byte 0x01)");
   EXPECT_EQ(import("scene.blend"), at + "scene.blend: no known scene format (known: .pbrt, .pbrt.gz, .swc, .capsules)");
   EXPECT_EQ(import("self.pbrt"), at + "self.pbrt:2:9: recursive Include of " + at + "self.pbrt");
-  EXPECT_EQ(import("a.pbrt"), at + "b.pbrt:2:3: unknown Shape \"cube\"; the nearest known name is \"curve\"");
+  EXPECT_EQ(import("a.pbrt"), at + "b.pbrt:2:3: unknown Shape \"cube\"; the nearest known name is \"cone\"");
   EXPECT_EQ(import("spectrum.pbrt"), at + "bad.spd:2:5: expected a number, found \"x\"");
   EXPECT_EQ(import("wide.pbrt"), at + "wide.pbrt:2:24: LightSource \"infinite\": \"filename\" " + at +
                                      "b.pbrt is 3 x 2 pixels, neither 1:1 (equal-area) nor 2:1 (latitude-longitude)");

@@ -64,9 +64,9 @@ TEST_P(PlyEncodings, PolygonsExtrasNormalsAndUvs) {
     ply.value(0.f).value(0.f).value(1.f).value(0.25f).value(static_cast<float>(i) / 8).value(0.5f).line();
   }
   ply.value(std::uint32_t{4});
-  for (std::uint16_t k : {0, 1, 2, 3}) ply.value(k);
+  for (int k : {0, 1, 2, 3}) ply.value(static_cast<std::uint16_t>(k));
   ply.line().value(std::uint32_t{3});
-  for (std::uint16_t k : {4, 2, 0}) ply.value(k);
+  for (int k : {4, 2, 0}) ply.value(static_cast<std::uint16_t>(k));
   const TriangleMeshShape mesh = parse_ply("test.ply", ply.line().bytes());
   ASSERT_EQ(mesh.positions.size(), 5u);
   for (int i = 0; i < 5; ++i) {
@@ -129,15 +129,15 @@ TEST(Ply, BrokenFiles) {
   EXPECT_EQ(complaint("solid"), "m.ply:1: this is no PLY file (it does not start with \"ply\")");
   EXPECT_EQ(complaint(ascii + "element vertex 3\n"), "m.ply:4: the PLY header does not end (no end_header)");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 3\n"),
-            "m.ply:12: a PLY face has the vertex index 3, but there are 3 vertices");
+            "m.ply:13: a PLY face has the vertex index 3, but there are 3 vertices");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 -1\n"),
-            "m.ply:12: a PLY face has the vertex index -1, but there are 3 vertices");
+            "m.ply:13: a PLY face has the vertex index -1, but there are 3 vertices");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
-            "m.ply:10: a vertex position is not finite (\"y\")");
+            "m.ply:11: a vertex position is not finite (\"y\")");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n"),
-            "m.ply:10: \"zero\" is no number");
+            "m.ply:11: \"zero\" is no number");
   EXPECT_EQ(complaint(ascii + "element vertex 4000000000\n" + xyz + face + "end_header\n" + points),
-            "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more than fit into its 185 bytes");
+            "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more than fit into its 181 bytes");
   EXPECT_EQ(complaint(ascii + vertex + "end_header\n" + points), "m.ply: the PLY file has no face");
   EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"), "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
 }
