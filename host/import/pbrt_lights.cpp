@@ -64,10 +64,10 @@ glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_ligh
   const glm::dmat3 r = a / scale;
   // Matrices in scene files carry six digits; anything further from orthonormal than 1e-3 is a shear or an uneven scale.
   const glm::dmat3 error = glm::transpose(r) * r - glm::dmat3(1);
-  double worst = 0;
+  bool orthonormal = true;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(error[i][j]));
-  if (!(worst < 1e-3)) parameters.error("an image light cannot be sheared or scaled unevenly");
+    for (int j = 0; j < 3; ++j) orthonormal = orthonormal && std::abs(error[i][j]) < 1e-3;
+  if (!orthonormal) parameters.error("an image light cannot be sheared or scaled unevenly");
   return r;
 }
 

@@ -201,12 +201,13 @@ std::string Parser::included_file() {
 }
 
 void Parser::read_included(const std::string& file) {
+  std::optional<std::string> text;
   try {
-    parse_file(file, read_text(file, where_));
+    text = read_text(file, where_);
   } catch (const InputError& problem) {
-    if (diagnostics_.has_errors()) throw;
     for (const std::string& message : problem.messages()) diagnostics_.error({}, message);
   }
+  if (text) parse_file(file, std::move(*text));
   open_files_.pop_back();
 }
 
@@ -216,9 +217,10 @@ void Parser::import() {
   const std::string file = included_file();
   const State saved = state_;
   const auto saved_systems = coordinate_systems_;
-  const std::size_t blocks = blocks_.size();
+  const std::size_t outer_floor = std::exchange(block_floor_, blocks_.size());
   read_included(file);
-  report_unclosed(blocks);
+  report_unclosed(block_floor_);
+  block_floor_ = outer_floor;
   state_ = saved;
   coordinate_systems_ = saved_systems;
 }
@@ -228,7 +230,7 @@ void Parser::import() {
 void Parser::open_block() { blocks_.push_back({directive_, where_, state_}); }
 
 void Parser::close_block(const std::string& opener) {
-  if (blocks_.empty()) throw SyntaxError{where_, directive_ + " without " + opener};
+  if (blocks_.size() <= block_floor_) throw SyntaxError{where_, directive_ + " without " + opener};
   Block& block = blocks_.back();
   if (block.opener != opener)
     throw SyntaxError{where_, directive_ + " while the " + block.opener + " of " + block.where.to_string() + " is open"};
@@ -237,9 +239,10 @@ void Parser::close_block(const std::string& opener) {
 }
 
 void Parser::report_unclosed(std::size_t first_block) {
-  for (; blocks_.size() > first_block; blocks_.pop_back())
+  for (; blocks_.size() > first_block; blocks_.pop_back()) {
+    if (blocks_.back().opener == "ObjectBegin") object_.reset();
     diagnostics_.error(blocks_.back().where, blocks_.back().opener + " is never closed");
-  if (first_block == 0) object_.reset();
+  }
 }
 
 void Parser::attribute_begin() {

@@ -47,7 +47,6 @@ class Parser {
     std::optional<std::size_t> statement;
     std::string name;
     SourceLocation where;
-    bool used = false;
   };
   struct InstanceUse {
     std::string name;
@@ -120,7 +119,6 @@ class Parser {
   std::string included_file();
   void read_included(const std::string& file);
   std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
-  void collect_attribute(const std::shared_ptr<Parameter>& parameter) { all_attributes_.push_back(parameter); }
 
   // At the end
   void finish_attributes();
@@ -139,6 +137,7 @@ class Parser {
   std::vector<std::string> open_files_;  // canonical
   State state_;
   std::vector<Block> blocks_;
+  std::size_t block_floor_ = 0;  // blocks below were opened outside the imported file
   bool in_world_ = false, has_camera_ = false, warned_transform_begin_ = false;
   std::optional<std::uint32_t> option_seed_, sampler_seed_;
   std::map<std::string, glm::dmat4> coordinate_systems_;
