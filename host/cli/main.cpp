@@ -13,14 +13,17 @@ namespace {
 
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
-void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", message.c_str()); }
+/// One line: control characters of names and files would break it, or the terminal.
+void print_error(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  std::fprintf(stderr, "caplet: error: %s\n", message.c_str());
+}
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
   if (const auto unknown = app.remaining(); app.get_subcommands().empty() && !unknown.empty())
     message = "unknown command or option '" + unknown.front() + "'";
-  for (char& c : message)
-    if (c == '\n') c = ' ';
   print_error(message);
   std::string help = "caplet --help";
   for (const CLI::App* command : app.get_subcommands()) help = "caplet " + command->get_name() + " --help";
