@@ -170,7 +170,8 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
 
 /// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record layout on this device; once per
-/// device and driver (remembered in the cache). Throws RunError that says what is wrong.
+/// device and driver (remembered in the cache). The environment variable CAPLET_SELF_TEST leaves it out (0) or forces it (1).
+/// Throws RunError that says what is wrong.
 void self_test(const Device& device);
 
 }  // namespace caplet
