@@ -86,13 +86,21 @@ fs::path output_path(const Options& options, const Scene& scene) {
   return name;
 }
 
+constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
+
 RenderResult render_with_progress(const FlatScene& flat, const Device& device, const RenderOptions& render_options, bool quiet) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
-  return render(flat, device, render_options, [&](const Progress& progress) {
-    reporter.update(progress.fraction, progress.samples_per_second,
-                    fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
-                                render_options.samples_per_pixel));
-  });
+  try {
+    return render(flat, device, render_options, [&](const Progress& progress) {
+      reporter.update(progress.fraction, progress.samples_per_second,
+                      fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
+                                  render_options.samples_per_pixel));
+    });
+  } catch (const RunError&) {
+    // A driver's compiler gives up on the signal: that is no fault of its own.
+    if (interrupt_requested()) throw RunError(interrupted_early);
+    throw;
+  }
 }
 
 void add_metadata(LayeredImage& image, const Scene& scene, const Options& options, const Invocation& invocation,
@@ -135,13 +143,17 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.load = phase.lap();
   const FlatScene flat = lower(scene);
   seconds.build = phase.lap();
-  if (interrupt_requested()) throw RunError("interrupted before anything was rendered; nothing is written");
+  if (interrupt_requested()) throw RunError(interrupted_early);
 
   self_test(device);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
               flat.params.crop_width, flat.params.crop_height, scene.sampler.samples_per_pixel, device.info().name);
-  const RenderOptions render_options{scene.sampler.samples_per_pixel, options.time_limit, options.batch_paths, false};
+  RenderOptions render_options;
+  render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
+  render_options.time_limit = options.time_limit;
+  render_options.batch_paths = options.batch_paths;
+  render_options.time_stages = !options.stats.empty();
   const RenderResult result = render_with_progress(flat, device, render_options, options.quiet);
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;

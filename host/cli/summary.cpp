@@ -78,6 +78,8 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
   out["first_pass_seconds"] = result.first_pass_seconds;
   out["compile_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [stage, stage_seconds] : result.stage_compile_seconds) out["compile_seconds"][stage] = stage_seconds;
+  out["stage_seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, stage_seconds] : result.stage_seconds) out["stage_seconds"][stage] = stage_seconds;
   out["samples_per_pixel"] = result.samples_per_pixel;
   out["interrupted"] = result.interrupted;
   out["rays"] = {{"camera", result.camera_rays}, {"bounce", result.bounce_rays}, {"shadow", result.shadow_rays}};

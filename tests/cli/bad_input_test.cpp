@@ -144,7 +144,7 @@ std::vector<BadInput> bad_inputs() {
 }
 
 class BadInputs : public testing::TestWithParam<BadInput> {};
-INSTANTIATE_TEST_SUITE_P(All, BadInputs, testing::ValuesIn(bad_inputs()), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, BadInputs, testing::ValuesIn(bad_inputs()), [](const auto& row) { return row.param.name; });
 
 bool contains_ignoring_case(const std::string& text, const std::string& part) {
   const auto same = [](char a, char b) {
