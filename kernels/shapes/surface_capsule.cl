@@ -42,7 +42,10 @@ static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, floa
     out.ng = k * unit_axis + c * unit_radial;
     arc = r0 * angle0 + s * side;
   } else {
-    out.ng = unit_or(x - q, k * unit_axis + c * unit_radial);
+    const float3 rim = k * unit_axis + c * unit_radial;
+    out.ng = unit_or(x - q, rim);
+    // Near a pointed end x - q is rounding alone; a cap's normals still are those beyond the cone's.
+    if (s > 0.0f ? dot(out.ng, unit_axis) < k : dot(out.ng, unit_axis) > k) out.ng = rim;
     const float angle = angle_between(unit_axis, out.ng);
     arc = s > 0.0f ? r0 * angle0 + side + r1 * (CAPLET_PI - angle0 - angle) : r0 * (CAPLET_PI - angle);
   }

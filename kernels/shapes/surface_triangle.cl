@@ -42,11 +42,7 @@ static inline LocalSurface surface_triangle(const Globals* g, const GeometryReco
   s.p = v0 + (b1 * e1 + b2 * e2);
   s.ng = (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) ? -n : n;
   s.ns = s.ng;
-  // The last term covers the ray-triangle test: its edge functions are off by eps of the edges' product, which a thin triangle
-  // magnifies by that product over its area.
-  const float edges = norm1(e1) + norm1(e2);
-  s.error = CAPLET_EPS * (12.0f * edges + 4.0f * norm1(s.p));
-  if (area > 0.0f) s.error += CAPLET_EPS * fmin(4.0f * edges * norm1(e1) * norm1(e2) / area, 65536.0f * edges);
+  s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
 
   const uint corner = geometry.index_begin + 3u * (primitive - geometry.primitive_begin);
   if (geometry.normal_begin != CAPLET_NONE) {

@@ -4,28 +4,35 @@
 // Watertight ray-triangle test (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013). Rows: v0 v1 v2.
 //
 // The ray becomes the z axis by a shear that depends on the ray alone, so a shared vertex has the same 2D coordinates in all its
-// triangles. An edge function is the difference of two rounded products; rounding is monotone, so its sign is right or it is 0,
-// and it is the same bits with opposite sign in the neighbour (hence no contraction here). Zero counts as inside on both sides.
+// triangles. Edge functions of these are within two units in the last place, so the sign is right and opposite in the neighbour,
+// and weights of thin triangles are as good as others'. Zero counts as inside on both sides.
 #ifndef CAPLET_SHAPES_TRIANGLE_CL
 #define CAPLET_SHAPES_TRIANGLE_CL
 
 #include "shapes/real.cl"
+
+// a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
+static inline real edge_function(real a, real b, real c, real d) {
+  const real cd = c * d;
+  return fma(a, b, -cd) + fma(-c, d, cd);
+}
 
 static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* leaving) {
 #pragma OPENCL FP_CONTRACT OFF
   __global const float* rx = block + 8 + ray->row_x;
   __global const float* ry = block + 8 + ray->row_y;
   __global const float* rz = block + 8 + ray->row_z;
-  const real az = real_load(rz, lane) - ray->koz, bz = real_load(rz + 24, lane) - ray->koz, cz = real_load(rz + 48, lane) - ray->koz;
+  const real az = real_load(rz, lane) - ray->koz, bz = real_load(rz + 24, lane) - ray->koz,
+             cz = real_load(rz + 48, lane) - ray->koz;
   const real ax = (real_load(rx, lane) - ray->kox) - ray->shear_x * az;
   const real ay = (real_load(ry, lane) - ray->koy) - ray->shear_y * az;
   const real bx = (real_load(rx + 24, lane) - ray->kox) - ray->shear_x * bz;
   const real by = (real_load(ry + 24, lane) - ray->koy) - ray->shear_y * bz;
   const real cx = (real_load(rx + 48, lane) - ray->kox) - ray->shear_x * cz;
   const real cy = (real_load(ry + 48, lane) - ray->koy) - ray->shear_y * cz;
-  const real u = cx * by - cy * bx;
-  const real v = ax * cy - ay * cx;
-  const real w = bx * ay - by * ax;
+  const real u = edge_function(cx, by, cy, bx);
+  const real v = edge_function(ax, cy, ay, cx);
+  const real w = edge_function(bx, ay, by, ax);
   const real det = u + v + w;
   const real_mask inside = ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
   // A convex combination of the vertices' z: off by 6 eps max |z| at most.

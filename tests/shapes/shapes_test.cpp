@@ -30,17 +30,8 @@ const Device& device() {
 double surface_bound(const FlatPrimitive& p, const RayRecord& ray) {
   const Extent extent = extent_of(p);
   const double distance = glm::length(dvec3(ray.ox, ray.oy, ray.oz) - extent.center);
-  // Triangles: vertices and shear are rounded relative to their distance from the origin (3 eps in each of two axes), t by 6 eps.
-  const double factor = p.shape == shape_sphere ? 8 : p.shape == shape_capsule ? 12 : p.shape == shape_tapered_capsule ? 16 : 8;
-  double thin = 1;
-  if (p.shape == shape_triangle) {
-    // Edge functions are off by eps of the edges' product; a thin triangle magnifies that by the product over its area.
-    const dvec3 v0(p.data[0], p.data[1], p.data[2]), e1 = dvec3(p.data[3], p.data[4], p.data[5]) - v0,
-                                                     e2 = dvec3(p.data[6], p.data[7], p.data[8]) - v0;
-    const double area = glm::length(glm::cross(e1, e2));
-    if (area > 0) thin = glm::length(e1) * glm::length(e2) / area;
-  }
-  return thin * (factor + 1) * eps * (distance + extent.radius + extent.reach);
+  const double factor = p.shape == shape_capsule ? 12 : p.shape == shape_tapered_capsule ? 16 : 8;
+  return (factor + 1) * eps * (distance + extent.radius + extent.reach);
 }
 
 struct Tally {
