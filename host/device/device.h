@@ -46,9 +46,6 @@ class Device {
   /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
   /// keeps the results on disk itself.
   bool is_pocl() const { return info_.platform.starts_with("Portable Computing Language"); }
-  /// `count` raised so that all launches of one kernel are of one size class: PoCL compiles it once for fewer than 65536
-  /// work-items and again for more. `count` itself on other platforms, and when it is 0. For kernels that check their index.
-  std::size_t steady_count(std::size_t count) const;
   const cl::Context& context() const { return context_; }
   const cl::Device& handle() const { return device_; }
   cl::CommandQueue& queue() const { return *queue_; }
@@ -125,10 +122,11 @@ class Program {
   static Program from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
                              BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
-  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by a launch of steady_count(1)
-  /// work-items with null buffers and zero scalars: the kernel must do nothing when its count is 0. Nothing on other platforms.
-  /// Returns the seconds it took, which build_seconds() then includes.
-  double prepare(const std::string& kernel_name, std::size_t local);
+  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by launches with null buffers and
+  /// zero scalars: the kernel must do nothing when its count is 0. PoCL compiles a kernel once for fewer than 65536 work-items and
+  /// again for more: both, unless `most`, the largest count it will be launched with, needs the first alone. Nothing on other
+  /// platforms. Returns the seconds it took, which build_seconds() then includes.
+  double prepare(const std::string& kernel_name, std::size_t local, std::size_t most);
   double build_seconds() const { return build_seconds_; }
   /// Whether it came from Caplet's own cache.
   bool from_cache() const { return from_cache_; }

@@ -90,11 +90,6 @@ void Device::finish() const {
   cl_call("waiting for the device", info_.name, [&] { queue_->finish(); });
 }
 
-std::size_t Device::steady_count(std::size_t count) const {
-  constexpr std::size_t pocl_large_grid = 65536;  // PoCL 3.1's grid width specialization limit of its CPU devices, plus one
-  return is_pocl() && count > 0 ? std::max(count, pocl_large_grid) : count;
-}
-
 std::uint64_t Device::bytes_allocated() const { return accounting_->alive; }
 std::uint64_t Device::bytes_peak() const { return accounting_->peak; }
 

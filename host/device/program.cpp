@@ -118,12 +118,14 @@ Program Program::from_source(const Device& device, const std::string& name, cons
   return out;
 }
 
-double Program::prepare(const std::string& kernel_name, std::size_t local) {
+double Program::prepare(const std::string& kernel_name, std::size_t local, std::size_t most) {
+  constexpr std::size_t pocl_large_grid = 65536;  // PoCL 3.1's grid width specialization limit of its CPU devices, plus one
   if (!device_.is_pocl()) return 0;
   const auto start = Clock::now();
   cl::Kernel prepared = kernel(kernel_name);
   set_null_arguments(device_, prepared);
-  launch(device_, prepared, device_.steady_count(1), local);
+  launch(device_, prepared, 1, local);
+  if (most >= pocl_large_grid) launch(device_, prepared, pocl_large_grid, local);
   device_.finish();
   const double seconds = seconds_since(start);
   build_seconds_ += seconds;

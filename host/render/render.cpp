@@ -23,6 +23,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 constexpr std::size_t cpu_batch_paths = std::size_t{1} << 17;
 constexpr std::size_t gpu_batch_paths = std::size_t{1} << 20;
 
+// A tree of fewer nodes (224 bytes each) and their leaves stays in a processor's cache however rays are ordered.
+constexpr std::uint64_t sorting_pays_from_nodes = 1024;
+
 /// Morton bits per axis so that a bin holds a few rays on average.
 uint sort_bits_for(std::size_t rays) {
   const double bits = (std::log2(static_cast<double>(std::max<std::size_t>(rays, 1))) - 3 - 2) / 3;
@@ -40,7 +43,8 @@ class Wavefront {
     WavefrontSize size;
     size.paths = batch_paths_;
     size.pixels = pixels_;
-    params_.sort_bits = sort_bits_for(batch_paths_);
+    sorts_ = scene.bvh_nodes >= sorting_pays_from_nodes;
+    params_.sort_bits = sorts_ ? sort_bits_for(batch_paths_) : CAPLET_NONE;
     size.sort_bins = bins();
     stages_.emplace(device, scene, size, cpu ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1", device.is_cpu());
   }
@@ -60,7 +64,7 @@ class Wavefront {
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0, not_finite = 0;
 
  private:
-  std::size_t bins() const { return std::size_t{8} << (3 * params_.sort_bits); }
+  std::size_t bins() const { return sorts_ ? std::size_t{8} << (3 * params_.sort_bits) : 1; }
 
   // The algorithm: see kernels/stages/path.cl.
   void batch(std::size_t pixel_begin, std::size_t pixel_count, uint sample_begin, uint sample_count) {
@@ -75,12 +79,14 @@ class Wavefront {
     stages.run(Stage::generate, params_.path_count);
     camera_rays += params_.path_count;
     for (std::size_t queued = params_.path_count; queued > 0;) {
-      stages.clear_sort_bins(bins());
+      if (sorts_) stages.clear_sort_bins(bins());
       stages.run(Stage::extend, queued);
       stages.run(Stage::shade, queued);
       const auto [unused, next, shadow, bad] = stages.counters();
       stages.run(Stage::connect, shadow);
-      if (next > 0) {
+      if (!sorts_) {
+        stages.swap_queues();
+      } else if (next > 0) {
         stages.run(Stage::sort_prefix, 1);
         stages.run(Stage::sort_scatter, next);
       }
@@ -95,6 +101,7 @@ class Wavefront {
 
   ParamsRecord params_;
   std::size_t pixels_ = 0, batch_paths_ = 0;
+  bool sorts_ = false;
   std::optional<Stages> stages_;
 };
 
@@ -113,6 +120,8 @@ RenderResult render(const FlatScene& scene, const Device& device, const RenderOp
   RenderResult result;
   result.compile_seconds = wavefront.stages().compile_seconds();
   result.stage_compile_seconds = wavefront.stages().compile_seconds_by_stage();
+
+  wavefront.stages().time_stages(options.time_stages);
 
   const Clock::time_point start = Clock::now();
   const int total = options.samples_per_pixel;
@@ -137,6 +146,7 @@ RenderResult render(const FlatScene& scene, const Device& device, const RenderOp
   result.camera_rays = wavefront.camera_rays;
   result.bounce_rays = wavefront.bounce_rays;
   result.shadow_rays = wavefront.shadow_rays;
+  if (options.time_stages) result.stage_seconds = wavefront.stages().seconds_by_stage();
   result.peak_device_bytes = device.bytes_peak();
   if (wavefront.not_finite > 0) log::warn("{} samples were not finite and count as black", wavefront.not_finite);
   return result;

@@ -17,6 +17,7 @@ struct RenderOptions {
   int samples_per_pixel = 16;
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::size_t batch_paths = 0;       // 0: chosen for the device
+  bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
   bool gpu_encoding = false;         // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
 };
 
@@ -33,7 +34,7 @@ struct RenderResult {
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t peak_device_bytes = 0;
-  std::vector<std::pair<std::string, double>> stage_compile_seconds;
+  std::vector<std::pair<std::string, double>> stage_compile_seconds, stage_seconds;
 };
 
 /// Renders pass by pass; stops after the pass in which `interrupt_requested()` (base) became true. Throws RunError.

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "render/stages.h"
 
+#include <chrono>
 #include <map>
 #include <span>
 
@@ -12,7 +13,7 @@ namespace caplet {
 namespace {
 
 // One work-item at a time suits PoCL's tracing (docs/performance.md); GPUs need whole wavefronts.
-constexpr std::size_t cpu_local_size = 16;
+constexpr std::size_t cpu_local_size = 64;
 constexpr std::size_t gpu_local_size = 64;
 
 std::size_t state_count(const std::string& name, const WavefrontSize& size) {
@@ -26,6 +27,23 @@ std::size_t state_count(const std::string& name, const WavefrontSize& size) {
   if (name == "counters") return 16;
   if (name == "film") return size.pixels;
   return size.paths;  // queues and their keys
+}
+
+/// Argument numbers of all stages.
+enum : cl_uint {
+#define BUFFER(name, type, access) buffer_##name,
+#include "shared/buffers.def"
+#undef BUFFER
+  buffer_count
+};
+
+const std::vector<std::string>& stage_names() {
+  static const std::vector<std::string> names = {
+#define STAGE(name) #name,
+#include "shared/stages.def"
+#undef STAGE
+  };
+  return names;
 }
 
 template <class T>
@@ -52,13 +70,9 @@ Stages::Stages(const Device& device, const FlatScene& scene, const WavefrontSize
   const std::vector<FilmRecord> empty(size.pixels, FilmRecord{});
   film_.write(empty);
 
-  const std::vector<std::string> names = {
-#define STAGE(name) #name,
-#include "shared/stages.def"
-#undef STAGE
-  };
-  for (const std::string& name : names) {
+  for (const std::string& name : stage_names()) {
     programs_.emplace_back(device, name, options);
+    programs_.back().prepare(name, local_size_of(name), name == "sort_prefix" ? 1 : size.paths);
     compile_seconds_ += programs_.back().build_seconds();
     by_stage_.emplace_back(name, programs_.back().build_seconds());
     cl::Kernel kernel = programs_.back().kernel(name);
@@ -66,8 +80,25 @@ Stages::Stages(const Device& device, const FlatScene& scene, const WavefrontSize
 #define BUFFER(name, type, access) kernel.setArg(index++, name##_.handle());
 #include "shared/buffers.def"
 #undef BUFFER
-    item_count_argument_ = index;
+    CHECK_EQ_(index, static_cast<cl_uint>(buffer_count));
     kernels_.push_back(kernel);
+  }
+  seconds_.resize(kernels_.size());
+}
+
+std::size_t Stages::local_size_of(const std::string& stage) const { return stage == "sort_prefix" ? 1 : local_size_; }
+
+std::vector<std::pair<std::string, double>> Stages::seconds_by_stage() const {
+  std::vector<std::pair<std::string, double>> out;
+  for (std::size_t i = 0; i < seconds_.size(); ++i) out.emplace_back(stage_names()[i], seconds_[i]);
+  return out;
+}
+
+void Stages::swap_queues() {
+  swapped_ = !swapped_;
+  for (cl::Kernel& kernel : kernels_) {
+    kernel.setArg(buffer_queue, (swapped_ ? queue_next_ : queue_).handle());
+    kernel.setArg(buffer_queue_next, (swapped_ ? queue_ : queue_next_).handle());
   }
 }
 
@@ -75,9 +106,14 @@ void Stages::set_params(const ParamsRecord& params) { params_.write(std::span<co
 
 void Stages::run(Stage stage, std::size_t count) {
   if (count == 0) return;
-  cl::Kernel& kernel = kernels_[static_cast<std::size_t>(stage)];
-  kernel.setArg(item_count_argument_, narrow<cl_uint>(count));
-  launch(device_, kernel, count, stage == Stage::sort_prefix ? 1 : local_size_);
+  const auto index = static_cast<std::size_t>(stage);
+  cl::Kernel& kernel = kernels_[index];
+  kernel.setArg(buffer_count, narrow<cl_uint>(count));
+  const auto start = std::chrono::steady_clock::now();
+  launch(device_, kernel, count, local_size_of(stage_names()[index]));
+  if (!timed_) return;
+  device_.finish();
+  seconds_[index] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Stages::set_counters(const std::array<uint, 4>& values) { counters_.RawBuffer::write(values.data(), 0, sizeof values); }

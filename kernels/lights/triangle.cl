@@ -10,6 +10,7 @@
 
 // Below the first the inversion loses digits and area sampling is as good; above the second the triangle fills a hemisphere.
 #define CAPLET_TRIANGLE_MIN_SOLID_ANGLE 3e-3f
+#define CAPLET_TRIANGLE_SMALL 0.25f
 #define CAPLET_TRIANGLE_MAX_SOLID_ANGLE 6.22f
 
 // Corners relative to the point they are seen from.
@@ -31,6 +32,7 @@ static inline TriangleView triangle_view(float3 v0, float3 v1, float3 v2, float3
   t.solid_angle = 0.0f;
   const float l0 = dot(t.v0, t.v0), l1 = dot(t.v1, t.v1), l2 = dot(t.v2, t.v2);
   if (!(l0 > 0.0f && l1 > 0.0f && l2 > 0.0f)) return t;
+  if (t.area < CAPLET_TRIANGLE_SMALL * fmin(l0, fmin(l1, l2))) return t;
   t.d0 = t.v0 / sqrt(l0);
   t.d1 = t.v1 / sqrt(l1);
   t.d2 = t.v2 / sqrt(l2);

@@ -65,19 +65,26 @@ static inline float power_heuristic(float a, float b) {
   return a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
 }
 
+// sin and cos of x in [-pi/4, pi/4] by their Taylor series, to 2 units in the last place: the built-in ones spend most of their time on
+// reducing arguments that are far away.
+static inline float sin_small(float x) {
+  const float z = x * x;
+  return x + x * z * (-1.66666667e-1f + z * (8.33333333e-3f + z * (-1.98412698e-4f + z * 2.75573192e-6f)));
+}
+static inline float cos_small(float x) {
+  const float z = x * x;
+  return 1.0f + z * (-0.5f + z * (4.16666667e-2f + z * (-1.38888889e-3f + z * 2.48015873e-5f)));
+}
+
 // Shirley and Chiu 1997: the unit square onto the unit disk, keeping areas.
 static inline float2 sample_disk(float2 u) {
   const float2 p = 2.0f * u - 1.0f;
   if (p.x == 0.0f && p.y == 0.0f) return (float2)(0.0f);
-  float radius, angle;
-  if (fabs(p.x) > fabs(p.y)) {
-    radius = p.x;
-    angle = 0.25f * CAPLET_PI * (p.y / p.x);
-  } else {
-    radius = p.y;
-    angle = 0.5f * CAPLET_PI - 0.25f * CAPLET_PI * (p.x / p.y);
-  }
-  return radius * (float2)(cos(angle), sin(angle));
+  const int wide = fabs(p.x) > fabs(p.y);
+  const float radius = wide ? p.x : p.y;
+  const float angle = 0.25f * CAPLET_PI * (wide ? p.y / p.x : p.x / p.y);
+  const float c = radius * cos_small(angle), s = radius * sin_small(angle);
+  return wide ? (float2)(c, s) : (float2)(s, c);
 }
 static inline float3 sample_cosine_hemisphere(float2 u) {
   const float2 d = sample_disk(u);

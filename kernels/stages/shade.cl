@@ -110,8 +110,10 @@ static void stage_item(const Globals* g, uint item) {
   scatter.x = sample.pdf;
   scatter.y *= sample.eta_scale;
 
-  const float survival = fmin(1.0f, max4(fabs(throughput)) * scatter.y);
-  if (depth >= 1 && survival < 1.0f) {
+  // The square root keeps paths longer than their throughput alone would: measured on the Cornell box, a quarter less variance for
+  // a tenth more time (docs/performance.md).
+  const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
+  if (depth >= 2 && survival < 1.0f) {
     if (sampler_1d(at.seed, at.sample, SAMPLE_ROULETTE(depth)) >= survival) return;
     throughput /= survival;
   }
@@ -127,6 +129,7 @@ static void stage_item(const Globals* g, uint item) {
   g->path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
   const uint position = atomic_inc(&g->counters[COUNTER_NEXT]);
   g->queue_next[position] = path;
+  if (g->params->sort_bits == CAPLET_NONE) return;
   const uint key = sort_key(g->params, origin, wi);
   g->sort_keys[position] = key;
   atomic_inc(&g->sort_bins[key]);

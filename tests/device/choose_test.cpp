@@ -44,12 +44,5 @@ TEST(Choose, WithoutAPlatformThereAreNoDevices) {
   EXPECT_THAT(std::string(text.data(), length), AllOf(HasSubstr("0 devices\n"), HasSubstr("pocl-opencl-icd")));
 }
 
-TEST(Choose, SteadyCountKeepsPoclInOneSizeClass) {
-  const Device device = Device::choose("cpu");
-  EXPECT_EQ(device.steady_count(0), 0u);
-  EXPECT_EQ(device.steady_count(1u << 20), 1u << 20);
-  EXPECT_EQ(device.steady_count(5), device.is_pocl() ? 65536u : 5u);
-}
-
 }  // namespace
 }  // namespace caplet

@@ -79,7 +79,7 @@ TEST_F(ProgramTest, OptionsAreDefinitions) { EXPECT_EQ(run(device_, build("-DSTE
 TEST_F(ProgramTest, PrepareChangesNothing) {
   Program program = build();
   const double before = program.build_seconds();
-  const double seconds = program.prepare("count_up", 4);
+  const double seconds = program.prepare("count_up", 4, 1 << 20);
   EXPECT_EQ(program.build_seconds(), before + seconds);
   EXPECT_EQ(seconds > 0, device_.is_pocl());
   EXPECT_EQ(run(device_, program, 2, 3, 4), (std::vector<cl_uint>{10, 11, 0}));
