@@ -30,7 +30,6 @@ static inline __global const float* area_data(const Globals* g, __global const L
 static inline float3 area_point(__global const float* data, int j) {
   return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]);
 }
-static inline int area_is_open(uint shape) { return shape == shape_triangle || shape == shape_disk; }
 
 // Object space to world of the light's instance: by how much areas with normal n (object space, unit) grow.
 static inline float area_scale(__global const InstanceRecord* instance, float3 n) {
@@ -94,13 +93,14 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
   __global const float* data = area_data(g, light);
   const uint shape = geometry->shape;
   const int both = (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0;
-  const int flip = area_is_open(shape) && (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+  const int flip = (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
   const int placed = light->instance != CAPLET_NONE;
   float per_area = 0.0f;
   s->pdf = 0.0f;
 
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) {
+    if (flip && !both) return 0;
     const float3 axis = area_point(data, 0) - p;
     const float distance = sqrt(dot(axis, axis));
     s->n = sphere_cone_sample(axis / distance, data[24] / distance, cone, u);
@@ -135,9 +135,10 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);
-      if (view.inside && !both) return 0;
+      if (view.inside != flip && !both) return 0;  // turned inside out, a solid emits inward
       per_area = round_cone_sample(&k, &view, u, &x, &n);
       if (!(per_area > 0.0f)) return 0;
+      if (flip) n = -n;
     }
     if (placed) {
       __global const InstanceRecord* instance = g->instances + light->instance;

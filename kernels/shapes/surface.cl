@@ -14,7 +14,7 @@
 #include "shapes/surface_triangle.cl"
 
 // World space. p lies on the surface within `error`: p +- ng * error is on the intended side. ng points outward of solids, and by
-// winding / +z (flipped by ReverseOrientation) for open shapes; ns on the same side. light: index into `lights` or CAPLET_NONE.
+// winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE.
 typedef struct {
   float3 p, ng, ns, dpdu;
   float2 uv;
@@ -23,8 +23,8 @@ typedef struct {
   int leaving;
 } Surface;
 
-// The point of primitive `primitive` (data at leaves[slot + 8 * row]) nearest to x in its own space. `fallback`: a unit vector,
-// the normal where x leaves it undefined.
+// The point (before ReverseOrientation) of primitive `primitive` (data at leaves[slot + 8 * row]) nearest to x in its own space.
+// `fallback`: a unit vector, the normal where x leaves it undefined.
 static inline LocalSurface surface_local(const Globals* g, const GeometryRecord geometry, uint primitive, uint slot, float3 x,
                                          float3 fallback) {
   __global const float* data = g->leaves + slot + 8u;
@@ -35,11 +35,8 @@ static inline LocalSurface surface_local(const Globals* g, const GeometryRecord 
       return surface_capsule(data, x, fallback);
     case shape_tapered_capsule:
       return surface_tapered_capsule(data, x, fallback);
-    case shape_disk: {
-      LocalSurface s = surface_disk(data, x);
-      if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) s.ng = s.ns = -s.ng;
-      return s;
-    }
+    case shape_disk:
+      return surface_disk(data, x);
     default:
       return surface_triangle(g, geometry, primitive, data, x, fallback);
   }
@@ -86,6 +83,10 @@ static inline Surface surface_at(const Globals* g, const RayRecord* ray, const H
   const int leaving = (int)((hit->surface >> 16) & 1u);
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   LocalSurface found = surface_local(g, geometry, primitive, hit->slot, o + hit->t * d, backward);
+  if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
+    found.ng = -found.ng;
+    found.ns = -found.ns;
+  }
   if (placed) found = surface_to_world(g->instances + hit->instance, found);
 
   Surface s;

@@ -40,8 +40,7 @@ static inline LocalSurface surface_triangle(const Globals* g, const GeometryReco
 
   LocalSurface s;
   s.p = v0 + (b1 * e1 + b2 * e2);
-  s.ng = (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) ? -n : n;
-  s.ns = s.ng;
+  s.ng = s.ns = n;
   s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
 
   const uint corner = geometry.index_begin + 3u * (primitive - geometry.primitive_begin);

@@ -54,7 +54,7 @@ enum {
 #define CAPLET_LAMBDA_COUNT 471
 
 // GeometryRecord.flags
-#define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation xor a mirroring transform (open shapes only)
+#define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
 #define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u

@@ -110,10 +110,10 @@ static void stage_item(const Globals* g, uint item) {
   scatter.x = sample.pdf;
   scatter.y *= sample.eta_scale;
 
-  // The square root keeps paths longer than their throughput alone would: measured on the Cornell box, a quarter less variance for
-  // a tenth more time (docs/performance.md).
+  // The square root keeps paths longer than their throughput alone would, and the first three scatterings always go on: variance falls
+  // faster than time grows (docs/performance.md).
   const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
-  if (depth >= 2 && survival < 1.0f) {
+  if (depth >= 3 && survival < 1.0f) {
     if (sampler_1d(at.seed, at.sample, SAMPLE_ROULETTE(depth)) >= survival) return;
     throughput /= survival;
   }

@@ -112,7 +112,7 @@ TEST_P(HardRays, ThinCapsules) {
   std::vector<FlatPrimitive> primitives;
   std::vector<RayRecord> rays;
   Random random(46);
-  for (int i = 0; i < 100; i++) {
+  for (int i = 0; i < 100 * static_cast<int>(test_scale()); i++) {
     FlatPrimitive p = random_primitive(random, i % 2 == 0 ? shape_capsule : shape_tapered_capsule, 1);
     p.data[6] = p.data[7] = 1e-4f;
     if (i % 4 == 1) p.data[7] = 3e-5f;
@@ -170,7 +170,7 @@ TEST_P(HardRays, DegenerateShapes) {
       {shape_tapered_capsule, 0, {0, 1, 0, 0.1f, 1, 0, 0.5f, 0.1f, 0}},  // one sphere inside the other
       {shape_tapered_capsule, 0, {-1, 0, 0, -1, 1, 0, 0.2f, 0, 0}},      // a pointed end
       capsule(-1, -1, 0, 1, -1, 0, 1e-20f)};                             // thinner than any ray can resolve
-  EXPECT_GT(check(primitives, random_rays(51, 3000)), 300);
+  EXPECT_GT(check(primitives, random_rays(51, 3000 * test_scale())), 300);
 }
 
 TEST_P(HardRays, DegenerateTrianglesNeverReportNan) {

@@ -67,7 +67,7 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
     top.push_back(box);
   }
   const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
-  auto rays = random_rays(24, 1000);
+  auto rays = random_rays(24, 600 * test_scale());
   for (RayRecord& r : rays) r.ox *= 2, r.oy *= 2, r.oz *= 2;
 
   for (const int width : {8, 1}) {

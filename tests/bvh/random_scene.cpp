@@ -2,7 +2,9 @@
 // Copyright Caplet authors
 #include "random_scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "shared/kinds.h"
@@ -46,6 +48,11 @@ std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned 
     out.back().id = i;
   }
   return out;
+}
+
+unsigned test_scale() {
+  const char* text = std::getenv("CAPLET_TEST_SCALE");
+  return text ? static_cast<unsigned>(std::clamp(std::atoi(text), 1, 1000)) : 1;
 }
 
 std::vector<RayRecord> random_rays(unsigned seed, unsigned count) {

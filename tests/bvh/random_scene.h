@@ -26,6 +26,8 @@ class Random {
 FlatPrimitive random_primitive(Random& random, unsigned shape, float size);
 /// `count` primitives of one kind, or, with shape_instance, of all kinds mixed.
 std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned count, float size);
+/// CAPLET_TEST_SCALE=N in the environment makes the comparisons with brute force N times as long (1 to 1000; default 1: 20 s).
+unsigned test_scale();
 /// Rays from around and inside [-1, 1]^3, of all lengths.
 std::vector<RayRecord> random_rays(unsigned seed, unsigned count);
 

@@ -35,7 +35,7 @@ TEST_P(Trace, AgreesWithBruteForce) {
   for (const float size : {0.05f, 0.5f}) {
     const auto primitives = random_scene(1 + GetParam(), GetParam(), 300, size);
     const Encoded scene = encode(primitives);
-    const auto rays = random_rays(77, 1500);
+    const auto rays = random_rays(77, 1500 * test_scale());
     wide().upload(scene.nodes, scene.leaves, {}, scene.tree.root);
     const auto hits = wide().closest(rays);
     int wrong = 0, hit = 0;

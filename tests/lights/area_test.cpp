@@ -82,7 +82,16 @@ std::vector<AreaCase> cases() {
   const auto triangle_low = triangle({-1, -1, 2}, {1, -1, 2.5f}, {0.2f, 1, 2});
   Shape reversed = emissive(DiskShape{1.5, 0.8});
   reversed.reverse_orientation = true;
+  const auto turned = [](Shape shape) {
+    shape.reverse_orientation = true;
+    return shape;
+  };
   std::vector<AreaCase> all = {
+      {"sphere_turned_inside", turned(emissive(SphereShape{2})), {0.5, 0.25, -1}},
+      {"sphere_turned_two_sided", turned(emissive(SphereShape{1}, moved(1, 2, 3), true)), {2, 3.5, 2}},
+      {"ellipsoid_turned_inside", turned(emissive(SphereShape{1}, squash)), {0.75, 0.5, 0.125}},
+      {"capsule_turned_inside", turned(emissive(level, mirror)), {0.125, 0.25, 0.25}},
+      {"tapered_turned_inside", turned(emissive(cone)), {-0.5, 0.25, 0.25}},
       {"sphere_far", emissive(SphereShape{0.5}, moved(1, 2, 3)), {20, -3, 4}},
       {"sphere_medium", emissive(SphereShape{1}, moved(1, 2, 3)), {2, 3.5, 2}},
       {"sphere_near", emissive(SphereShape{1}), {1, 0, 1}},
@@ -285,6 +294,25 @@ TEST(AreaLightSides, OneSidedLightsAreDarkFromBehind) {
     LightBench bench(flat);
     const Moments lit = moments(bench.sample({0.125, 0.25, 0.125}, 1000), [](const SampledLight&) { return 1.0; });
     EXPECT_EQ(lit.mean, faces_away ? 0 : 1);
+  }
+}
+
+TEST(AreaLightSides, SolidsTurnedInsideOutEmitInward) {
+  const glm::dmat4 stretched = glm::scale(glm::dmat4(1), {1.0, 1.0, 1.5});
+  for (Shape shape : {emissive(SphereShape{2}), emissive(SphereShape{2}, stretched),
+                      emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 2)), emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 1.5f))}) {
+    shape.reverse_orientation = true;
+    const FlatScene flat = lower(scene_of(shape));
+    LightBench bench(flat);
+    // All around p: E = pi L whatever the shape.
+    const Moments e = moments(bench.sample({0.5, 0.25, -0.5}, sample_count),
+                              [](const SampledLight& s) { return std::max(0.0, double(s.wi.z)) / s.pdf; });
+    EXPECT_NEAR(e.mean, pi, 3 * e.error + 1e-5 * pi);
+    EXPECT_LT(e.error, 0.01 * pi);
+    for (const glm::dvec3& outside : {glm::dvec3(0.25, 5, 0.5), glm::dvec3(0, 0, 40)}) {
+      const Moments lit = moments(bench.sample(outside, 1000), [](const SampledLight&) { return 1.0; });
+      EXPECT_EQ(lit.mean, 0);
+    }
   }
 }
 

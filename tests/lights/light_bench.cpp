@@ -270,7 +270,7 @@ std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) 
       SurfacePoint point{place(part(u, v)), glm::normalize(across), glm::length(across) / static_cast<double>(count)};
       const glm::dvec3 outward = open ? world_open_normal : point.p - world_center;
       if (glm::dot(point.n, outward) < 0) point.n = -point.n;
-      if (open && shape.reverse_orientation) point.n = -point.n;
+      if (shape.reverse_orientation) point.n = -point.n;
       points.push_back(point);
     }
   return points;

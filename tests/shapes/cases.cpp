@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 
 #include "shared/kinds.h"
@@ -60,6 +61,11 @@ FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
       return make_disk(floats(c), n, radius);
     }
   }
+}
+
+int test_scale() {
+  const char* text = std::getenv("CAPLET_TEST_SCALE");
+  return text ? std::clamp(std::atoi(text), 1, 1000) : 1;
 }
 
 Extent extent_of(const FlatPrimitive& p) {

@@ -3,6 +3,7 @@
 //
 // Random primitives and rays for the shape tests: scales from 1e-3 to 1e3, coordinates up to 1e5, lengths up to 1e4 radii; rays
 // that come from outside, far, inside and the surface, run along the axes, touch, and pass rims and ends.
+// CAPLET_TEST_SCALE=N in the environment tries N times as many primitives (default 1: some 20 s on two cores in all).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -35,6 +36,9 @@ class CaseMaker {
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   std::mt19937 random_;
 };
+
+/// CAPLET_TEST_SCALE, 1 to 1000; 1 when it is not set.
+int test_scale();
 
 /// Where a primitive lies and how large it is.
 struct Extent {

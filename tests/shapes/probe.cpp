@@ -175,6 +175,7 @@ std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const 
   std::vector<std::uint32_t> roots;
   for (const std::uint32_t i : which) roots.push_back(roots_[i]);
   std::vector<GeometryRecord> geometries = geometries_;
+  for (GeometryRecord& geometry : geometries) geometry.flags = flags;
   if (!mesh_uvs.empty())
     for (GeometryRecord& geometry : geometries) geometry.uv_begin = 0;
   const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);

@@ -61,6 +61,7 @@ class Probe {
                           const std::vector<std::array<float, 3>>& directions) const;
   /// Box of primitive i's tree.
   const EncodedTree& tree(std::size_t i) const { return trees_[i]; }
+  std::uint32_t flags = 0;      // GeometryRecord.flags of all
   std::vector<float> mesh_uvs;  // two a vertex, vertices 3 i .. 3 i + 2 of primitive i; set before the first call of trace
 
  private:

@@ -108,7 +108,7 @@ class ShapeAgainstWitness : public testing::TestWithParam<ShapeKind> {};
 
 void compare(const ShapeKind& kind, int width, bool hard, int primitives, int rays, std::uint32_t seed) {
   CaseMaker maker(seed);
-  const CaseSet cases = maker.set(kind.shape, hard, primitives, rays);
+  const CaseSet cases = maker.set(kind.shape, hard, test_scale() * primitives, rays);
   const Probe probe(device(), width, cases.primitives);
   const std::vector<Probed> probed = probe.trace(cases.which, cases.rays);
   Tally tally;

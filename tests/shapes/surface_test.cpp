@@ -47,7 +47,7 @@ double sharpest(const FlatPrimitive& p) {
 
 TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
   CaseMaker maker(41);
-  const CaseSet cases = maker.set(GetParam().shape, true, 1000, 20);
+  const CaseSet cases = maker.set(GetParam().shape, true, 1000 * test_scale(), 20);
   const Probe probe(device(), 8, cases.primitives);
   const auto probed = probe.trace(cases.which, cases.rays);
   double worst = 0;
@@ -143,11 +143,41 @@ void expect_clean_exits(const ShapeKind& kind, const Probe& probe, const CaseSet
 
 TEST_P(SurfacePoints, AreLeftForGood) {
   CaseMaker maker(42);
-  const CaseSet cases = maker.set(GetParam().shape, true, 2000, 50);
+  const CaseSet cases = maker.set(GetParam().shape, true, 2000 * test_scale(), 50);
   expect_clean_exits(GetParam(), Probe(device(), 8, cases.primitives), cases, maker);
 }
 
 // --- Under affine transforms ---
+
+// Turned inside out, a shape has its normals on the other side and all else as it was.
+TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
+  CaseMaker maker(47);
+  const CaseSet cases = maker.set(GetParam().shape, false, 100, 20);
+  Probe probe(device(), 8, cases.primitives);
+  const auto plain = probe.trace(cases.which, cases.rays);
+  probe.flags = CAPLET_GEOMETRY_FLIP_NORMAL;
+  const auto turned = probe.trace(cases.which, cases.rays);
+  int hits = 0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    ASSERT_EQ(is_hit(plain[i]), is_hit(turned[i]));
+    if (!is_hit(plain[i])) continue;
+    ++hits;
+    const SurfaceOut &a = plain[i].surface, &b = turned[i].surface;
+    EXPECT_EQ(point(a.p), point(b.p));
+    EXPECT_EQ(point(a.ng), -point(b.ng));
+    EXPECT_EQ(point(a.ns), -point(b.ns));
+    EXPECT_EQ(point(a.dpdu), point(b.dpdu));
+    EXPECT_EQ(a.error, b.error);
+    EXPECT_EQ(a.leaving, b.leaving);
+    // The implicit function still grows outward of the solid.
+    if (GetParam().shape <= shape_tapered_capsule) {
+      const reference::Primitive witness = witness_of(cases.primitives[cases.which[i]]);
+      const double step = 100 * double(a.error);
+      EXPECT_LT(reference::value(witness, point(b.p) + step * point(b.ng)), reference::value(witness, point(b.p)));
+    }
+  }
+  EXPECT_GT(hits, 400);
+}
 
 struct PlacedCases {
   CaseSet cases;
