@@ -88,7 +88,6 @@ std::vector<AreaCase> cases() {
   };
   std::vector<AreaCase> all = {
       {"sphere_turned_inside", turned(emissive(SphereShape{2})), {0.5, 0.25, -1}},
-      {"sphere_turned_two_sided", turned(emissive(SphereShape{1}, moved(1, 2, 3), true)), {2, 3.5, 2}},
       {"ellipsoid_turned_inside", turned(emissive(SphereShape{1}, squash)), {0.75, 0.5, 0.125}},
       {"capsule_turned_inside", turned(emissive(level, mirror)), {0.125, 0.25, 0.25}},
       {"tapered_turned_inside", turned(emissive(cone)), {-0.5, 0.25, 0.25}},

@@ -173,6 +173,7 @@ TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
     if (GetParam().shape <= shape_tapered_capsule) {
       const reference::Primitive witness = witness_of(cases.primitives[cases.which[i]]);
       const double step = 100 * double(a.error);
+      if (step > 0.5 * sharpest(cases.primitives[cases.which[i]])) continue;  // not through to the other side
       EXPECT_LT(reference::value(witness, point(b.p) + step * point(b.ng)), reference::value(witness, point(b.p)));
     }
   }
