@@ -28,7 +28,10 @@ static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, floa
   const float z = dot(v, unit_axis);
   float3 radial = v - z * unit_axis;
   radial -= dot(radial, unit_axis) * unit_axis;
-  const float3 unit_radial = unit_or(radial, perpendicular(unit_axis));
+  float3 unit_radial = unit_or(radial, perpendicular(unit_axis));
+  // Where x is on the axis to rounding, what is left may point along it.
+  const float tilt = dot(unit_radial, unit_axis);
+  unit_radial = fabs(tilt) < 0.5f ? unit_or(unit_radial - tilt * unit_axis, unit_radial) : perpendicular(unit_axis);
   const float along = (z - dot(radial, unit_radial) * k / c) / axis_length;
   const float s = fmin(fmax(along, 0.0f), 1.0f);
 

@@ -59,8 +59,8 @@ TEST_P(ClosedForms, Agrees) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForms, testing::ValuesIn(expectations()), [](const auto& info) {
-  std::string name = std::filesystem::path(info.param.scene).stem().string();
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForms, testing::ValuesIn(expectations()), [](const auto& parameter) {
+  std::string name = std::filesystem::path(parameter.param.scene).stem().string();
   for (char& c : name)
     if (c == '-') c = '_';
   return name;

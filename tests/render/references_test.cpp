@@ -46,8 +46,8 @@ TEST_P(References, AgreesWithMitsuba) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Mitsuba, References, testing::ValuesIn(reference_scenes()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Mitsuba, References, testing::ValuesIn(reference_scenes()), [](const auto& parameter) {
+  std::string name = parameter.param.name;
   for (char& c : name)
     if (c == '-') c = '_';
   return name;
