@@ -33,8 +33,10 @@ static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float 
   const real cx = c->px - (beyond ? c->bx : zero), cy = c->py - (beyond ? c->by : zero), cz = c->pz - (beyond ? c->bz : zero);
   const real tc = -real_dot(cx, cy, cz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real qx = cx + tc * ray->dx, qy = cy + tc * ray->dy, qz = cz + tc * ray->dz;
-  const real disc = c->r * c->r - real_dot(qx, qy, qz, qx, qy, qz);
-  *hit &= body | (disc >= 0.0f);
+  const real qq = real_dot(qx, qy, qz, qx, qy, qz), disc = c->r * c->r - qq;
+  // 2 to 4 eps (L + r) of room: where rounding takes a crossing of the tube past its end, the sphere must not disown it.
+  const real outer = c->r + 0x1p-23f * (fabs(c->bx) + fabs(c->by) + fabs(c->bz) + c->r);
+  *hit &= body | (qq <= outer * outer);
   return body ? side : tc + sign * sqrt(real_max(disc, zero) * ray->inv_dd);
 }
 
