@@ -83,8 +83,8 @@ double primitive_area(const FlatPrimitive& p) {
       const double l = length3(d, d + 3), r0 = d[6], r1 = d[7], dr = r0 - r1;
       if (l <= std::abs(dr)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
       const double s = dr / l, c = std::sqrt(1 - s * s);  // sine and cosine of the tangent cone's half angle
-      // Two caps of heights r0 (1 + s)... seen from their centres, and the cone between the tangent circles of radii r0 c, r1 c.
-      return 2 * pi * (r0 * r0 * (1 - s) + r1 * r1 * (1 + s)) + pi * (r0 + r1) * c * l * c;
+      // Two caps, of heights r0 (1 + s) and r1 (1 - s), and the cone between the circles of contact of radii r0 c and r1 c.
+      return 2 * pi * (r0 * r0 * (1 + s) + r1 * r1 * (1 - s)) + pi * (r0 + r1) * c * l * c;
     }
     case shape_triangle: {
       const dvec3 a(d[0], d[1], d[2]), b(d[3], d[4], d[5]), c(d[6], d[7], d[8]);
@@ -381,9 +381,9 @@ class GeometryLowering {
       const double luminance = spectra_.illuminant_luminance(emission.radiance);
       emitter.scale = emission.scale;
       if (emission.power) {
+        // pbrt-v4: the power of a light of radiance 1, whatever the colour.
         const double sides = emission.two_sided ? 2 : 1;
-        const double of_unit = luminance * total_area * std::numbers::pi * sides;
-        emitter.scale = of_unit > 0 ? emission.scale * *emission.power / of_unit : 0;
+        emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
       }
       emitter.luminance = luminance * emitter.scale;
       for (std::size_t i = 0; i < emissive.count; ++i) {

@@ -31,7 +31,8 @@ static inline void store_first_hit(const Globals* g, uint path, const Surface* s
 static inline void sample_light(const Globals* g, uint path, const Surface* s, const Frame* frame, const Bsdf* bsdf, float3 wo_local,
                                 float3 wo, float4 throughput, float4 wavelengths, float u_select, float2 u) {
   LightSample light;
-  if (!light_sample(g, s->p, wavelengths, u_select, u, &light)) return;
+  // From the side that wo is on, as the density of a scattered ray that meets the light is: within an emitting solid it matters.
+  if (!light_sample(g, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface.
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
