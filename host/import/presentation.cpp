@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -135,6 +137,21 @@ View turned(const View& view, double azimuth, double elevation) {
   return view_from(level * std::cos(elevation) + view.up * std::sin(elevation));
 }
 
+bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1]; }
+
+/// For scenes without an up: the longer side goes along the image's longer side, a quarter turn where that is clearly better.
+View along_image(const View& view, const std::vector<Ball>& balls, double aspect) {
+  glm::dvec2 low(1e300), high(-1e300);
+  for (const Ball& ball : balls) {
+    const glm::dvec2 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center));
+    low = glm::min(low, p - ball.radius);
+    high = glm::max(high, p + ball.radius);
+  }
+  const glm::dvec2 size = high - low;
+  const double upright = std::max(size.x / aspect, size.y), turned = std::max(size.y / aspect, size.x);
+  return turned < 0.8 * upright ? View{view.up, -view.right, view.forward} : view;
+}
+
 View choose_view(const std::vector<Ball>& balls) {
   const Axes axes = principal_axes(balls);
   const auto facing = [](glm::dvec3 n) {
@@ -143,8 +160,7 @@ View choose_view(const std::vector<Ball>& balls) {
     const double main = size.z >= size.x && size.z >= size.y ? n.z : (size.y >= size.x ? n.y : n.x);
     return main < 0 ? -n : n;
   };
-  const bool flat = axes.extent[2] < kFlat * axes.extent[1];
-  if (flat) return turned(view_from(facing(axes.axis[2])), radians(10), radians(6));
+  if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), radians(10), radians(6));
   // A volume: across its widest level direction, three-quarter.
   glm::dvec3 wide(axes.axis[0].x, 0, axes.axis[0].z);
   if (glm::length(wide) < 0.5) wide = {axes.axis[1].x, 0, axes.axis[1].z};
@@ -201,12 +217,13 @@ EnvironmentImage studio() {
 void frame_camera(Scene& scene) {
   const std::vector<Ball> balls = balls_of(scene);
   if (balls.empty()) return;
-  const View view = choose_view(balls);
+  View view = choose_view(balls);
+  const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
+  if (scene.has_no_up) view = along_image(view, balls, width / height);
 
   // A ball is inside a side of the view pyramid when its centre is one radius behind the plane. With the plane's angle a to the
   // axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and -cos(a) x - sin(a) z >= L, R and L being the largest of
   // +-cos(a) cx - sin(a) cz + r; both are equal when x is centred, which gives the nearest apex.
-  const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
   const double half = std::tan(kFieldOfView / 2) * (1 - kMargin);
   struct Side {
     double sine, cosine, right, left;

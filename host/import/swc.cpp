@@ -272,9 +272,9 @@ Palette palette_of_type(int type) {
     case kSoma:
       return {"soma", {0.86, 0.62, 0.22}};
     case 2:
-      return {"axon", {0.12, 0.48, 0.82}};
+      return {"axon", {0.20, 0.62, 0.95}};
     case 3:
-      return {"basal dendrite", {0.85, 0.23, 0.12}};
+      return {"basal dendrite", {0.95, 0.36, 0.18}};
     case 4:
       return {"apical dendrite", {0.66, 0.22, 0.66}};
     default:
@@ -353,6 +353,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&) {
     shape.where = {scene.source, 1, 0};
     scene.shapes.push_back(std::move(shape));
   }
+  scene.has_no_up = true;
   add_presentation(scene);
   return scene;
 }

@@ -188,6 +188,7 @@ struct Scene {
   IntegratorSettings integrator;
   std::string source;             // the file it came from
   bool automatic_camera = false;  // the camera was framed to the shapes (import/presentation.h), for the film's size as it was
+  bool has_no_up = false;         // no direction is up (a neuron): the automatic camera may turn the scene within the image
 };
 
 struct Bounds {
