@@ -201,7 +201,7 @@ class Builder {
 
     std::uint32_t left = 0;
     // A median split needs log2(count) levels below; with groups apart, one more. The heuristic may use what is beyond that.
-    const int needed = std::bit_width(count) + 2;
+    const int needed = static_cast<int>(std::bit_width(count)) + 2;
     if (depth + needed < max_depth) {
       if (count <= width && b.mixed) {
         left = partition(first, count, [&](const Reference& r) { return r.group == b.group; });
