@@ -123,8 +123,8 @@ class Program {
                              BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
   /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by launches with null buffers and
-  /// zero scalars: the kernel must do nothing when its count is 0. PoCL compiles a kernel once for fewer than 65536 work-items and
-  /// again for more: both, unless `most`, the largest count it will be launched with, needs the first alone. Nothing on other
+  /// zero scalars: the kernel must do nothing when its count is 0. PoCL compiles a kernel once for fewer than 65536 work-items
+  /// and again for more: both, unless `most`, the largest count it will be launched with, needs the first alone. Nothing on other
   /// platforms. Returns the seconds it took, which build_seconds() then includes.
   double prepare(const std::string& kernel_name, std::size_t local, std::size_t most);
   double build_seconds() const { return build_seconds_; }

@@ -10,7 +10,8 @@
 
 namespace caplet {
 
-/// One primitive: data as the data rows of shapes.def, in the space of its tree. Instances carry their box (min 3, max 3) in `data`.
+/// One primitive: data as the data rows of shapes.def, in the space of its tree. Instances carry their box (min 3, max 3) in
+/// `data`.
 struct FlatPrimitive {
   std::uint32_t shape;
   std::uint32_t id;  // global primitive id; for instances the index into FlatScene::instances
@@ -18,16 +19,17 @@ struct FlatPrimitive {
 };
 
 struct EncodedTree {
-  std::uint32_t root = 0;                // node index
-  std::vector<std::uint32_t> slots;      // of each primitive given
+  std::uint32_t root = 0;            // node index
+  std::vector<std::uint32_t> slots;  // of each primitive given
   float min[3] = {0, 0, 0}, max[3] = {0, 0, 0};
   std::uint64_t nodes = 0;
   int depth = 0;
   double sah = 0;
 };
 
-/// Builds the tree over `primitives` (at least one) and appends nodes and leaf blocks. Boxes are conservative: they hold every point the
-/// shape kernels may report, their rounding included. Throws InputError when rows or nodes exceed the layout, before allocating.
+/// Builds the tree over `primitives` (at least one) and appends nodes and leaf blocks. Boxes are conservative: they hold every
+/// point the shape kernels may report, their rounding included. Throws InputError when rows or nodes exceed the layout, before
+/// allocating.
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves);
 
 }  // namespace caplet

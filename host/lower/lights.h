@@ -14,16 +14,17 @@ namespace caplet {
 /// One emissive primitive as placed in the world.
 struct Emitter {
   std::uint32_t slot, instance, geometry;
-  double area;       // world
+  double area;  // world
   std::uint32_t spectrum;
   double scale;      // multiplies the spectrum
   double luminance;  // of the radiance, scale included
   bool two_sided;
 };
 
-/// Fills lights, light_data, light_alias, environment_* and the light fields of params. Light i is emitter i for i < emitters.size();
-/// the scene's point, spot and distant lights follow, infinite ones last. Selection is proportional to power; constant infinite lights
-/// are never selected, since BSDF sampling finds them as well. `params.scene_*` must be set. Throws InputError for more than one image light.
+/// Fills lights, light_data, light_alias, environment_* and the light fields of params. Light i is emitter i for i <
+/// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. Selection is proportional to power;
+/// constant infinite lights are never selected, since BSDF sampling finds them as well. `params.scene_*` must be set. Throws
+/// InputError for more than one image light.
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

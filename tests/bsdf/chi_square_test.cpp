@@ -148,8 +148,8 @@ TEST(BsdfChiSquare, WrongDensitiesAreFound) {
   EXPECT_LT(chi_square(observed, expected).p_value, 1e-6);
 }
 
-// The white furnace: no BSDF sends back more than it gets, and densities integrate to at most one. 2e-3 is allowed for the midpoint
-// rule. What a rough surface's density lacks is sampled below the horizon and absorbed.
+// The white furnace: no BSDF sends back more than it gets, and densities integrate to at most one. 2e-3 is allowed for the
+// midpoint rule. What a rough surface's density lacks is sampled below the horizon and absorbed.
 TEST(BsdfIntegrals, AtMostOne) {
   for (const Case& test : all_cases()) {
     const std::vector<float> integrals = integrate(test.bsdf, direction(test.theta, 0.6));
