@@ -73,6 +73,7 @@ std::vector<DeviceInfo> list_devices() {
 Device Device::choose(const std::string& choice) {
   const std::vector<Found> devices = find_devices();
   std::vector<DeviceInfo> infos;
+  infos.reserve(devices.size());
   for (const Found& candidate : devices) infos.push_back(candidate.info);
   const Found& found = devices[select_device(infos, choice)];
   Device out;

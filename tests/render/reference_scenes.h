@@ -20,7 +20,7 @@ struct ReferenceScene {
 inline const std::vector<ReferenceScene>& reference_scenes() {
   static const std::vector<ReferenceScene> scenes = {
       {"mis-grey", false, 0.003, 0.02, 8},     {"glossy-grey", false, 0.003, 0.01, 1}, {"capsules-grey", false, 0.003, 0.01, 1},
-      {"cornell-grey", false, 0.003, 0.01, 1}, {"cornell", true, 0.005, 0.01, 1},      {"environment", true, 0.005, 0.01, 8},
+      {"cornell-grey", false, 0.003, 0.01, 1}, {"cornell", true, 0.005, 0.01, 1},      {"environment", true, 0.005, 0.01, 32},
   };
   return scenes;
 }
