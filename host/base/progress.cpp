@@ -96,6 +96,7 @@ void ProgressReporter::clear_bar() {
 void ProgressReporter::update(double fraction, double paths_per_second, const std::string& detail) {
   if (style_ == Style::none || finished_) return;
   const Clock::time_point now = now_();
+  if (!(fraction > 0)) start_ = now;
   const ProgressState state{fraction, std::chrono::duration<double>(now - start_).count(), paths_per_second, detail};
   if (fraction >= 1) {
     finished_ = true;

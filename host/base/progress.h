@@ -48,6 +48,7 @@ class ProgressReporter {
   ProgressReporter& operator=(const ProgressReporter&) = delete;
 
   /// Draws when the last drawing is 0.2 s (bar) or 5 s (lines) old; the end of the task is always drawn as a line.
+  /// A fraction of 0 starts the clock anew: what went before the task does not count.
   void update(double fraction, double paths_per_second, const std::string& detail);
 
  private:

@@ -19,6 +19,7 @@ struct Invocation {
 
 void add_render(CLI::App& app, const Invocation& invocation);
 void add_devices(CLI::App& app);
+void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 

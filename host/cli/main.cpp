@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong.\n"
       "`caplet COMMAND --help` explains a command.");
   caplet::cli::add_render(app, invocation);
+  caplet::cli::add_pick(app);
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_bench(app);

@@ -77,6 +77,41 @@ std::array<int, 4> parse_crop(const std::string& text) {
   return {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2]), static_cast<int>(corners[3])};
 }
 
+std::array<int, 2> parse_pixel(const std::string& text) {
+  const std::vector<long long> numbers = whole_numbers(text, ',');
+  if (numbers.size() != 2) refuse("--pixel", fmt::format("'{}' is not X,Y in whole pixels", text));
+  for (const long long number : numbers)
+    if (number < 0 || number > max_pixels) refuse("--pixel", fmt::format("'{}' is outside of any image", text));
+  return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
+}
+
+void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film) {
+  const auto [x, y] = pixel;
+  if (x >= film.width || y >= film.height)
+    refuse("--pixel",
+           fmt::format("{},{} is outside of the image of {}x{} (pixels count from 0,0)", x, y, film.width, film.height));
+  if (!film.crop) return;
+  const std::array<int, 4>& crop = *film.crop;
+  if (x < crop[0] || x >= crop[1] || y < crop[2] || y >= crop[3])
+    refuse("--pixel", fmt::format("{},{} is outside of the crop {},{},{},{}", x, y, crop[0], crop[2], crop[1], crop[3]));
+}
+
+RayNumbers parse_ray(const std::string& text) {
+  std::array<double, 6> numbers{};
+  std::size_t count = 0;
+  for (std::string_view rest = text;; ++count) {
+    if (count == numbers.size()) refuse("--ray", fmt::format("'{}' is more than six numbers", text));
+    const std::size_t comma = rest.find(',');
+    if (const auto wrong = parse_number(rest.substr(0, comma), numbers[count])) refuse("--ray", *wrong);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (count != 5) refuse("--ray", fmt::format("'{}' is not ox,oy,oz,dx,dy,dz", text));
+  RayNumbers ray{};
+  if (const auto bad = to_ray(numbers, ray)) refuse("--ray", bad->message);
+  return ray;
+}
+
 void apply(const Overrides& overrides, Scene& scene) {
   FilmSettings& film = scene.film;
   if (overrides.size) {

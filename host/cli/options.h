@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "table/ray_file.h"
 
 namespace caplet::cli {
 
@@ -22,6 +23,15 @@ ImageSize parse_size(const std::string& text);
 
 /// "x0,y0,x1,y1" in pixels from the top left, x1 and y1 excluded. Throws InputError naming --crop.
 std::array<int, 4> parse_crop(const std::string& text);
+
+/// "X,Y": a pixel of the full image, from the top left. Throws InputError naming --pixel.
+std::array<int, 2> parse_pixel(const std::string& text);
+
+/// Throws InputError naming --pixel when the pixel is not of the image, or not within its crop.
+void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film);
+
+/// "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError naming --ray.
+RayNumbers parse_ray(const std::string& text);
 
 /// What the command line overrides.
 struct Overrides {

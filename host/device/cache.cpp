@@ -37,7 +37,7 @@ fs::path environment_path(const char* name) {
 }  // namespace
 
 fs::path cache_folder() {
-  if (const fs::path named = environment_path("CAPLET_CACHE"); !named.empty()) return named;
+  if (fs::path named = environment_path("CAPLET_CACHE"); !named.empty()) return named;
   if (const fs::path base = environment_path("XDG_CACHE_HOME"); !base.empty()) return base / "caplet";
   if (const fs::path home = environment_path("HOME"); !home.empty()) return home / ".cache" / "caplet";
   return {};

@@ -147,7 +147,7 @@ template <class Value>
 void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const Value& value) {
   if constexpr (std::is_base_of_v<RawBuffer, Value>) {
     const cl_mem memory = value.handle()();
-    set_argument(device, kernel, index, &memory, sizeof(memory));
+    set_argument(device, kernel, index, &memory, sizeof(cl_mem));
   } else {
     static_assert(std::is_arithmetic_v<Value>, "kernels take buffers and scalars");
     set_argument(device, kernel, index, &value, sizeof(value));

@@ -23,7 +23,7 @@ constexpr float knee = 0.5f;
 constexpr float whitening = 0.125f;
 
 std::uint8_t byte_from_linear(float value) {
-  return static_cast<std::uint8_t>(std::clamp(srgb_from_linear(value), 0.0f, 1.0f) * 255 + 0.5f);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(srgb_from_linear(value), 0.0f, 1.0f) * 255));
 }
 
 }  // namespace

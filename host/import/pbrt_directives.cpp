@@ -4,6 +4,7 @@
 // The directives that set options, transforms, materials, lights and shapes.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -283,12 +284,29 @@ void Parser::shape() {
   Parameters given = parameters(owner(type), "shape");
   if (!check_name("Shape", type, where_, diagnostics_)) return;
   const auto by_name = [this](const std::string& name, const SourceLocation& where) { return use_of_name(name, where); };
-  auto shape = make_shape(type, given, state_.material, textures_, by_name);
-  if (!shape) return;
-  shape->world_from_object = state_.ctm;
-  shape->reverse_orientation = state_.reverse_orientation;
-  shape->emission = state_.emission;
-  (object_ ? scene_.objects[*object_].shapes : scene_.shapes).push_back(std::move(*shape));
+  const auto finished = [this](const std::string& name, std::string& problem) { return finished_object(name, problem); };
+  Shape shape = make_shape(type, given, state_.material, {textures_, by_name, finished});
+  shape.world_from_object = state_.ctm;
+  shape.reverse_orientation = state_.reverse_orientation;
+  shape.emission = state_.emission;
+  (object_ ? scene_.objects[*object_].shapes : scene_.shapes).push_back(std::move(shape));
+}
+
+const Object* Parser::finished_object(const std::string& name, std::string& problem) const {
+  const auto found = object_names_.find(name);
+  if (found == object_names_.end()) {
+    std::vector<std::string> known;
+    for (const auto& [other, index] : object_names_) known.push_back(other);
+    const std::string nearest = nearest_name(name, known);
+    problem = "names the object " + in_quotes(name) + ", which is not defined before this" +
+              (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\"");
+    return nullptr;
+  }
+  const Object& object = scene_.objects[found->second];
+  if (object_ != found->second) return &object;
+  problem = "names the object " + in_quotes(name) + ", which is being defined (" + object.where.to_string() +
+            "): a csg cannot hold itself";
+  return nullptr;
 }
 
 void Parser::resolve_materials() {
@@ -317,13 +335,20 @@ void Parser::resolve_materials() {
   bool uses_default = false;
   const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
   index_of_use[0] = default_index;
-  const auto remap = [&](Shape& shape) {
-    uses_default = uses_default || shape.material == 0;
-    shape.material = index_of_use[shape.material];
+  const auto remap_one = [&](std::uint32_t& material) {
+    uses_default = uses_default || material == 0;
+    material = index_of_use[material];
+  };
+  const std::function<void(Shape&)> remap = [&](Shape& shape) {
+    remap_one(shape.material);
+    for (std::uint32_t& material : shape.materials) remap_one(material);
     if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-      for (std::uint32_t& material : capsules->materials) {
-        uses_default = uses_default || material == 0;
-        material = index_of_use[material];
+      for (std::uint32_t& material : capsules->materials) remap_one(material);
+    if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
+      for (std::shared_ptr<const Shape>& operand : csg->operands) {
+        auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
+        remap(*own);
+        operand = std::move(own);
       }
   };
   for (Shape& shape : scene_.shapes) remap(shape);

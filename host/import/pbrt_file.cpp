@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <system_error>
 
@@ -36,7 +38,8 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   std::string bytes;
   const auto size = fs::file_size(path, error);
   if (!error && size < limit) bytes.reserve(size + 1);
-  constexpr unsigned chunk = 1 << 20;
+  // One byte more than the file, so that its end shows in the second read; as much at a time when it is packed.
+  const auto chunk = static_cast<unsigned>(std::clamp<std::uintmax_t>(error ? 0 : size + 1, 1 << 12, 1 << 20));
   for (;;) {
     const std::size_t before = bytes.size();
     bytes.resize(before + chunk);

@@ -128,6 +128,15 @@ AreaEmission make_area_emission(Parameters& parameters) {
   emission.scale = scale_of(parameters);
   emission.power = positive_or_none(parameters, "power");
   emission.two_sided = parameters.boolean("twosided", false);
+  if (const Parameter* surfaces = parameters.values("surfaces", {"integer"}))
+    for (const double surface : surfaces->numbers) {
+      if (surface < 0) {
+        parameters.error("surfaces", "are numbered from 0 up");
+        break;
+      }
+      emission.surfaces.push_back(static_cast<std::uint32_t>(surface));
+    }
+  if (emission.power && !emission.surfaces.empty()) parameters.error("power", "cannot be combined with \"surfaces\"");
   parameters.refuse("filename");
   parameters.finish();
   return emission;

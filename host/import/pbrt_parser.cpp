@@ -3,7 +3,9 @@
 #include "import/pbrt_parser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -188,7 +190,7 @@ Parameters Parser::parameters(const std::string& owner, const char* attribute_ta
 std::string Parser::included_file() {
   const SourceLocation place = lexer_->place(lexer_->peek());
   const std::string name = string_argument("a file name");
-  const std::string file = resolve_file(name, place, main_file_);
+  std::string file = resolve_file(name, place, main_file_);
   std::error_code ignored;
   const std::string canonical = fs::weakly_canonical(file, ignored).string();
   if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
@@ -312,7 +314,8 @@ void Parser::present() {
                    });
   if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
   if (has_camera_) return;
-  if (bounds_of(scene_).empty()) return;
+  const Bounds bounds = bounds_of(scene_);
+  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min))) return;  // validate says why
   if (lit)
     frame_camera(scene_);
   else

@@ -119,6 +119,7 @@ class Parser {
   std::string included_file();
   void read_included(const std::string& file);
   std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
+  const Object* finished_object(const std::string& name, std::string& problem) const;
 
   // At the end
   void finish_attributes();

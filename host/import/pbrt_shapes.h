@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,10 +12,18 @@
 
 namespace caplet::pbrt {
 
-/// The geometry, name and material (if the statement names one) of a Shape statement of an accepted type; no value when it had
-/// errors (reported). `material_index` finds materials by name, for "string materials" and for those named within .capsules
-/// files. The rest of the state is the caller's.
-std::optional<Shape> make_shape(const std::string& type, Parameters& parameters, std::uint32_t material,
-                                const TextureTable& textures, const MaterialIndex& material_index);
+/// Finds a finished object by its name; otherwise gives null and says in `problem` why there is none.
+using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;
+
+/// What a Shape statement may refer to.
+struct ShapeContext {
+  const TextureTable& textures;
+  const MaterialIndex& material_index;  // for "string materials" and for names within .capsules files
+  const ObjectLookup& objects;          // for csg
+};
+
+/// The geometry, name and materials (those of the statement, else `material`) of a Shape statement of an accepted type. Errors
+/// are reported. The rest of the state is the caller's.
+Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t material, const ShapeContext& context);
 
 }  // namespace caplet::pbrt

@@ -8,7 +8,6 @@
 #ifdef CAPLET_WITH_PLY
 #include <assimp/scene.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
 #endif
 
@@ -17,19 +16,6 @@ namespace caplet {
 #ifdef CAPLET_WITH_PLY
 
 namespace {
-
-/// Whether assimp 5.2 reads such a file right. It mistakes bytes of elements it does not know for vertices and faces, refuses
-/// faces before vertices, rounds ascii numbers wrongly, and takes lists of texture coordinates from faces.
-bool assimp_reads(const ply::Header& header) {
-  if (header.encoding == ply::Encoding::ascii || header.elements.size() != 2 || header.vertex != 0) return false;
-  const auto& vertex = header.elements[0].properties;
-  const auto& face = header.elements[1].properties;
-  return std::none_of(vertex.begin(), vertex.end(),
-                      [](const ply::Property& p) {
-                        return p.is_list || p.name.starts_with("texture_") || ply::is_float(p.type) == false;
-                      }) &&
-         face.size() == 1;
-}
 
 TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const ply::Header& header) {
   const std::uint64_t vertices = header.elements[header.vertex].count, faces = header.elements[header.face].count;
@@ -61,12 +47,9 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
 
 TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes) {
   const ply::Header header = ply::parse_header(file, bytes);
-  const bool as_it_is = assimp_reads(header);
-  std::string rewritten;
-  ply::check_body(file, bytes, header, as_it_is ? nullptr : &rewritten);
-  const std::string& readable = as_it_is ? bytes : rewritten;
+  const std::string plain = ply::rewrite(file, bytes, header);
   Assimp::Importer importer;
-  return mesh_of(file, importer.ReadFileFromMemory(readable.data(), readable.size(), 0, "ply"), header);
+  return mesh_of(file, importer.ReadFileFromMemory(plain.data(), plain.size(), 0, "ply"), header);
 }
 
 #else

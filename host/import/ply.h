@@ -54,10 +54,10 @@ bool is_index_list(const Property& property);
 /// Reads and checks the header, the counts against the file's size. Throws InputError.
 Header parse_header(const std::string& file, std::string_view bytes);
 
-/// Walks over the whole body and throws InputError unless every value is there and readable, positions are finite and indices in
-/// range. With `rewritten`, also writes the mesh into it as a little-endian PLY of the plainest form: vertices before faces,
-/// floats x y z nx ny nz u v as far as given, then one list of 32-bit indices a face, nothing else.
-void check_body(const std::string& file, std::string_view bytes, const Header& header, std::string* rewritten);
+/// The mesh as a little-endian PLY of the plainest form: vertices before faces, x y z nx ny nz u v as far as given, then one list
+/// of 32-bit indices a face, nothing else. Throws InputError unless every value of the body is there and readable, positions are
+/// finite and indices in range.
+std::string rewrite(const std::string& file, std::string_view bytes, const Header& header);
 
 }  // namespace ply
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Walks over the body of a PLY file, because assimp reads on beyond the end of truncated ones.
+// Checks the body of a PLY file and writes it anew for assimp 5.2, which reads on beyond the end of truncated files, mistakes
+// bytes of elements it does not know for vertices and faces, refuses faces before vertices, rounds ascii numbers wrongly, takes
+// lists of texture coordinates from faces, and drops the first byte of a binary body when it is that of a newline.
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -136,8 +138,7 @@ std::string_view plain_name(std::string_view name) {
 
 class Walk {
  public:
-  Walk(const std::string& file, std::string_view bytes, const Header& header, bool rewrites)
-      : header_(header), values_(file, bytes, header), rewrites_(rewrites) {}
+  Walk(const std::string& file, std::string_view bytes, const Header& header) : header_(header), values_(file, bytes, header) {}
 
   void run() {
     for (std::size_t e = 0; e < header_.elements.size(); ++e)
@@ -152,16 +153,23 @@ class Walk {
   std::string rewritten() const {
     std::string out =
         "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(header_.elements[header_.vertex].count) + "\n";
+    const char* type = "double";
     for (const Property& property : header_.elements[header_.vertex].properties)
-      if (const std::string_view name = plain_name(property.name); !name.empty() && !property.is_list)
-        out += "property float " + std::string(name) + "\n";
+      if (const std::string_view name = plain_name(property.name); !name.empty() && !property.is_list) {
+        out += std::string("property ") + type + " " + std::string(name) + "\n";
+        type = "float";
+      }
     out += "element face " + std::to_string(header_.elements[header_.face].count) +
            "\nproperty list uint uint vertex_indices\nend_header\n";
-    return out + vertices_ + faces_;
+    out.reserve(out.size() + vertices_.size() + faces_.size());
+    out += vertices_;
+    out += faces_;
+    return out;
   }
 
  private:
   void vertex(const Element& element) {
+    bool is_first = true;
     for (const Property& p : element.properties) {
       const std::string_view name = p.is_list ? std::string_view() : plain_name(p.name);
       if (name.empty()) {
@@ -172,7 +180,12 @@ class Walk {
       const bool is_position = name == "x" || name == "y" || name == "z";
       if (is_position && !(std::abs(value) <= 3.4028234663852886e38))
         values_.fail("a vertex position is not finite (\"" + p.name + "\")");
-      if (rewrites_) append(vertices_, static_cast<float>(value));
+      // The low bytes of a float as a double are 0, so the body does not start with the byte of a newline.
+      if (is_first)
+        append(vertices_, static_cast<double>(static_cast<float>(value)));
+      else
+        append(vertices_, static_cast<float>(value));
+      is_first = false;
     }
   }
 
@@ -186,29 +199,28 @@ class Walk {
     const auto length = static_cast<std::uint64_t>(given);
     if (!values_.fits(length, p.type)) values_.truncated();
     if (!is_indices && values_.skip(p.type, length)) return;
-    if (is_indices && rewrites_) append(faces_, static_cast<std::uint32_t>(length));
+    if (is_indices) append(faces_, static_cast<std::uint32_t>(length));
     for (std::uint64_t i = 0; i < length; ++i) {
       const double value = values_.number(p.type);
       if (!is_indices) continue;
       if (value < 0 || value >= static_cast<double>(header_.elements[header_.vertex].count))
         values_.fail("a PLY face has the vertex index " + std::to_string(static_cast<std::int64_t>(value)) + ", but there are " +
                      std::to_string(header_.elements[header_.vertex].count) + " vertices");
-      if (rewrites_) append(faces_, static_cast<std::uint32_t>(value));
+      append(faces_, static_cast<std::uint32_t>(value));
     }
   }
 
   const Header& header_;
   Values values_;
-  bool rewrites_;
   std::string vertices_, faces_;
 };
 
 }  // namespace
 
-void check_body(const std::string& file, std::string_view bytes, const Header& header, std::string* rewritten) {
-  Walk walk(file, bytes, header, rewritten != nullptr);
+std::string rewrite(const std::string& file, std::string_view bytes, const Header& header) {
+  Walk walk(file, bytes, header);
   walk.run();
-  if (rewritten) *rewritten = walk.rewritten();
+  return walk.rewritten();
 }
 
 }  // namespace caplet::ply

@@ -184,7 +184,7 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
   if (!known.empty()) {
     const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
     std::ranges::nth_element(known, middle);
-    filled = std::max(kMissingRadiusPart * *middle, std::numeric_limits<float>::min());
+    filled = kMissingRadiusPart * *middle;
   } else {
     glm::vec3 low(samples[0].position), high(low);
     for (const SwcSample& sample : samples) {
@@ -195,6 +195,8 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
     const double extent = glm::length(glm::dvec3(high) - glm::dvec3(low));
     filled = extent > 0 ? static_cast<float>(kThin * extent) : 1.0F;
   }
+  // What rounds to 0 would be no radius.
+  filled = std::max(filled, std::numeric_limits<float>::min());
   std::size_t missing = 0;
   for (SwcSample& sample : samples)
     if (!(sample.radius > 0)) {

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
 
 #include "base/check.h"
 
@@ -37,6 +40,28 @@ void lower_camera(const Scene& scene, FlatScene& out) {
   record.screen_per_pixel_y = static_cast<float>(unit * (screen[2] - screen[3]) / film.height);
   record.lens_radius = static_cast<float>(camera.lens_radius);
   record.focal_distance = static_cast<float>(camera.focal_distance);
+}
+
+RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
+  FlatScene flat;
+  lower_camera(scene, flat);
+  const CameraRecord& camera = flat.camera;
+  const float* m = camera.world_from_camera;
+  // In double from the numbers the device has.
+  const glm::dvec3 local(camera.screen_min_x + (x + 0.5) * camera.screen_per_pixel_x,
+                         camera.screen_min_y + (y + 0.5) * camera.screen_per_pixel_y, 1);
+  glm::dvec3 direction;
+  for (int r = 0; r < 3; ++r) direction[r] = m[4 * r] * local.x + m[4 * r + 1] * local.y + m[4 * r + 2] * local.z;
+  direction = glm::normalize(direction);
+  RayRecord ray{};
+  ray.ox = m[3] + 0.0f;  // no -0
+  ray.oy = m[7] + 0.0f;
+  ray.oz = m[11] + 0.0f;
+  ray.dx = static_cast<float>(direction.x);
+  ray.dy = static_cast<float>(direction.y);
+  ray.dz = static_cast<float>(direction.z);
+  ray.t_max = std::numeric_limits<float>::infinity();
+  return ray;
 }
 
 }  // namespace caplet

@@ -13,4 +13,8 @@ namespace caplet {
 /// validate().
 void lower_camera(const Scene& scene, FlatScene& out);
 
+/// The ray through the middle of pixel (x, y) of the full image, from the top left, and the middle of the lens: world space, unit
+/// direction, t in (0, infinity). What kernels/math/camera.cl makes of it, up to rounding.
+RayRecord ray_of_pixel(const Scene& scene, int x, int y);
+
 }  // namespace caplet

@@ -64,6 +64,39 @@ ExactBox exact_box(const FlatPrimitive& p) {
         box.max[k] = a + across;
         break;
       }
+      case shape_cylinder:
+      case shape_cone: {
+        // A flat end is a disk across the axis.
+        const bool cylinder = p.shape == shape_cylinder;
+        const double axis[3] = {double(p.data[3]) - double(p.data[0]), double(p.data[4]) - double(p.data[1]),
+                                double(p.data[5]) - double(p.data[2])};
+        const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
+        const double across = squared > 0 ? std::sqrt(std::max(0.0, 1 - axis[k] * axis[k] / squared)) : 1;
+        const double r0 = double(p.data[6]), r1 = cylinder ? r0 : double(p.data[7]);
+        const double half0 = r0 * (p.data[cylinder ? 7 : 8] == CAPLET_CAP_ROUND ? 1 : across);
+        const double half1 = r1 * (p.data[cylinder ? 8 : 9] == CAPLET_CAP_ROUND ? 1 : across);
+        box.min[k] = std::min(a - half0, b - half1);
+        box.max[k] = std::max(a + half0, b + half1);
+        break;
+      }
+      case shape_polyhedron:
+      case shape_csg:
+        box.min[k] = b;
+        box.max[k] = c;
+        break;
+      case shape_partial_sphere:
+      case shape_open_cylinder:
+        box.min[k] = k == 2 ? double(p.data[1]) : -double(p.data[0]);
+        box.max[k] = k == 2 ? double(p.data[2]) : double(p.data[0]);
+        break;
+      case shape_partial_disk:
+        box.min[k] = k == 2 ? double(p.data[0]) : -double(p.data[1]);
+        box.max[k] = k == 2 ? double(p.data[0]) : double(p.data[1]);
+        break;
+      case shape_bilinear:
+        box.min[k] = std::min({a, b, c, double(p.data[9 + k])});
+        box.max[k] = std::max({a, b, c, double(p.data[9 + k])});
+        break;
       default:
         box.min[k] = a;
         box.max[k] = b;
@@ -103,6 +136,12 @@ void check_limits(std::uint64_t rows, std::uint64_t node_count) {
 }
 
 }  // namespace
+
+void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
+  const ExactBox box = exact_box(p);
+  std::copy(box.min.begin(), box.min.end(), min);
+  std::copy(box.max.begin(), box.max.end(), max);
+}
 
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves) {
   // Rows at the very least, before anything is allocated.
@@ -154,7 +193,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
       }
       std::uint32_t child = static_cast<std::uint32_t>(from.child[i]);
       if (from.child[i] < 0) {
-        const std::size_t leaf = static_cast<std::size_t>(~from.child[i]);
+        const std::uint32_t leaf = ~child;
         child = 0x80000000u | (tree.leaves[leaf].group << CAPLET_LEAF_ROW_BITS) | row_of[leaf];
       } else if (from.child[i] != 0x7fffffff) {
         child += out.root;

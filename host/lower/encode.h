@@ -11,11 +11,11 @@
 namespace caplet {
 
 /// One primitive: data as the data rows of shapes.def, in the space of its tree. Instances carry their box (min 3, max 3) in
-/// `data`.
+/// data[0..5], polyhedra and csg shapes in data[3..8].
 struct FlatPrimitive {
   std::uint32_t shape;
   std::uint32_t id;  // global primitive id; for instances the index into FlatScene::instances
-  float data[9];
+  float data[12];
 };
 
 struct EncodedTree {
@@ -26,6 +26,9 @@ struct EncodedTree {
   int depth = 0;
   double sah = 0;
 };
+
+/// The exact box of a primitive in its tree's space: min, then max.
+void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
 
 /// Builds the tree over `primitives` (at least one) and appends nodes and leaf blocks. Boxes are conservative: they hold every
 /// point the shape kernels may report, their rounding included. Throws InputError when rows or nodes exceed the layout, before

@@ -11,9 +11,11 @@
 #include <glm/matrix.hpp>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "base/check.h"
 #include "lower/encode.h"
+#include "lower/flat_shapes.h"
 
 namespace caplet {
 
@@ -25,6 +27,7 @@ using glm::dvec3;
 /// What one tree holds: primitives in its space, and where emissive ones come from.
 struct Part {
   Matrix placed{1};  // object_from_part
+  uint flags = 0;    // of its instances
   std::vector<FlatPrimitive> primitives;
   std::vector<const Shape*> shapes;  // that contributed
   struct Emissive {
@@ -36,65 +39,9 @@ struct Part {
   EncodedTree tree;
 };
 
-dvec3 apply_point(const Matrix& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
-
-/// The common scale when `m` keeps angles (a rotation or reflection times a factor), within float rounding; otherwise 0.
-double similarity_scale(const Matrix& m) {
-  const glm::dmat3 a(m);
-  const double x = glm::length(a[0]), y = glm::length(a[1]), z = glm::length(a[2]);
-  const double s = (x + y + z) / 3;
-  // Scene files carry rotations to six or seven digits: an angle error of 1e-6 moves a surface by less than a float's rounding of
-  // it.
-  const double slack = 2e-6 * s;
-  const bool equal = std::abs(x - s) <= slack && std::abs(y - s) <= slack && std::abs(z - s) <= slack;
-  const bool orthogonal = std::abs(glm::dot(a[0], a[1])) <= slack * s && std::abs(glm::dot(a[0], a[2])) <= slack * s &&
-                          std::abs(glm::dot(a[1], a[2])) <= slack * s;
-  return equal && orthogonal ? s : 0;
-}
-
-/// The common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise 0.
-double disk_scale(const Matrix& m) {
-  const glm::dmat3 a(m);
-  const double x = glm::length(a[0]), y = glm::length(a[1]), s = (x + y) / 2;
-  return std::abs(x - y) <= 2e-6 * s && std::abs(glm::dot(a[0], a[1])) <= 2e-6 * s * s ? s : 0;
-}
-
-void put(FlatPrimitive& p, int at, const dvec3& v) {
-  for (int k = 0; k < 3; ++k) p.data[at + k] = static_cast<float>(v[k]);
-}
-
 void write_matrix(float* rows, const Matrix& m) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
-}
-
-double length3(const float* a, const float* b) { return glm::length(dvec3(b[0], b[1], b[2]) - dvec3(a[0], a[1], a[2])); }
-
-/// Surface area of a primitive in its tree's space.
-double primitive_area(const FlatPrimitive& p) {
-  constexpr double pi = std::numbers::pi;
-  const float* d = p.data;
-  switch (p.shape) {
-    case shape_sphere:
-      return 4 * pi * d[3] * d[3];
-    case shape_capsule:
-      return 2 * pi * d[6] * length3(d, d + 3) + 4 * pi * d[6] * d[6];
-    case shape_tapered_capsule: {
-      const double l = length3(d, d + 3), r0 = d[6], r1 = d[7], dr = r0 - r1;
-      if (l <= std::abs(dr)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
-      const double s = dr / l, c = std::sqrt(1 - s * s);  // sine and cosine of the tangent cone's half angle
-      // Two caps, of heights r0 (1 + s) and r1 (1 - s), and the cone between the circles of contact of radii r0 c and r1 c.
-      return 2 * pi * (r0 * r0 * (1 + s) + r1 * r1 * (1 - s)) + pi * (r0 + r1) * c * l * c;
-    }
-    case shape_triangle: {
-      const dvec3 a(d[0], d[1], d[2]), b(d[3], d[4], d[5]), c(d[6], d[7], d[8]);
-      return 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
-    case shape_disk:
-      return pi * d[6] * d[6];
-    default:
-      return 0;
-  }
 }
 
 /// Mean factor by which `m` scales areas: the cofactor matrix applied to unit normals, averaged over a spherical Fibonacci set.
@@ -138,11 +85,11 @@ class GeometryLowering {
     if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
-    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, 1);
+    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, 1, Matrix(1));
     for (const Placed& placed : placed_) {
       if (placed.part->emitter_count == 0) continue;
       out_.instances[placed.instance].light_base = narrow<uint>(emitters.size());
-      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.area_scale);
+      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.area_scale, placed.world_from_part);
       emitters.insert(emitters.end(), more.begin(), more.end());
     }
     out_.params.root = top.tree.root;
@@ -159,36 +106,36 @@ class GeometryLowering {
     const Part* part;
     uint instance;
     double area_scale;
+    Matrix world_from_part;
   };
 
   /// One part for what is baked into the shapes' common space, then one for each transform that cannot be.
   std::vector<Part> lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
     std::vector<Part> parts(1);
-    std::map<std::array<double, 16>, std::size_t> by_transform;
+    std::map<std::pair<std::array<double, 16>, uint>, std::size_t> by_space;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const Shape& shape = shapes[i];
+      if (std::holds_alternative<CsgShape>(shape.geometry) && bounds_of(shape).empty()) continue;
       Part* part = &parts[0];
       Matrix baked = shape.world_from_object;
-      if (!bakes(shape)) {
+      const uint unseen = unseen_sides(shape);
+      const bool stays = !bakes(shape);
+      if (stays || unseen != 0) {
+        const Matrix placed = stays ? shape.world_from_object : Matrix(1);
         std::array<double, 16> key;
-        for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = shape.world_from_object[k / 4][k % 4];
-        const auto [found, fresh] = by_transform.emplace(key, parts.size());
+        for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = placed[k / 4][k % 4];
+        const auto [found, fresh] = by_space.emplace(std::pair(key, unseen), parts.size());
         if (fresh) {
           parts.emplace_back();
-          parts.back().placed = shape.world_from_object;
+          parts.back().placed = placed;
+          parts.back().flags = unseen;
         }
         part = &parts[found->second];
-        baked = Matrix(1);
+        if (stays) baked = Matrix(1);
       }
       lower_shape(shape, baked, object_begin + narrow<std::uint32_t>(&shape - shapes.data()), *part);
     }
     return parts;
-  }
-
-  static bool bakes(const Shape& shape) {
-    if (std::holds_alternative<TriangleMeshShape>(shape.geometry)) return true;
-    if (std::holds_alternative<DiskShape>(shape.geometry)) return disk_scale(shape.world_from_object) > 0;
-    return similarity_scale(shape.world_from_object) > 0;
   }
 
   void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Part& part) {
@@ -198,16 +145,14 @@ class GeometryLowering {
     record.material = shape.material;
     record.object = object;
     record.primitive_begin = primitive_begin;
+    record.surface_begin = add_surfaces(shape);
     record.light_offset = CAPLET_NONE;
     record.normal_begin = record.uv_begin = CAPLET_NONE;
     if (shape.emission) {
       record.light_offset = narrow<uint>(part.emitter_count);
       if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
     }
-    const bool mirrored = glm::determinant(glm::dmat3(m)) < 0;
-    // Winding turns with a mirroring transform; a disk's and a solid's own normal do not.
-    const bool wound = std::holds_alternative<TriangleMeshShape>(shape.geometry);
-    if (shape.reverse_orientation != (wound && mirrored)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
+    if (turns_normals(shape, m)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
     reversed_ = shape.reverse_orientation;
     std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
     const std::size_t count = part.primitives.size() - first;
@@ -216,6 +161,45 @@ class GeometryLowering {
       part.emitter_count += count;
     }
     part.shapes.push_back(&shape);
+  }
+
+  /// InstanceRecord.flags that hide what a one-sided shape does not show. Open shapes are seen from where their normal points.
+  static uint unseen_sides(const Shape& shape) {
+    if (!shape.one_sided) return 0;
+    return !is_closed(shape) && turns_normals(shape, shape.world_from_object) ? CAPLET_INSTANCE_NO_ENTERING
+                                                                              : CAPLET_INSTANCE_NO_LEAVING;
+  }
+
+  /// Winding turns with a mirroring transform; a disk's and a solid's own normal do not.
+  static bool turns_normals(const Shape& shape, const Matrix& m) {
+    const bool wound =
+        std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
+    return shape.reverse_orientation != (wound && glm::determinant(glm::dmat3(m)) < 0);
+  }
+
+  /// Rows of surface_materials where a shape's surfaces differ; CAPLET_NONE where they do not.
+  uint add_surfaces(const Shape& shape) {
+    std::vector<uint> rows = surface_materials(shape);
+    if (shape.emission && !shape.emission->surfaces.empty())
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        if (std::ranges::find(shape.emission->surfaces, i) == shape.emission->surfaces.end()) rows[i] |= CAPLET_SURFACE_DARK;
+    if (std::ranges::all_of(rows, [&](uint row) { return row == shape.material; })) return CAPLET_NONE;
+    const auto begin = narrow<uint>(out_.surface_materials.size());
+    out_.surface_materials.insert(out_.surface_materials.end(), rows.begin(), rows.end());
+    return begin;
+  }
+
+  static std::vector<uint> surface_materials(const Shape& shape) {
+    if (!shape.materials.empty()) return shape.materials;
+    if (const auto* csg = std::get_if<CsgShape>(&shape.geometry)) {
+      std::vector<uint> rows;
+      for (const auto& operand : csg->operands) {
+        const std::vector<uint> more = surface_materials(*operand);
+        rows.insert(rows.end(), more.begin(), more.end());
+      }
+      return rows;
+    }
+    return std::vector<uint>(surface_count(shape), shape.material);
   }
 
   uint add_geometry(GeometryRecord record, int shape) {
@@ -231,17 +215,12 @@ class GeometryLowering {
     return p;
   }
 
-  void append(const SphereShape& sphere, const Matrix& m, const GeometryRecord& record, Part& part) {
-    FlatPrimitive& p = add_primitive(part, shape_sphere, add_geometry(record, shape_sphere));
-    put(p, 0, apply_point(m, dvec3(0)));
-    p.data[3] = static_cast<float>(sphere.radius * similarity_scale(m));
-  }
-
-  void append(const DiskShape& disk, const Matrix& m, const GeometryRecord& record, Part& part) {
-    FlatPrimitive& p = add_primitive(part, shape_disk, add_geometry(record, shape_disk));
-    put(p, 0, apply_point(m, dvec3(0, 0, disk.height)));
-    put(p, 3, glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1)));
-    p.data[6] = static_cast<float>(disk.radius * disk_scale(m));
+  /// Shapes of one primitive.
+  template <class Geometry>
+  void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record, Part& part) {
+    const FlatPrimitive flat = flat_primitive(geometry, m, out_.leaves);
+    FlatPrimitive& p = add_primitive(part, static_cast<int>(flat.shape), add_geometry(record, static_cast<int>(flat.shape)));
+    std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
   }
 
   void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Part& part) {
@@ -272,21 +251,26 @@ class GeometryLowering {
     }
   }
 
-  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
-    record.index_begin = narrow<uint>(out_.mesh_indices.size());
-    if (!mesh.normals.empty()) {
+  void add_vertex_data(const std::vector<glm::vec3>& normals, const std::vector<glm::vec2>& uvs, const Matrix& m,
+                       GeometryRecord& record) {
+    if (!normals.empty()) {
       record.normal_begin = narrow<uint>(out_.mesh_normals.size());
       const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(m)));
-      for (const glm::vec3& n : mesh.normals) {
+      for (const glm::vec3& n : normals) {
         const dvec3 turned = normal_matrix * dvec3(n);
         const double length = glm::length(turned);
         for (int k = 0; k < 3; ++k) out_.mesh_normals.push_back(length > 0 ? static_cast<float>(turned[k] / length) : 0.f);
       }
     }
-    if (!mesh.uvs.empty()) {
+    if (!uvs.empty()) {
       record.uv_begin = narrow<uint>(out_.mesh_uvs.size());
-      for (const glm::vec2& uv : mesh.uvs) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {uv.x, uv.y});
+      for (const glm::vec2& uv : uvs) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {uv.x, uv.y});
     }
+  }
+
+  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
+    record.index_begin = narrow<uint>(out_.mesh_indices.size());
+    add_vertex_data(mesh.normals, mesh.uvs, m, record);
     std::vector<glm::vec3> moved;
     moved.reserve(mesh.positions.size());
     for (const glm::vec3& p : mesh.positions) moved.emplace_back(apply_point(m, dvec3(p)));
@@ -294,7 +278,8 @@ class GeometryLowering {
     part.primitives.reserve(part.primitives.size() + mesh.triangles.size());
     const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
     for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
-      if (!mesh.normals.empty() && against_normals(mesh, record, moved, triangle, flipped)) std::swap(triangle[1], triangle[2]);
+      const dvec3 a(moved[triangle[0]]), b(moved[triangle[1]]), c(moved[triangle[2]]);
+      if (against_normals(record, glm::cross(b - a, c - a), triangle, flipped)) std::swap(triangle[1], triangle[2]);
       FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
       for (std::size_t k = 0; k < 3; ++k) {
         out_.mesh_indices.push_back(triangle[k]);
@@ -303,15 +288,33 @@ class GeometryLowering {
     }
   }
 
-  /// pbrt: where a mesh has normals, they say which side is out, not the winding.
-  bool against_normals(const TriangleMeshShape& mesh, const GeometryRecord& record, const std::vector<glm::vec3>& moved,
-                       const std::array<std::uint32_t, 3>& triangle, bool flipped) const {
-    const dvec3 a(moved[triangle[0]]), b(moved[triangle[1]]), c(moved[triangle[2]]);
+  /// pbrt: where a mesh has normals, they say which side is out, not the winding. `normal`: by winding.
+  bool against_normals(const GeometryRecord& record, const dvec3& normal, std::span<const std::uint32_t> corners,
+                       bool flipped) const {
+    if (record.normal_begin == CAPLET_NONE) return false;
     dvec3 sum(0);
-    for (const std::uint32_t v : triangle)
+    for (const std::uint32_t v : corners)
       for (int k = 0; k < 3; ++k) sum[k] += out_.mesh_normals[record.normal_begin + 3 * v + static_cast<std::uint32_t>(k)];
-    const double side = glm::dot(glm::cross(b - a, c - a), sum) * (reversed_ ? -1 : 1);
-    return (flipped ? -side : side) < 0 && mesh.normals.size() == mesh.positions.size();
+    const double side = glm::dot(normal, sum) * (reversed_ ? -1 : 1);
+    return (flipped ? -side : side) < 0;
+  }
+
+  void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
+    record.index_begin = narrow<uint>(out_.mesh_indices.size());
+    add_vertex_data(mesh.normals, mesh.uvs, m, record);
+    const uint geometry = add_geometry(record, shape_bilinear);
+    const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+    for (std::array<std::uint32_t, 4> patch : mesh.patches) {
+      const auto corner = [&](std::size_t k) { return apply_point(m, dvec3(mesh.positions[patch[k]])); };
+      // Turned over, u and v change places (which shows in patches without uvs).
+      if (against_normals(record, glm::cross(corner(3) - corner(0), corner(2) - corner(1)), patch, flipped))
+        std::swap(patch[1], patch[2]);
+      FlatPrimitive& p = add_primitive(part, shape_bilinear, geometry);
+      for (std::size_t k = 0; k < 4; ++k) {
+        out_.mesh_indices.push_back(patch[k]);
+        put(p, static_cast<int>(3 * k), corner(k));
+      }
+    }
   }
 
   void encode(Part& part) {
@@ -328,6 +331,7 @@ class GeometryLowering {
     record.root = part.tree.root;
     record.light_base = CAPLET_NONE;
     record.object = object;
+    record.flags = part.flags;
     if (glm::determinant(glm::dmat3(world_from_part)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
     const auto index = narrow<uint>(out_.instances.size());
     out_.instances.push_back(record);
@@ -344,7 +348,7 @@ class GeometryLowering {
       p.data[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
       p.data[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
     }
-    placed_.push_back({&part, index, part.emitter_count > 0 ? mean_area_scale(world_from_part) : 1});
+    placed_.push_back({&part, index, part.emitter_count > 0 ? mean_area_scale(world_from_part) : 1, world_from_part});
   }
 
   /// Of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
@@ -367,13 +371,13 @@ class GeometryLowering {
     return box;
   }
 
-  std::vector<Emitter> emitters_of(const Part& part, uint instance, double area_scale) {
+  std::vector<Emitter> emitters_of(const Part& part, uint instance, double area_scale, const Matrix& world_from_part) {
     std::vector<Emitter> out;
     for (const Part::Emissive& emissive : part.emissive) {
       const AreaEmission& emission = *emissive.shape->emission;
       double total_area = 0;
       for (std::size_t i = 0; i < emissive.count; ++i)
-        total_area += primitive_area(part.primitives[emissive.first + i]) * area_scale;
+        total_area += primitive_area(part.primitives[emissive.first + i], out_.leaves) * area_scale;
       Emitter emitter{};
       emitter.instance = instance;
       emitter.two_sided = emission.two_sided;
@@ -390,11 +394,32 @@ class GeometryLowering {
         const std::size_t at = emissive.first + i;
         emitter.slot = part.tree.slots[at];
         emitter.geometry = out_.primitive_geometry[part.primitives[at].id];
-        emitter.area = primitive_area(part.primitives[at]) * area_scale;
+        emitter.area = primitive_area(part.primitives[at], out_.leaves) * area_scale;
+        set_ball(part.primitives[at], world_from_part, emitter);
         out.push_back(emitter);
       }
     }
     return out;
+  }
+
+  /// The ball around the image of the primitive's box, for kinds that are sampled by it.
+  static void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
+    constexpr int own_sampler[] = {shape_sphere,   shape_capsule, shape_tapered_capsule,
+                                   shape_triangle, shape_disk,    shape_cylinder};
+    emitter.by_ball = std::ranges::find(own_sampler, static_cast<int>(p.shape)) == std::end(own_sampler) ||
+                      (p.shape == shape_cylinder && (p.data[7] == CAPLET_CAP_ROUND || p.data[8] == CAPLET_CAP_ROUND));
+    if (!emitter.by_ball) return;
+    double low[3], high[3];
+    primitive_box(p, low, high);
+    const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_part, 0.5 * (a + b));
+    double radius = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
+      radius = std::max(radius, glm::length(apply_point(world_from_part, x) - center));
+    }
+    for (int k = 0; k < 3; ++k) emitter.ball[k] = center[k];
+    // The centre is rounded to floats.
+    emitter.ball[3] = radius + 0x1p-23 * glm::length(center);
   }
 
   void set_bounds(const EncodedTree& tree) {

@@ -155,6 +155,13 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     record.slot = emitter.slot;
     record.instance = emitter.instance;
     record.geometry = emitter.geometry;
+    record.data = CAPLET_NONE;
+    if (emitter.by_ball) {
+      record.data = narrow<uint>(out.light_data.size());
+      for (const double value : emitter.ball) out.light_data.push_back(static_cast<float>(value));
+      // Rounded up: nothing of the shape may lie outside.
+      out.light_data.back() *= 1 + 0x1p-18f;
+    }
     out.lights.push_back(record);
     const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
     powers.push_back(std::isfinite(power) && power > 0 ? power : 0);

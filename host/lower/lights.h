@@ -19,6 +19,8 @@ struct Emitter {
   double scale;      // multiplies the spectrum
   double luminance;  // of the radiance, scale included
   bool two_sided;
+  bool by_ball;    // sampled by the bounding ball (kernels/lights/ball.cl)
+  double ball[4];  // centre and radius, world
 };
 
 /// Fills lights, light_data, light_alias, environment_* and the light fields of params. Light i is emitter i for i <

@@ -19,7 +19,7 @@ struct FlatScene {
   std::vector<float> nodes, leaves;
   std::vector<InstanceRecord> instances;
   std::vector<GeometryRecord> geometries;
-  std::vector<uint> primitive_geometry, mesh_indices;
+  std::vector<uint> primitive_geometry, surface_materials, mesh_indices;
   std::vector<float> mesh_normals, mesh_uvs;
   std::vector<MaterialRecord> materials;
   std::vector<SpectrumRecord> spectra;
@@ -31,6 +31,7 @@ struct FlatScene {
 
   // For `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;
+  bool basic_shapes() const;  // spheres, capsules, triangles and whole disks alone: kernels may be built with CAPLET_BASIC_SHAPES
   int bvh_depth = 0;
   double bvh_sah = 0;
   double build_seconds = 0;

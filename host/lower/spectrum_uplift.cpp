@@ -3,6 +3,7 @@
 #include "lower/spectrum_uplift.h"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -181,7 +182,9 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
   static std::array<std::unique_ptr<const ChromaticityTable>, 4> tables;
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
-  std::call_once(once[s], [&] { tables[s] = std::make_unique<const ChromaticityTable>(space); });
+  // Isolated: the thread that makes the table must not take a task that waits for it.
+  std::call_once(once[s],
+                 [&] { tbb::this_task_arena::isolate([&] { tables[s] = std::make_unique<const ChromaticityTable>(space); }); });
   return *tables[s];
 }
 

@@ -6,9 +6,13 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
+
+#include "reference/from_scene.h"
 
 namespace caplet::reference {
 
@@ -16,33 +20,34 @@ namespace {
 
 using glm::dvec3;
 
-std::vector<Primitive> primitives_of(const Shape& shape) {
-  std::vector<Primitive> out;
-  if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
-    out.push_back(Sphere{dvec3(0), sphere->radius});
-  } else if (const auto* disk = std::get_if<DiskShape>(&shape.geometry)) {
-    out.push_back(Disk{dvec3(0, 0, disk->height), dvec3(0, 0, 1), disk->radius});
-  } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-    for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
-      const double radius0 = capsules->radius0[i];
-      const double radius1 = capsules->radius1.empty() ? radius0 : static_cast<double>(capsules->radius1[i]);
-      out.push_back(Capsule{dvec3(capsules->p0[i]), dvec3(capsules->p1[i]), radius0, radius1});
-    }
-  } else {
-    const auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
-    for (const auto& corner : mesh.triangles)
-      out.push_back(
-          Triangle{dvec3(mesh.positions[corner[0]]), dvec3(mesh.positions[corner[1]]), dvec3(mesh.positions[corner[2]])});
-  }
-  return out;
-}
-
 // False only when the line surely passes the ball: its distance from the centre, by the cross product, exceeds the radius.
 bool may_touch(const Ball& ball, const Ray& ray) {
   const dvec3 to_center = ball.center - ray.origin;
   const dvec3 moment = glm::cross(ray.direction, to_center);
   const double slack = 1e-9 * (glm::dot(to_center, to_center) + ball.radius * ball.radius);
   return glm::dot(moment, moment) <= (ball.radius * ball.radius + slack) * glm::dot(ray.direction, ray.direction);
+}
+
+/// By surface; empty when all have the shape's own.
+std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
+  const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+  if (!csg) return shape.materials;
+  std::vector<std::uint32_t> out;
+  for (const auto& operand : csg->operands) {
+    std::vector<std::uint32_t> own = materials_by_surface(*operand);
+    if (own.empty()) own.assign(surface_count(*operand), operand->material);
+    out.insert(out.end(), own.begin(), own.end());
+  }
+  return out;
+}
+
+SceneHit hit_of(SceneHit identity, const Crossing& crossing, const std::vector<std::uint32_t>& materials) {
+  identity.t = crossing.t;
+  identity.leaving = crossing.leaving;
+  identity.surface = static_cast<std::uint32_t>(crossing.surface);
+  identity.surface_margin = crossing.surface_margin;
+  if (!materials.empty()) identity.material = materials[identity.surface];
+  return identity;
 }
 
 }  // namespace
@@ -61,16 +66,25 @@ SceneWitness::SceneWitness(const Scene& scene) {
 
 void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
   object_from_world_.push_back(glm::inverse(world_from_shape));
+  surface_materials_.push_back(materials_by_surface(shape));
+  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   std::uint32_t index = 0;
   for (const Primitive& primitive : primitives_of(shape)) {
     Placed placed{primitive, bounding_ball(primitive), identity, static_cast<std::uint32_t>(object_from_world_.size() - 1)};
-    placed.identity.primitive = index++;
+    placed.identity.primitive = index;
+    placed.identity.material = capsules && !capsules->materials.empty() ? capsules->materials[index] : shape.material;
+    // From behind an open shape's normal, as ReverseOrientation leaves it; from inside a solid.
+    if (shape.one_sided) (is_solid(primitive) || !shape.reverse_orientation ? placed.sees_leaving : placed.sees_entering) = false;
+    placed.reversed = shape.reverse_orientation;
+    placed.identity.index = placed_.size();
     placed_.push_back(placed);
+    ++index;
   }
 }
 
-std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
-  std::optional<SceneHit> best;
+/// Calls visit(placed, ray in its space) for every primitive that the ray may touch.
+template <class Visit>
+void SceneWitness::visit_touched(Ray ray, const Visit& visit) const {
   Ray local = ray;
   std::uint32_t space = 0xffffffffu;
   for (const Placed& placed : placed_) {
@@ -79,15 +93,48 @@ std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
       local.origin = dvec3(object_from_world_[space] * glm::dvec4(ray.origin, 1));
       local.direction = dvec3(object_from_world_[space] * glm::dvec4(ray.direction, 0));
     }
-    if (!may_touch(placed.ball, local)) continue;
-    if (const auto crossing = reference::closest(placed.primitive, local)) {
-      best = placed.identity;
-      best->t = crossing->t;
-      best->leaving = crossing->leaving;
-      local.t_max = crossing->t;
-    }
+    if (may_touch(placed.ball, local)) visit(placed, local);
   }
+}
+
+std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
+  std::optional<SceneHit> best;
+  visit_touched(ray, [&](const Placed& placed, Ray local) {
+    if (best) local.t_max = best->t;
+    if (placed.sees_entering && placed.sees_leaving) {
+      if (const auto crossing = reference::closest(placed.primitive, local))
+        best = hit_of(placed.identity, *crossing, surface_materials_[placed.space]);
+      return;
+    }
+    for (const Crossing& crossing : crossings(placed.primitive, local)) {
+      if (!(crossing.t > local.t_min && crossing.t < local.t_max)) continue;
+      if (!(crossing.leaving ? placed.sees_leaving : placed.sees_entering)) continue;
+      best = hit_of(placed.identity, crossing, surface_materials_[placed.space]);
+      return;
+    }
+  });
   return best;
+}
+
+std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::size_t limit) const {
+  std::vector<SceneHit> out;
+  visit_touched(ray, [&](const Placed& placed, const Ray& local) {
+    for (const Crossing& crossing : crossings(placed.primitive, local))
+      if (crossing.t > ray.t_min && crossing.t < ray.t_max && (crossing.leaving ? placed.sees_leaving : placed.sees_entering))
+        out.push_back(hit_of(placed.identity, crossing, surface_materials_[placed.space]));
+  });
+  std::ranges::stable_sort(out,
+                           [](const SceneHit& a, const SceneHit& b) { return a.t != b.t ? a.t < b.t : a.leaving && !b.leaving; });
+  out.resize(std::min(out.size(), limit));
+  return out;
+}
+
+dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
+  const Placed& placed = placed_.at(hit.index);
+  const glm::dmat4& m = object_from_world_[placed.space];
+  const dvec3 local = normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
+  const dvec3 out = glm::normalize(glm::transpose(glm::dmat3(m)) * local);
+  return placed.reversed ? -out : out;
 }
 
 std::vector<std::optional<SceneHit>> SceneWitness::closest(std::span<const Ray> rays) const {

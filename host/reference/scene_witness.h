@@ -23,6 +23,10 @@ struct SceneHit {
   std::uint32_t object = 0;     // index into Scene::objects; meaningless for shapes of the world
   std::uint32_t shape = 0;      // index into Scene::shapes, or the object's shapes
   std::uint32_t primitive = 0;  // capsule or triangle within the shape
+  std::uint32_t surface = 0;    // of the shape
+  std::uint32_t material = 0;   // of that surface, index into Scene::materials
+  double surface_margin = 0;    // of solids: as Crossing's, in the shape's space
+  std::size_t index = 0;        // of the primitive among all, instances expanded
 };
 inline constexpr std::uint32_t no_instance = 0xffffffffu;
 
@@ -31,7 +35,14 @@ class SceneWitness {
   explicit SceneWitness(const Scene& scene);
   /// The nearest hit with t_min < t < t_max over all primitives; the first in scene order among equals.
   std::optional<SceneHit> closest(const Ray& ray) const;
-  /// The same for many rays, in parallel.
+  /// Every crossing with t_min < t < t_max in order; at the same t those that leave come first, then the first in scene order. No
+  /// more than `limit`.
+  std::vector<SceneHit> all(const Ray& ray, std::size_t limit = std::numeric_limits<std::size_t>::max()) const;
+  /// Unit normal in the world at a point on (or within 1e-7 of its size from) the primitive of a hit: outward of solids, by
+  /// winding or as given of open shapes, turned by ReverseOrientation. By differences of the implicit function over 1e-6 of the
+  /// primitive's size: no meaning that close to an edge.
+  glm::dvec3 normal(const SceneHit& hit, const glm::dvec3& point) const;
+  /// closest() for many rays, in parallel.
   std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
   std::size_t size() const { return placed_.size(); }
 
@@ -40,11 +51,15 @@ class SceneWitness {
     Primitive primitive;
     Ball ball;  // of the primitive, object space
     SceneHit identity;
-    std::uint32_t space;  // index into spaces_
+    std::uint32_t space;  // index into object_from_world_ and surface_materials_
+    bool sees_entering = true, sees_leaving = true, reversed = false;
   };
+  template <class Visit>
+  void visit_touched(Ray ray, const Visit& visit) const;
   void add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity);
   std::vector<Placed> placed_;
   std::vector<glm::dmat4> object_from_world_;
+  std::vector<std::vector<std::uint32_t>> surface_materials_;  // empty: the same on all
 };
 
 }  // namespace caplet::reference

@@ -6,13 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <utility>
+
+#include "parts.h"
 
 namespace caplet::reference {
 
 namespace {
 
+using glm::dvec2;
 using glm::dvec3;
 
 bool usable(const Ray& ray) {
@@ -84,9 +88,26 @@ std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray
   if (line.miss_distance > 0) return {};
   const auto [inside, least] = descend(primitive, line, 0);
   if (least > 0) return {};
-  const double enter = bisect(primitive, line, -line.reach, inside);
-  const double leave = bisect(primitive, line, line.reach, inside);
-  return {{line.t_foot + enter / line.speed, false}, {line.t_foot + leave / line.speed, true}};
+  std::vector<Crossing> out;
+  for (const bool leaving : {false, true}) {
+    const double s = bisect(primitive, line, leaving ? line.reach : -line.reach, inside);
+    const SurfaceAt at = surface_at(primitive, line.foot + s * line.unit);
+    out.push_back({line.t_foot + s / line.speed, leaving, at.surface, at.margin});
+  }
+  return out;
+}
+
+// Parts of the boundary of solids.
+std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& ray) {
+  const Primitive carrier = carrier_of(primitive);
+  std::vector<Crossing> out;
+  const Line line = line_near(primitive, ray);
+  for (const Crossing& c : solid_crossings(carrier, ray))
+    // From the foot: the ray's origin may be far.
+    if (keeps(primitive, line.foot + (c.t - line.t_foot) * line.speed * line.unit, c.surface)) out.push_back(c);
+  if (!std::holds_alternative<Spool>(primitive))
+    for (Crossing& c : out) c.surface = 0, c.surface_margin = HUGE_VAL;
+  return out;
 }
 
 // Six times the signed volume of the tetrahedron a b c and the origin.
@@ -103,7 +124,7 @@ std::vector<Crossing> triangle_crossings(const Triangle& triangle, const Ray& ra
   // Seen edge-on as far as doubles can tell (each volume is a sum of six products of three rounded factors): no crossing.
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
   if (!(positive || negative) || std::abs(sum) <= 0x1p-49 * (la * lb + lb * lc + lc * la)) return {};
-  return {{line.t_foot + volume(a, b, c) / sum / line.speed, false}};
+  return {{line.t_foot + volume(a, b, c) / sum / line.speed, glm::dot(glm::cross(b - a, c - a), line.unit) > 0, 0, HUGE_VAL}};
 }
 
 std::vector<Crossing> disk_crossings(const Disk& disk, const Ray& ray) {
@@ -112,33 +133,215 @@ std::vector<Crossing> disk_crossings(const Disk& disk, const Ray& ray) {
   if (line.miss_distance > 0 || slope == 0) return {};
   const double s = glm::dot(disk.normal, disk.center - line.foot) / slope;
   if (!(glm::length(line.foot + s * line.unit - disk.center) <= disk.radius)) return {};
-  return {{line.t_foot + s / line.speed, false}};
+  return {{line.t_foot + s / line.speed, slope > 0, 0, HUGE_VAL}};
 }
 
-double distance_line_to_segment(const Line& line, const dvec3& a, const dvec3& b) {
-  // Seen along the line, the segment is one in the plane and the line its origin.
-  const dvec3 pa = a - line.foot - glm::dot(a - line.foot, line.unit) * line.unit;
-  const dvec3 pb = b - line.foot - glm::dot(b - line.foot, line.unit) * line.unit;
-  return value(Capsule{pa, pb, 0, 0}, dvec3(0));
+std::vector<Crossing> partial_disk_crossings(const PartialDisk& disk, const Ray& ray) {
+  const Line line = line_near(disk, ray);
+  if (line.miss_distance > 0 || line.unit.z == 0) return {};
+  const double s = (disk.height - line.foot.z) / line.unit.z;
+  if (!keeps(disk, line.foot + s * line.unit, 0)) return {};
+  return {{line.t_foot + s / line.speed, line.unit.z > 0, 0, HUGE_VAL}};
 }
 
-// Distance between the line and a circle: sampled, then refined around the best sample.
-double distance_line_to_circle(const Line& line, const Disk& disk) {
-  const dvec3 n = glm::normalize(disk.normal);
-  const dvec3 u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))), v = glm::cross(n, u);
-  const auto distance = [&](double angle) {
-    const dvec3 p = disk.center + disk.radius * (std::cos(angle) * u + std::sin(angle) * v) - line.foot;
-    return glm::length(p - glm::dot(p, line.unit) * line.unit);
+// --- Csg ---
+
+// Where the line goes through the boundaries of the solids a csg shape is made of, in lengths from line.foot; `inner` is the same
+// line in the space of `csg`.
+void collect_events(const Csg& csg, const Ray& inner, const Line& line, std::vector<double>& events) {
+  for (const CsgOperand& operand : csg.body->operands) {
+    const glm::dmat4& m = operand.operand_from_csg;
+    const Ray local{dvec3(m * glm::dvec4(inner.origin, 1)), dvec3(m * glm::dvec4(inner.direction, 0)), -HUGE_VAL, HUGE_VAL};
+    if (const auto* nested = std::get_if<Csg>(&operand.primitive)) {
+      collect_events(*nested, local, line, events);
+      continue;
+    }
+    for (const Crossing& c : solid_crossings(operand.primitive, local)) events.push_back(c.t);
+  }
+}
+
+std::vector<Crossing> csg_crossings(const Csg& csg, const Ray& ray) {
+  const Line line = line_near(csg, ray);
+  if (line.miss_distance > 0) return {};
+  // In lengths from the foot.
+  std::vector<double> events;
+  collect_events(csg, {line.foot, line.unit}, line, events);
+  std::sort(events.begin(), events.end());
+  const auto at = [&](double s) { return line.foot + s * line.unit; };
+  const double together = 1e-10 * line.reach;
+  std::vector<Crossing> out;
+  bool inside = false;
+  for (std::size_t i = 0; i < events.size();) {
+    std::size_t next = i + 1;
+    while (next < events.size() && events[next] - events[next - 1] <= together) ++next;
+    const bool after = next < events.size() && value(csg, at(0.5 * (events[next - 1] + events[next]))) <= 0;
+    if (after != inside) {
+      const SurfaceAt here = surface_at(csg, at(events[i]));
+      out.push_back({line.t_foot + events[i] / line.speed, inside, here.surface, here.margin});
+    }
+    inside = after;
+    i = next;
+  }
+  return out;
+}
+
+// --- Bilinear patches, seen along the line: a bilinear map of the unit square to the plane, with the line as origin ---
+
+struct Seen {
+  dvec2 p00, p10, p01, p11;
+  dvec2 at(double u, double v) const { return (1 - u) * ((1 - v) * p00 + v * p01) + u * ((1 - v) * p10 + v * p11); }
+  // Jacobian determinant: an affine function of u and v.
+  double turn(double u, double v) const {
+    return cross((1 - v) * (p10 - p00) + v * (p11 - p01), (1 - u) * (p01 - p00) + u * (p11 - p10));
+  }
+  static double cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
+};
+
+Seen seen_along(const Line& line, const Bilinear& b) {
+  const dvec3 e = any_perpendicular(line.unit), f = glm::cross(line.unit, e);
+  const auto flat = [&](const dvec3& p) { return dvec2(glm::dot(e, p - line.foot), glm::dot(f, p - line.foot)); };
+  return {flat(b.p00), flat(b.p10), flat(b.p01), flat(b.p11)};
+}
+
+// False only when all four lie strictly on one side of a line through the origin.
+bool hull_has_origin(const dvec2 (&p)[4]) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) {
+      const double here = -Seen::cross(p[j] - p[i], p[i]);
+      double low = 0, high = 0;
+      for (int k = 0; k < 4; ++k) {
+        const double side = Seen::cross(p[j] - p[i], p[k] - p[i]);
+        low = std::min(low, side);
+        high = std::max(high, side);
+      }
+      if (here < low || here > high) return false;
+    }
+  return true;
+}
+
+// The point of an unfolded cell that is seen at the origin: lines of constant u, and of constant v, stay lines.
+dvec2 locate(const Seen& seen, double u0, double u1, double v0, double v1) {
+  const auto bisect_lines = [](double low, double high, const auto& side) {
+    // The origin is between both ends' lines; where rounding says otherwise it is at the line of the smaller value (which is
+    // noise where that line is a point).
+    const double at_low = side(low), at_high = side(high);
+    const bool rises = std::abs(at_high) >= std::abs(at_low) ? at_high > 0 : at_low < 0;
+    for (;;) {
+      const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) return middle;
+      ((side(middle) > 0) == rises ? high : low) = middle;
+    }
   };
-  constexpr int samples = 4096;
-  constexpr double step = 6.283185307179586 / samples;
-  double best = 0;
-  for (int i = 1; i < samples; ++i)
-    if (distance(i * step) < distance(best)) best = i * step;
-  for (double width = step; width > 1e-15; width *= 0.5)
-    for (const double angle : {best - width, best + width})
-      if (distance(angle) < distance(best)) best = angle;
-  return distance(best);
+  const auto from_line = [](const dvec2& a, const dvec2& b) { return -Seen::cross(b - a, a); };
+  const double u = bisect_lines(u0, u1, [&](double at) { return from_line(seen.at(at, v0), seen.at(at, v1)); });
+  const double v = bisect_lines(v0, v1, [&](double at) { return from_line(seen.at(u0, at), seen.at(u1, at)); });
+  // On the cell's edges, and where one of them is a point, rounding or a vanishing line may have misled either.
+  dvec2 best{u, v};
+  for (const double a : {u, u0, u1})
+    for (const double b : {v, v0, v1})
+      if (glm::length(seen.at(a, b)) < glm::length(seen.at(best.x, best.y))) best = {a, b};
+  return best;
+}
+
+std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) {
+  const Line line = line_near(patch, ray);
+  if (line.miss_distance > 0) return {};
+  const Seen seen = seen_along(line, patch);
+  struct Cell {
+    double u0, u1, v0, v1;
+  };
+  std::vector<Cell> cells = {{0, 1, 0, 1}};
+  std::vector<dvec2> found;
+  // Edge-on all cells fold: nothing is said then.
+  for (int work = 0; !cells.empty() && work < 20000; ++work) {
+    const Cell c = cells.back();
+    cells.pop_back();
+    const dvec2 corners[4] = {seen.at(c.u0, c.v0), seen.at(c.u1, c.v0), seen.at(c.u1, c.v1), seen.at(c.u0, c.v1)};
+    if (!hull_has_origin(corners)) continue;
+    const double turns[4] = {seen.turn(c.u0, c.v0), seen.turn(c.u1, c.v0), seen.turn(c.u1, c.v1), seen.turn(c.u0, c.v1)};
+    const double least = *std::min_element(turns, turns + 4), greatest = *std::max_element(turns, turns + 4);
+    if ((least >= 0 && greatest > 0) || (greatest <= 0 && least < 0)) {
+      found.push_back(locate(seen, c.u0, c.u1, c.v0, c.v1));
+      continue;
+    }
+    if (c.u1 - c.u0 < 0x1p-30) continue;
+    const double u = 0.5 * (c.u0 + c.u1), v = 0.5 * (c.v0 + c.v1);
+    cells.insert(cells.end(), {{c.u0, u, c.v0, v}, {u, c.u1, c.v0, v}, {c.u0, u, v, c.v1}, {u, c.u1, v, c.v1}});
+  }
+  std::vector<Crossing> out;
+  std::vector<dvec2> kept;
+  for (const dvec2& uv : found) {
+    bool again = false;
+    for (const dvec2& other : kept) again = again || glm::length(uv - other) < 1e-9;
+    if (again) continue;
+    kept.push_back(uv);
+    const dvec3 x = (1 - uv.x) * ((1 - uv.y) * patch.p00 + uv.y * patch.p01) + uv.x * ((1 - uv.y) * patch.p10 + uv.y * patch.p11);
+    out.push_back({line.t_foot + glm::dot(x - line.foot, line.unit) / line.speed, seen.turn(uv.x, uv.y) > 0, 0, HUGE_VAL});
+  }
+  std::sort(out.begin(), out.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+  return out;
+}
+
+// --- Margins ---
+
+// The least of f over [0, 1]: sampled, then refined around the best samples.
+double least_over(int samples, const std::function<double(double)>& f) {
+  std::vector<double> at;
+  for (int i = 0; i <= samples; ++i) at.push_back(f(double(i) / samples));
+  double least = *std::min_element(at.begin(), at.end());
+  const auto n = static_cast<std::size_t>(samples);
+  const double spread = *std::max_element(at.begin(), at.end()) - least, sampled = least;
+  for (std::size_t i = 0; i <= n; ++i) {
+    if ((i > 0 && at[i - 1] < at[i]) || (i < n && at[i + 1] < at[i]) || at[i] > sampled + 0.05 * spread) continue;
+    double best = double(i) / samples, value_there = at[i];
+    for (double width = 1.0 / samples; width > 1e-16; width *= 0.5)
+      for (const double s : {best - width, best + width}) {
+        if (s < 0 || s > 1) continue;
+        const double there = f(s);
+        if (there < value_there) value_there = there, best = s;
+      }
+    least = std::min(least, value_there);
+  }
+  return least;
+}
+
+double distance_line_to_point(const Line& line, const dvec3& p) {
+  const dvec3 w = p - line.foot;
+  return glm::length(w - glm::dot(w, line.unit) * line.unit);
+}
+
+double distance_line_to_curve(const Line& line, const Curve& curve) {
+  if (curve.kind == Curve::Kind::segment) {
+    // Seen along the line, the segment is one in the plane and the line its origin.
+    const dvec3 a = curve.p - line.foot, b = curve.q - line.foot;
+    return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit, b - glm::dot(b, line.unit) * line.unit);
+  }
+  return least_over(256, [&](double s) { return distance_line_to_point(line, curve.at(s)); });
+}
+
+// Distance between the line and the places where it would touch the patch: where the patch, seen along the line, folds.
+double distance_to_fold(const Line& line, const Bilinear& patch) {
+  const Seen seen = seen_along(line, patch);
+  // The zero line of an affine function, from where it enters the unit square to where it leaves.
+  std::vector<dvec2> ends;
+  const dvec2 corners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  for (int i = 0; i < 4; ++i) {
+    const dvec2 a = corners[i], b = corners[(i + 1) % 4];
+    const double fa = seen.turn(a.x, a.y), fb = seen.turn(b.x, b.y);
+    if (fa == 0) ends.push_back(a);
+    if ((fa < 0 && fb > 0) || (fa > 0 && fb < 0)) ends.push_back(a + fa / (fa - fb) * (b - a));
+  }
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    least = std::min(least, least_over(256, [&](double s) {
+                       const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
+                       return glm::length(seen.at(uv.x, uv.y));
+                     }));
+  return least;
+}
+
+double least_along(const Primitive& primitive, const Line& line) {
+  return least_over(2048, [&](double s) { return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit); });
 }
 
 }  // namespace
@@ -147,7 +350,10 @@ std::vector<Crossing> crossings(const Primitive& primitive, const Ray& ray) {
   if (!usable(ray)) return {};
   if (const auto* triangle = std::get_if<Triangle>(&primitive)) return triangle_crossings(*triangle, ray);
   if (const auto* disk = std::get_if<Disk>(&primitive)) return disk_crossings(*disk, ray);
-  return solid_crossings(primitive, ray);
+  if (const auto* disk = std::get_if<PartialDisk>(&primitive)) return partial_disk_crossings(*disk, ray);
+  if (const auto* patch = std::get_if<Bilinear>(&primitive)) return bilinear_crossings(*patch, ray);
+  if (const auto* csg = std::get_if<Csg>(&primitive)) return csg_crossings(*csg, ray);
+  return is_solid(primitive) ? solid_crossings(primitive, ray) : clipped_crossings(primitive, ray);
 }
 
 std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
@@ -158,15 +364,15 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
 
 double margin(const Primitive& primitive, const Ray& ray) {
   const Line line = line_near(primitive, ray);
-  double distance;
-  if (const auto* triangle = std::get_if<Triangle>(&primitive)) {
-    distance = std::min({distance_line_to_segment(line, triangle->v0, triangle->v1),
-                         distance_line_to_segment(line, triangle->v1, triangle->v2),
-                         distance_line_to_segment(line, triangle->v2, triangle->v0)});
-  } else if (const auto* disk = std::get_if<Disk>(&primitive)) {
-    distance = distance_line_to_circle(line, *disk);
-  } else {
-    return -descend(primitive, line, -HUGE_VAL).second;
+  if (std::holds_alternative<Csg>(primitive)) return -least_along(primitive, line);
+  if (is_solid(primitive)) return -descend(primitive, line, -HUGE_VAL).second;
+  double distance = HUGE_VAL;
+  for (const Curve& curve : boundary(primitive)) distance = std::min(distance, distance_line_to_curve(line, curve));
+  if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
+    distance = std::min(distance, distance_to_fold(line, *patch));
+  } else if (const Primitive carrier = carrier_of(primitive);
+             carrier.index() != primitive.index() || std::holds_alternative<Spool>(primitive)) {
+    distance = std::min(distance, std::abs(descend(carrier, line_near(carrier, ray), -HUGE_VAL).second));
   }
   return crossings(primitive, ray).empty() ? -distance : distance;
 }

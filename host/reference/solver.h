@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crossings of a ray with any shape of primitive.h, in double. Solids: interval subdivision of the implicit function along the
-// ray (it is convex there, and 1-Lipschitz), then bisection. Triangles by signed volumes, disks by plane and radius.
+// Crossings of a ray with any shape of primitive.h, in double. Convex solids: interval subdivision of the implicit function along
+// the ray (it is convex there, and 1-Lipschitz), then bisection; open parts of them: the same, and the predicate that clips.
+// Triangles by signed volumes, disks by plane and radius, bilinear patches by subdivision until the patch, seen along the ray,
+// does not fold. Csg shapes: their boundary lies in the operands' boundaries, so between successive crossings of those the sign
+// of the value at one point says where the ray is.
 #pragma once
 
 #include <limits>
@@ -21,18 +24,22 @@ struct Ray {
 
 struct Crossing {
   double t = 0;
-  bool leaving = false;  // from inside to outside; false for open surfaces
+  bool leaving = false;  // from inside to outside; open surfaces: along the normal
+  int surface = 0;
+  double surface_margin = 0;  // how far (at least) the crossing may be displaced before it lies on another surface
 };
 
-/// Every crossing of the whole line (all t) in order: two for a solid, one for an open surface, none for a miss. Rays that are
-/// not finite or have no direction miss.
+/// Every crossing of the whole line (all t) in order: two for a convex solid, entering and leaving in turn for csg shapes. Solids
+/// and gaps of csg shapes thinner than 1e-10 of the shape along the ray are not seen. Rays that are not finite or have no
+/// direction miss.
 std::vector<Crossing> crossings(const Primitive& primitive, const Ray& ray);
 
 /// The first crossing with t_min < t < t_max.
 std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray);
 
 /// How far the line through the ray may be displaced before hitting becomes missing or the other way: > 0 the line hits, < 0 it
-/// misses. Solids: minus the least value() along the line. Open surfaces: distance between the line and the boundary curve.
+/// misses. Solids: minus the least value() along the line. Open surfaces: the distance to where the number of crossings changes:
+/// between the line and the boundary curves, and to tangency.
 double margin(const Primitive& primitive, const Ray& ray);
 
 enum class Verdict { hit, miss, tangent };

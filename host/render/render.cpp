@@ -35,18 +35,18 @@ uint sort_bits_for(std::size_t rays) {
 class Wavefront {
  public:
   Wavefront(const FlatScene& scene, const Device& device, const RenderOptions& options) : params_(scene.params) {
-    const bool cpu = device.is_cpu() && !options.gpu_encoding;
     pixels_ = std::size_t{params_.crop_width} * params_.crop_height;
     const std::size_t wanted = options.batch_paths ? options.batch_paths : device.is_cpu() ? cpu_batch_paths : gpu_batch_paths;
     const std::size_t all = pixels_ * static_cast<std::size_t>(options.samples_per_pixel);
     batch_paths_ = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(all, 1));
-    WavefrontSize size;
+    StateSize size;
     size.paths = batch_paths_;
     size.pixels = pixels_;
     sorts_ = scene.bvh_nodes >= sorting_pays_from_nodes;
     params_.sort_bits = sorts_ ? sort_bits_for(batch_paths_) : CAPLET_NONE;
     size.sort_bins = bins();
-    stages_.emplace(device, scene, size, cpu ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1", device.is_cpu());
+    stages_.emplace(device, scene, size, stage_options(scene, device, options.gpu_encoding));
+    stages_->compile(render_stages(), batch_paths_);
   }
 
   /// Samples [begin, begin + count) of every pixel.
@@ -125,6 +125,7 @@ RenderResult render(const FlatScene& scene, const Device& device, const RenderOp
 
   const Clock::time_point start = Clock::now();
   const int total = options.samples_per_pixel;
+  if (progress) progress({0, 0, 0});
   int done = 0;
   while (done < total) {
     const uint count = samples_in_pass(wavefront, total - done);

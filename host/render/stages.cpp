@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t cpu_local_size = 64;
 constexpr std::size_t gpu_local_size = 64;
 
-std::size_t state_count(const std::string& name, const WavefrontSize& size) {
+std::size_t state_count(const std::string& name, const StateSize& size) {
   static const std::map<std::string, std::size_t> per_path = {
 #define PATH_STATE(name, type, count) {#name, count},
 #include "shared/path_state.def"
@@ -26,6 +26,9 @@ std::size_t state_count(const std::string& name, const WavefrontSize& size) {
   if (name == "sort_bins") return size.sort_bins;
   if (name == "counters") return 16;
   if (name == "film") return size.pixels;
+  if (name == "query_rays" || name == "query_counts" || name == "query_begin") return size.query_rays;
+  if (name == "query_hits") return size.query_hits;
+  if (name == "picks") return size.picks;
   return size.paths;  // queues and their keys
 }
 
@@ -37,14 +40,20 @@ enum : cl_uint {
   buffer_count
 };
 
-const std::vector<std::string>& stage_names() {
-  static const std::vector<std::string> names = {
+constexpr const char* stage_names[] = {
 #define STAGE(name) #name,
+#include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE
-  };
-  return names;
-}
+};
+
+constexpr Stage stages_of_a_render[] = {
+#define STAGE(name) Stage::name,
+#include "shared/stages.def"
+#undef STAGE
+};
+
+const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
 template <class T>
 std::span<const T> contents(const std::vector<T>& values) {
@@ -57,9 +66,18 @@ std::span<const T> contents(const T& value) {
 
 }  // namespace
 
-Stages::Stages(const Device& device, const FlatScene& scene, const WavefrontSize& size, const std::string& options, bool cpu)
-    : device_(device), local_size_(cpu ? cpu_local_size : gpu_local_size) {
-  // IN buffers are the scene's, STATE buffers are sized by the wavefront.
+std::span<const Stage> render_stages() { return stages_of_a_render; }
+
+std::string stage_options(const FlatScene& scene, const Device& device, bool gpu_encoding) {
+  const bool eight_wide = device.is_cpu() && !gpu_encoding;
+  std::string options = eight_wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
+  if (scene.basic_shapes()) options += " -DCAPLET_BASIC_SHAPES";
+  return options;
+}
+
+Stages::Stages(const Device& device, const FlatScene& scene, const StateSize& size, const std::string& options)
+    : device_(device), options_(options), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {
+  // IN buffers are the scene's, STATE buffers have the sizes asked for.
 #define IN(name, type) name##_ = Buffer<type>(device, std::span<const type>(contents(scene.name)));
 #define STATE(name, type) name##_ = Buffer<type>(device, state_count(#name, size));
 #define BUFFER(name, type, access) access(name, type)
@@ -68,52 +86,76 @@ Stages::Stages(const Device& device, const FlatScene& scene, const WavefrontSize
 #undef STATE
 #undef IN
   const std::vector<FilmRecord> empty(size.pixels, FilmRecord{});
-  film_.write(empty);
+  if (!empty.empty()) film_.write(empty);
+}
 
-  for (const std::string& name : stage_names()) {
-    programs_.emplace_back(device, name, options);
-    programs_.back().prepare(name, local_size_of(name), name == "sort_prefix" ? 1 : size.paths);
-    compile_seconds_ += programs_.back().build_seconds();
-    by_stage_.emplace_back(name, programs_.back().build_seconds());
-    cl::Kernel kernel = programs_.back().kernel(name);
-    cl_uint index = 0;
+void Stages::compile(std::span<const Stage> stages, std::size_t most) {
+  for (const Stage stage : stages) {
+    auto& compiled = compiled_[static_cast<std::size_t>(stage)];
+    if (compiled) continue;
+    const std::string name = name_of(stage);
+    Program program(device_, name, options_);
+    program.prepare(name, local_size_of(stage), stage == Stage::sort_prefix ? 1 : most);
+    compile_seconds_ += program.build_seconds();
+    by_stage_.emplace_back(name, program.build_seconds());
+    cl::Kernel kernel = program.kernel(name);
+    set_buffers(kernel);
+    compiled = Compiled{std::move(program), std::move(kernel)};
+  }
+}
+
+void Stages::set_buffers(cl::Kernel& kernel) const {
+  cl_uint index = 0;
 #define BUFFER(name, type, access) kernel.setArg(index++, name##_.handle());
 #include "shared/buffers.def"
 #undef BUFFER
-    CHECK_EQ_(index, static_cast<cl_uint>(buffer_count));
-    kernels_.push_back(kernel);
-  }
-  seconds_.resize(kernels_.size());
+  CHECK_EQ_(index, static_cast<cl_uint>(buffer_count));
+  if (!swapped_) return;
+  kernel.setArg(buffer_queue, queue_next_.handle());
+  kernel.setArg(buffer_queue_next, queue_.handle());
 }
 
-std::size_t Stages::local_size_of(const std::string& stage) const { return stage == "sort_prefix" ? 1 : local_size_; }
+void Stages::reserve_query(std::size_t rays, std::size_t hits, std::size_t picks) {
+  if (rays > query_rays_.size()) {
+    query_rays_ = Buffer<RayRecord>(device_, rays);
+    query_counts_ = Buffer<uint>(device_, rays);
+    query_begin_ = Buffer<uint>(device_, rays);
+  }
+  if (hits > query_hits_.size()) query_hits_ = Buffer<HitRecord>(device_, hits);
+  if (picks > picks_.size()) picks_ = Buffer<PickRecord>(device_, picks);
+  for (auto& compiled : compiled_)
+    if (compiled) set_buffers(compiled->kernel);
+}
+
+std::size_t Stages::local_size_of(Stage stage) const { return stage == Stage::sort_prefix ? 1 : local_size_; }
 
 std::vector<std::pair<std::string, double>> Stages::seconds_by_stage() const {
   std::vector<std::pair<std::string, double>> out;
-  for (std::size_t i = 0; i < seconds_.size(); ++i) out.emplace_back(stage_names()[i], seconds_[i]);
+  for (std::size_t i = 0; i < compiled_.size(); ++i)
+    if (compiled_[i]) out.emplace_back(stage_names[i], compiled_[i]->seconds);
   return out;
 }
 
 void Stages::swap_queues() {
   swapped_ = !swapped_;
-  for (cl::Kernel& kernel : kernels_) {
-    kernel.setArg(buffer_queue, (swapped_ ? queue_next_ : queue_).handle());
-    kernel.setArg(buffer_queue_next, (swapped_ ? queue_ : queue_next_).handle());
-  }
+  for (auto& compiled : compiled_)
+    if (compiled) {
+      compiled->kernel.setArg(buffer_queue, (swapped_ ? queue_next_ : queue_).handle());
+      compiled->kernel.setArg(buffer_queue_next, (swapped_ ? queue_ : queue_next_).handle());
+    }
 }
 
 void Stages::set_params(const ParamsRecord& params) { params_.write(std::span<const ParamsRecord>(&params, 1)); }
 
 void Stages::run(Stage stage, std::size_t count) {
   if (count == 0) return;
-  const auto index = static_cast<std::size_t>(stage);
-  cl::Kernel& kernel = kernels_[index];
-  kernel.setArg(buffer_count, narrow<cl_uint>(count));
+  Compiled& compiled = compiled_[static_cast<std::size_t>(stage)].value();
+  compiled.kernel.setArg(buffer_count, narrow<cl_uint>(count));
   const auto start = std::chrono::steady_clock::now();
-  launch(device_, kernel, count, local_size_of(stage_names()[index]));
+  launch(device_, compiled.kernel, count, local_size_of(stage));
   if (!timed_) return;
   device_.finish();
-  seconds_[index] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  compiled.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Stages::set_counters(const std::array<uint, 4>& values) { counters_.RawBuffer::write(values.data(), 0, sizeof values); }

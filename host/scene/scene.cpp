@@ -4,8 +4,12 @@
 // Bounds and counts of the model.
 #include "scene/scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "scene/csg_bounds.h"
 
 namespace caplet {
 
@@ -30,6 +34,13 @@ glm::dvec3 row_lengths(const glm::dmat3& a) {
 void extend_box(Bounds& bounds, const glm::dvec3& center, const glm::dvec3& half) {
   bounds.extend(center - half);
   bounds.extend(center + half);
+}
+
+/// The greatest value of a.x cos(phi) + a.y sin(phi) for 0 <= phi <= phi_max.
+double greatest_across(const glm::dvec3& a, double phi_max) {
+  const double summit = std::atan2(a.y, a.x);
+  if (phi_max >= full_turn || (summit < 0 ? summit + full_turn : summit) <= phi_max) return std::hypot(a.x, a.y);
+  return std::max(a.x, a.x * std::cos(phi_max) + a.y * std::sin(phi_max));
 }
 
 struct BoundsOf {
@@ -59,12 +70,85 @@ struct BoundsOf {
       for (std::uint32_t vertex : triangle) bounds.extend(point(glm::dvec3(mesh.positions[vertex])));
     return bounds;
   }
-  Bounds operator()(const DiskShape& disk) const {
+  /// The hull of the ends: balls, or disks with normal n across the axis, whose image has half extents radius |row - (row.n) n|.
+  Bounds ends(const glm::dvec3& p0, const glm::dvec3& p1, double radius0, double radius1, const std::array<Cap, 2>& caps) const {
+    const glm::dmat3 a(m);
+    const glm::dvec3 n = glm::normalize(p1 - p0), ball = row_lengths(a);
+    glm::dvec3 disk;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 row(a[0][k], a[1][k], a[2][k]);
+      disk[k] = glm::length(row - glm::dot(row, n) * n);
+    }
     Bounds bounds;
-    glm::dmat3 a(m);
-    a[2] = glm::dvec3(0);
-    extend_box(bounds, point(glm::dvec3(0, 0, disk.height)), disk.radius * row_lengths(a));
+    extend_box(bounds, point(p0), radius0 * (caps[0] == Cap::round ? ball : disk));
+    extend_box(bounds, point(p1), radius1 * (caps[1] == Cap::round ? ball : disk));
     return bounds;
+  }
+  Bounds operator()(const CylinderShape& c) const { return ends(c.p0, c.p1, c.radius, c.radius, c.caps); }
+  Bounds operator()(const ConeShape& c) const { return ends(c.p0, c.p1, c.radius[0], c.radius[1], c.caps); }
+  Bounds operator()(const BoxShape& box) const {
+    Bounds bounds;
+    for (int i = 0; i < 8; ++i)
+      bounds.extend(point({i & 1 ? box.p1.x : box.p0.x, i & 2 ? box.p1.y : box.p0.y, i & 4 ? box.p1.z : box.p0.z}));
+    return bounds;
+  }
+  Bounds operator()(const PolyhedronShape& polyhedron) const {
+    Bounds bounds;
+    for (const glm::dvec3& corner : polyhedron_corners(polyhedron)) bounds.extend(point(corner));
+    return bounds;
+  }
+  /// Bounds from the greatest value of a.p over the points p of a shape, for each row a of the matrix and its opposite.
+  template <class Greatest>
+  Bounds along_rows(Greatest greatest) const {
+    Bounds bounds;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 row(m[0][k], m[1][k], m[2][k]);
+      bounds.min[k] = m[3][k] - greatest(-row);
+      bounds.max[k] = m[3][k] + greatest(row);
+    }
+    return bounds;
+  }
+  Bounds operator()(const PartialSphereShape& s) const {
+    // At height z the sphere has the radius rho = sqrt(r^2 - z^2) and a.p is at most a_z z + across rho: concave in z, with its
+    // summit at r a_z / |(across, a_z)|, where across >= 0; otherwise convex.
+    return along_rows([&](const glm::dvec3& a) {
+      const double across = greatest_across(a, s.phi_max);
+      const auto at = [&](double z) { return a.z * z + across * std::sqrt(std::max(0.0, s.radius * s.radius - z * z)); };
+      const double slope = std::hypot(across, a.z);
+      if (across < 0 || slope == 0) return std::max(at(s.z_min), at(s.z_max));
+      return at(std::clamp(s.radius * a.z / slope, s.z_min, s.z_max));
+    });
+  }
+  Bounds operator()(const OpenCylinderShape& c) const {
+    return along_rows(
+        [&](const glm::dvec3& a) { return c.radius * greatest_across(a, c.phi_max) + std::max(a.z * c.z_min, a.z * c.z_max); });
+  }
+  Bounds operator()(const BilinearMeshShape& mesh) const {
+    Bounds bounds;
+    for (const auto& patch : mesh.patches)
+      for (std::uint32_t vertex : patch) bounds.extend(point(glm::dvec3(mesh.positions[vertex])));
+    return bounds;
+  }
+  Bounds operator()(const CsgShape& csg) const {
+    Bounds bounds;
+    for (std::size_t i = 0; i < csg.operands.size(); ++i) {
+      if (csg.operation == CsgShape::Operation::set_difference && i > 0) break;
+      const glm::dmat4 world_from_operand = m * csg.operands[i]->world_from_object;
+      const Bounds own = std::visit(BoundsOf{world_from_operand}, csg.operands[i]->geometry);
+      if (csg.operation == CsgShape::Operation::set_intersection && i > 0) {
+        bounds.min = glm::max(bounds.min, own.min);
+        bounds.max = glm::min(bounds.max, own.max);
+      } else {
+        bounds.extend(own);
+      }
+    }
+    return tightened(csg, m, bounds);
+  }
+  Bounds operator()(const DiskShape& disk) const {
+    return along_rows([&](const glm::dvec3& a) {
+      const double across = greatest_across(a, disk.phi_max);
+      return across * (across >= 0 ? disk.radius : disk.inner_radius) + a.z * disk.height;
+    });
   }
 };
 
@@ -76,9 +160,51 @@ struct CountOf {
   void operator()(const CapsulesShape& capsules) const { counts["capsule"] += times * capsules.p0.size(); }
   void operator()(const TriangleMeshShape& mesh) const { counts["triangle"] += times * mesh.triangles.size(); }
   void operator()(const DiskShape&) const { counts["disk"] += times; }
+  void operator()(const CylinderShape&) const { counts["cylinder"] += times; }
+  void operator()(const ConeShape&) const { counts["cone"] += times; }
+  void operator()(const BoxShape&) const { counts["box"] += times; }
+  void operator()(const PolyhedronShape&) const { counts["polyhedron"] += times; }
+  void operator()(const PartialSphereShape&) const { counts["sphere"] += times; }
+  void operator()(const OpenCylinderShape&) const { counts["cylinder"] += times; }
+  void operator()(const BilinearMeshShape& mesh) const { counts["bilinear_patch"] += times * mesh.patches.size(); }
+  void operator()(const CsgShape&) const { counts["csg"] += times; }
 };
 
 }  // namespace
+
+std::size_t surface_count(const Shape& shape) {
+  const auto& geometry = shape.geometry;
+  if (std::holds_alternative<CylinderShape>(geometry) || std::holds_alternative<ConeShape>(geometry)) return 3;
+  if (std::holds_alternative<BoxShape>(geometry)) return 6;
+  if (const auto* polyhedron = std::get_if<PolyhedronShape>(&geometry)) return polyhedron->points.size();
+  if (const auto* csg = std::get_if<CsgShape>(&geometry)) {
+    std::size_t count = 0;
+    for (const auto& operand : csg->operands) count += surface_count(*operand);
+    return count;
+  }
+  return 1;
+}
+
+bool is_closed(const Shape& shape) {
+  const auto& geometry = shape.geometry;
+  if (const auto* cylinder = std::get_if<CylinderShape>(&geometry))
+    return cylinder->caps[0] != Cap::open && cylinder->caps[1] != Cap::open;
+  if (const auto* cone = std::get_if<ConeShape>(&geometry)) return cone->caps[0] != Cap::open && cone->caps[1] != Cap::open;
+  return std::holds_alternative<SphereShape>(geometry) || std::holds_alternative<CapsulesShape>(geometry) ||
+         std::holds_alternative<BoxShape>(geometry) || std::holds_alternative<PolyhedronShape>(geometry) ||
+         std::holds_alternative<CsgShape>(geometry);
+}
+
+std::size_t solid_count(const Shape& shape) {
+  const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+  if (!csg) return 1;
+  std::size_t count = 0;
+  for (const auto& operand : csg->operands) {
+    count += solid_count(*operand);
+    if (count > max_csg_operands) break;
+  }
+  return count;
+}
 
 Bounds bounds_of(const Shape& shape) { return std::visit(BoundsOf{shape.world_from_object}, shape.geometry); }
 

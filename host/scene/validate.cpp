@@ -2,9 +2,11 @@
 // Copyright Caplet authors
 //
 // What the model may not hold.
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <set>
 
 #include "scene/scene.h"
 
@@ -36,6 +38,7 @@ class Validator {
       if (instance.object >= scene_.objects.size()) error(instance.where, "an instance of an object that does not exist");
       transform(instance.world_from_object, instance.where);
     }
+    if (said_.empty()) instances();
     for (const Light& one : scene_.lights) light(one);
     camera(file);
     film(file);
@@ -44,7 +47,10 @@ class Validator {
   }
 
  private:
-  void error(const SourceLocation& where, const std::string& message) { diagnostics_.error(where, message); }
+  /// Once: a csg's operand is also a shape of its object.
+  void error(const SourceLocation& where, const std::string& message) {
+    if (said_.insert(where.to_string() + message).second) diagnostics_.error(where, message);
+  }
 
   void transform(const glm::dmat4& m, const SourceLocation& where) {
     for (int i = 0; i < 4; ++i)
@@ -89,6 +95,9 @@ class Validator {
   void check(const DiskShape& disk, const SourceLocation& where) {
     positive(disk.radius, where, "the disk's radius");
     if (!std::isfinite(disk.height)) error(where, "the disk's height is not finite");
+    if (disk.radius > 0 && !(disk.inner_radius >= 0 && disk.inner_radius < disk.radius))
+      error(where, "the disk's inner radius must be from 0 up and below its radius");
+    if (!(disk.phi_max > 0)) error(where, "the disk's greatest phi must be above 0");
   }
   void check(const CapsulesShape& capsules, const SourceLocation& where) {
     const std::size_t count = capsules.p0.size();
@@ -106,6 +115,11 @@ class Validator {
     }
   }
   void check(const TriangleMeshShape& mesh, const SourceLocation& where) {
+    vertices(mesh, where);
+    for (const auto& triangle : mesh.triangles) indices(triangle, mesh.positions.size(), where);
+  }
+  template <class Mesh>
+  void vertices(const Mesh& mesh, const SourceLocation& where) {
     const std::size_t count = mesh.positions.size();
     if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
       return error(where, "the mesh has another number of normals or uvs than of vertices");
@@ -113,23 +127,160 @@ class Validator {
       if (!finite(mesh.positions[i]) || (!mesh.normals.empty() && !finite(mesh.normals[i])) ||
           (!mesh.uvs.empty() && !finite(mesh.uvs[i])))
         return error(where, "vertex " + std::to_string(i) + " of the mesh is not finite");
-    for (const auto& triangle : mesh.triangles)
-      for (std::uint32_t vertex : triangle)
-        if (vertex >= count)
-          return error(
-              where, "the mesh has the vertex index " + std::to_string(vertex) + ", but " + std::to_string(count) + " vertices");
+  }
+  template <class Face>
+  void indices(const Face& face, std::size_t count, const SourceLocation& where) {
+    for (const std::uint32_t vertex : face)
+      if (vertex >= count)
+        return error(where,
+                     "the mesh has the vertex index " + std::to_string(vertex) + ", but " + std::to_string(count) + " vertices");
+  }
+  void check(const CylinderShape& c, const SourceLocation& where) {
+    positive(c.radius, where, "the cylinder's radius");
+    ends(c.p0, c.p1, where, "the cylinder");
+  }
+  void check(const ConeShape& c, const SourceLocation& where) {
+    for (const double radius : c.radius)
+      if (!(radius >= 0 && std::isfinite(radius))) return error(where, "the cone's radii must be from 0 up and finite");
+    positive(std::max(c.radius[0], c.radius[1]), where, "the greater of the cone's radii");
+    ends(c.p0, c.p1, where, "the cone");
+  }
+  void check(const BoxShape& box, const SourceLocation& where) {
+    if (!finite(box.p0) || !finite(box.p1)) return error(where, "the box's corners are not finite");
+    for (int k = 0; k < 3; ++k)
+      if (static_cast<float>(box.p0[k]) == static_cast<float>(box.p1[k]))
+        return error(where, std::string("the box is flat: its corners have the same ") + "xyz"[k] + " as 32-bit floats");
+  }
+  void check(const PolyhedronShape& polyhedron, const SourceLocation& where) {
+    const std::size_t planes = polyhedron.points.size();
+    if (polyhedron.normals.size() != planes) return error(where, "the polyhedron has another number of normals than of points");
+    if (planes > max_polyhedron_planes)
+      return error(
+          where, "the polyhedron has " + std::to_string(planes) + " planes, more than " + std::to_string(max_polyhedron_planes));
+    double reach = 0;  // of the points from the first
+    for (std::size_t i = 0; i < planes; ++i) {
+      const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
+      if (!finite(polyhedron.points[i]) || !finite(polyhedron.normals[i])) return error(where, plane() + "is not finite");
+      if (!(glm::length(polyhedron.normals[i]) > 0)) return error(where, plane() + "has no normal: it is zero");
+      reach = std::max(reach, glm::length(polyhedron.points[i] - polyhedron.points[0]));
+    }
+    std::size_t bad = 0;
+    if (!polyhedron_corners(polyhedron, &bad).empty()) return;
+    // A box far outside tells one without bounds from one without an inside.
+    PolyhedronShape boxed = polyhedron;
+    for (int side = 0; side < 6; ++side) {
+      glm::dvec3 n(0);
+      n[side / 2] = side % 2 ? 1 : -1;
+      boxed.points.push_back(polyhedron.points[0] + (reach > 0 ? 1e3 * reach : 1) * n);
+      boxed.normals.push_back(n);
+    }
+    const bool unbounded = !polyhedron_corners(boxed).empty();
+    error(where, std::string("the polyhedron ") + (unbounded ? "has no bounds" : "has no inside") + ": look at plane " +
+                     std::to_string(bad) + " (counted from 0)");
+  }
+  void check(const PartialSphereShape& s, const SourceLocation& where) {
+    positive(s.radius, where, "the sphere's radius");
+    part(s.z_min, s.z_max, s.phi_max, where, "the sphere");
+  }
+  void check(const OpenCylinderShape& c, const SourceLocation& where) {
+    positive(c.radius, where, "the cylinder's radius");
+    part(c.z_min, c.z_max, c.phi_max, where, "the cylinder");
+  }
+  void check(const BilinearMeshShape& mesh, const SourceLocation& where) {
+    vertices(mesh, where);
+    for (const auto& patch : mesh.patches) indices(patch, mesh.positions.size(), where);
+  }
+  void check(const CsgShape& csg, const SourceLocation& where) {
+    if (csg.operands.size() < 2) return error(where, "the csg has fewer than two operands");
+    for (const auto& operand : csg.operands) {
+      const auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
+      if (!is_closed(*operand)) return error(where, "the csg has an operand that is an open surface");
+      if (capsules && capsules->p0.size() != 1) return error(where, "the csg has an operand of more or fewer than one capsule");
+      if (operand->emission) return error(where, "the csg has an operand that is an area light");
+    }
+    std::size_t solids = 0;
+    for (const auto& operand : csg.operands) {
+      solids += solid_count(*operand);
+      if (solids > max_csg_operands)
+        return error(where, "the csg holds more than " + std::to_string(max_csg_operands) + " solids");
+    }
+    for (const auto& operand : csg.operands) geometry(*operand);
   }
   void positive(double value, const SourceLocation& where, const char* what) {
-    if (!(value > 0 && std::isfinite(value))) error(where, std::string(what) + " must be positive and finite");
+    if (!(static_cast<float>(value) > 0 && std::isfinite(value)))
+      error(where, std::string(what) + " must be positive and finite");
+  }
+  /// The ends of an axis.
+  void ends(const glm::dvec3& p0, const glm::dvec3& p1, const SourceLocation& where, const std::string& what) {
+    if (!finite(p0) || !finite(p1))
+      error(where, what + "'s ends are not finite");
+    else if (glm::vec3(p0) == glm::vec3(p1))
+      error(where, what + " has no axis: its ends are the same point as 32-bit floats");
+  }
+  void part(double z_min, double z_max, double phi_max, const SourceLocation& where, const std::string& what) {
+    if (!(z_min < z_max && std::isfinite(z_max - z_min))) error(where, what + " must end at a greater z than it begins at");
+    if (!(phi_max > 0 && phi_max <= full_turn)) error(where, what + "'s greatest phi must be above 0 and at most a full turn");
+  }
+
+  /// Where instances come to lie, by the boxes of their objects.
+  void instances() {
+    std::vector<Bounds> boxes(scene_.objects.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (const Shape& one : scene_.objects[i].shapes) boxes[i].extend(bounds_of(one));
+    for (const Instance& instance : scene_.instances) {
+      const Bounds& box = boxes[instance.object];
+      if (box.empty()) continue;
+      Bounds placed;
+      for (int corner = 0; corner < 8; ++corner)
+        placed.extend(glm::dvec3(instance.world_from_object * glm::dvec4(corner & 1 ? box.max.x : box.min.x,
+                                                                         corner & 2 ? box.max.y : box.min.y,
+                                                                         corner & 4 ? box.max.z : box.min.z, 1)));
+      if (!within_reach(placed)) error(instance.where, too_far);
+    }
+  }
+
+  /// Transform, geometry and materials: what operands have too.
+  void geometry(const Shape& s) {
+    transform(s.world_from_object, s.where);
+    std::visit([&](const auto& own) { check(own, s.where); }, s.geometry);
+    if (s.material >= scene_.materials.size()) error(s.where, "the shape has a material that does not exist");
+    for (const std::uint32_t material : s.materials)
+      if (material >= scene_.materials.size()) error(s.where, "a surface of the shape has a material that does not exist");
+    if (!s.materials.empty() && s.materials.size() != surface_count(s))
+      error(s.where, "the shape has " + std::to_string(surface_count(s)) + " surfaces, but materials for " +
+                         std::to_string(s.materials.size()));
+  }
+
+  void emission(const Shape& s) {
+    spectrum(s.emission->radiance, s.where, "the emission");
+    if (!(s.emission->scale >= 0 && std::isfinite(s.emission->scale))) error(s.where, "the emission's scale must be from 0 up");
+    for (const std::uint32_t surface : s.emission->surfaces)
+      if (surface >= surface_count(s))
+        error(s.where, "the light is on surface " + std::to_string(surface) + ", but the surfaces are numbered from 0 to " +
+                           std::to_string(surface_count(s) - 1));
+    if (s.emission->power && std::holds_alternative<CsgShape>(s.geometry))
+      error(s.where, "a csg cannot be a light of a given \"power\", as its area is not known; give it an \"L\"");
   }
 
   void shape(const Shape& s) {
-    transform(s.world_from_object, s.where);
-    std::visit([&](const auto& geometry) { check(geometry, s.where); }, s.geometry);
-    if (s.material >= scene_.materials.size()) error(s.where, "the shape has a material that does not exist");
-    if (!s.emission) return;
-    spectrum(s.emission->radiance, s.where, "the emission");
-    if (!(s.emission->scale >= 0 && std::isfinite(s.emission->scale))) error(s.where, "the emission's scale must be from 0 up");
+    const std::size_t before = said_.size();
+    geometry(s);
+    if (said_.size() != before) return;
+    if (s.emission) emission(s);
+    const Bounds bounds = bounds_of(s);
+    if (bounds.empty()) {
+      if (std::holds_alternative<CsgShape>(s.geometry))
+        diagnostics_.warning(s.where, "the csg is empty and draws nothing: its operands leave no solid");
+    } else if (!within_reach(bounds)) {
+      error(s.where, too_far);
+    }
+  }
+
+  static constexpr const char* too_far = "the shape reaches further than 1e18 from the origin, where 32-bit floats end";
+  static bool within_reach(const Bounds& bounds) {
+    for (int k = 0; k < 3; ++k)
+      if (!(bounds.min[k] >= -largest_length && bounds.max[k] <= largest_length)) return false;
+    return true;
   }
 
   void light(const Light& l) {
@@ -180,6 +331,7 @@ class Validator {
 
   const Scene& scene_;
   Diagnostics& diagnostics_;
+  std::set<std::string> said_;
 };
 
 }  // namespace

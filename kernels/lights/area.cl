@@ -6,6 +6,8 @@
 #define CAPLET_LIGHTS_AREA_CL
 
 #include "globals.cl"
+#include "lights/ball.cl"
+#include "lights/cylinder.cl"
 #include "lights/round_cone.cl"
 #include "lights/sphere.cl"
 #include "lights/triangle.cl"
@@ -70,7 +72,7 @@ static inline float area_magnitude(uint shape, __global const float* data) {
   if (shape == shape_disk) return magnitude + data[48];
   magnitude = fmax(magnitude, norm1(area_point(data, 3)));
   if (shape == shape_triangle) return fmax(magnitude, norm1(area_point(data, 6)));
-  return magnitude + fmax(data[48], shape == shape_capsule ? 0.0f : data[56]);
+  return magnitude + fmax(data[48], shape != shape_tapered_capsule ? 0.0f : data[56]);
 }
 
 // Bound on the distance along the normal between a sampled point and the surface as a shadow ray from p meets it: some eight
@@ -98,6 +100,22 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
   float per_area = 0.0f;
   s->pdf = 0.0f;
 
+#ifndef CAPLET_BASIC_SHAPES
+  if (light->data != CAPLET_NONE) {
+    __global const float* ball = g->light_data + light->data;
+    const float3 wi = ball_sample(ball, p, u);
+    HitRecord hit;
+    if (!primitive_crossing(g, light->slot, light->instance, p, wi, &hit)) return 0;
+    const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
+    const Surface found = surface_at(g, &ray, &hit);
+    if (found.light == CAPLET_NONE || (!both && !(dot(found.ng, wi) < 0.0f))) return 0;
+    s->p = found.p;
+    s->n = found.ng;
+    s->error = area_error(g, light, norm1(load3(ball)) + ball[3], found.p, p);
+    s->pdf = fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
+    return 1;
+  }
+#endif
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) {
     if (flip && !both) return 0;
@@ -132,6 +150,12 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
       if (flip) n = -n;
       if (!both && !(dot(q - center, n) > 0.0f)) return 0;
       per_area = CAPLET_INV_PI / sqr(data[48]);
+#ifndef CAPLET_BASIC_SHAPES
+    } else if (shape == shape_cylinder) {
+      per_area = cylinder_sample(data, cylinder_areas(g, geometry, data), u, &x, &n);
+      if (!(per_area > 0.0f)) return 0;
+      if (flip) n = -n;
+#endif
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);
@@ -165,6 +189,9 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
 static inline float area_pdf(const Globals* g, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
   const uint shape = g->geometries[light->geometry].shape;
   __global const float* data = area_data(g, light);
+#ifndef CAPLET_BASIC_SHAPES
+  if (light->data != CAPLET_NONE) return fmin(ball_pdf(g->light_data + light->data, p), CAPLET_MAX_DENSITY);
+#endif
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) return fmin(1.0f / (2.0f * CAPLET_PI * cone), CAPLET_MAX_DENSITY);
   const float3 away = x - p;
@@ -186,6 +213,10 @@ static inline float area_pdf(const Globals* g, __global const LightRecord* light
     }
     if (shape == shape_disk) {
       per_area = CAPLET_INV_PI / sqr(data[48]);
+#ifndef CAPLET_BASIC_SHAPES
+    } else if (shape == shape_cylinder) {
+      per_area = cylinder_density(cylinder_areas(g, g->geometries + light->geometry, data));
+#endif
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);

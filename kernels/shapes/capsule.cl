@@ -19,8 +19,8 @@
 typedef struct {
   real px, py, pz;     // the ray's point nearest to p0, relative to p0
   real bx, by, bz;     // axis
-  real u, v, t0, h;    // position on the axis (0..1) is u + v t; the tube is crossed at t0 -+ h
-  real r;
+  real u, v, t0, h;    // position on the axis (0..1) is u + v t; the tube is crossed at t0 -+ h (capsule_line leaves h squared)
+  real r, ff;          // ff: f.f
 } CapsuleLine;
 
 // The crossing on the entering (sign -1) or leaving (+1) side, as an offset from the moved origin; lanes without one leave `hit`.
@@ -40,7 +40,8 @@ static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float 
   return body ? side : tc + sign * sqrt(real_max(disc, zero) * ray->inv_dd);
 }
 
-static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* leaving) {
+// Lanes whose tube the line meets; fills `c`. `shift`: the moved origin.
+static inline real_mask capsule_line(const ShapeRay* ray, __global const float* block, uint lane, CapsuleLine* line, real* shifted) {
   CapsuleLine c;
   const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
   const real wx = ray->ox - ax, wy = ray->oy - ay, wz = ray->oz - az;
@@ -59,24 +60,45 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
   const real ex = c.px - c.u * c.bx, ey = c.py - c.u * c.by, ez = c.pz - c.u * c.bz;
   const real fx = ray->dx - c.v * c.bx, fy = ray->dy - c.v * c.by, fz = ray->dz - c.v * c.bz;
   // Along the axis f vanishes; the floor makes the tube's span longer than any capsule whose shape single precision can hold.
-  const real inv_ff = 1.0f / real_max(real_dot(fx, fy, fz, fx, fy, fz), real_of(ray->ff_min));
+  c.ff = real_dot(fx, fy, fz, fx, fy, fz);
+  const real inv_ff = 1.0f / real_max(c.ff, real_of(ray->ff_min));
   c.t0 = -real_dot(ex, ey, ez, fx, fy, fz) * inv_ff;
   const real qx = ex + c.t0 * fx, qy = ey + c.t0 * fy, qz = ez + c.t0 * fz;
   const real disc = c.r * c.r - real_dot(qx, qy, qz, qx, qy, qz);
-  real_mask hit = disc >= 0.0f;
+  c.h = disc * inv_ff;
+  *line = c;
+  *shifted = shift;
+  return disc >= 0.0f;
+}
+
+static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+  CapsuleLine c;
+  real shift;
+  real_mask hit = capsule_line(ray, block, lane, &c, &shift);
   *t = shift;
-  *leaving = hit & (disc < 0.0f);
+  *side = int_of(0);
   if (mask_bits(hit) == 0) return hit;
-  c.h = sqrt(real_max(disc, real_of(0.0f)) * inv_ff);
+  c.h = sqrt(real_max(c.h, real_of(0.0f)));
   *t = shift + capsule_end(ray, &c, -1.0f, &hit);
-  *leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
-  if (mask_bits(*leaving) != 0) {
+  const real_mask leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
+  if (mask_bits(leaving) != 0) {
     real_mask exit_hit = hit;
     const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exit_hit);
-    *t = *leaving ? t_exit : *t;
-    hit = *leaving ? exit_hit : hit;
+    *t = leaving ? t_exit : *t;
+    hit = leaving ? exit_hit : hit;
+    *side = leaving ? int_of(CAPLET_LEAVING) : int_of(0);
   }
   return hit;
+}
+
+static inline Span capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
+  CapsuleLine c;
+  real shift;
+  real_mask enters = capsule_line(ray, block, lane, &c, &shift), exits = enters;
+  c.h = sqrt(real_max(c.h, real_of(0.0f)));
+  const real t_enter = shift + capsule_end(ray, &c, -1.0f, &enters);
+  const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
+  return span_of(enters & exits, t_enter, t_exit);
 }
 
 #endif

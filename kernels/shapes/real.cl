@@ -6,6 +6,8 @@
 #ifndef CAPLET_SHAPES_REAL_CL
 #define CAPLET_SHAPES_REAL_CL
 
+#include "shared/kinds.h"
+
 #ifndef CAPLET_REAL_WIDTH
 #define CAPLET_REAL_WIDTH 1
 #endif
@@ -15,6 +17,8 @@ typedef float8 real;
 typedef int8 real_mask;
 
 static inline real real_of(float x) { return (float8)(x); }
+static inline real_mask int_of(int x) { return (int8)(x); }
+static inline real_mask real_bits(real x) { return as_int8(x); }
 static inline real real_load(__global const float* row, uint lane) {
   (void)lane;
   return vload8(0, row);
@@ -49,6 +53,8 @@ typedef float real;
 typedef int real_mask;
 
 static inline real real_of(float x) { return x; }
+static inline real_mask int_of(int x) { return x; }
+static inline real_mask real_bits(real x) { return as_int(x); }
 static inline real real_load(__global const float* row, uint lane) { return row[lane]; }
 static inline real_mask lanes_filled(__global const float* row, uint lane) { return ((__global const int*)row)[lane] >= 0; }
 static inline void real_store(real x, float* out) { *out = x; }
@@ -63,6 +69,16 @@ static inline real real_min(real a, real b) { return a < b ? a : b; }
 static inline real real_max(real a, real b) { return a > b ? a : b; }
 static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) { return ax * bx + ay * by + az * bz; }
 
+// A power of two that takes a positive x to [1, 2). (Of 2^127 or more, and of subnormals: some finite number.)
+static inline real real_power_of_two_below_inverse(real x) {
+  const real_mask exponent = int_of(0x7f000000) - (real_bits(x) & int_of(0x7f800000));
+#if CAPLET_REAL_WIDTH == 8
+  return as_float8(exponent);
+#else
+  return as_float(exponent);
+#endif
+}
+
 // Index of the lowest set bit; bits must not be 0.
 static inline uint lowest_bit(uint bits) { return popcount(~bits & (bits - 1u)); }
 
@@ -72,13 +88,15 @@ typedef struct {
   float t_min;
   float inv_dd;  // 1 / |d|^2
   float ff_min;  // below this a squared direction component is rounding noise (2^-50 |d|^2)
+  int sees_entering, sees_leaving;  // -1 or 0: crossings that count
+  __global const float* leaves;     // shapes of no fixed size keep data there
   // Triangles: offsets, in floats of a leaf block, of the components that become x, y and z once the largest component of d is z;
   // the shear, and 1 / dz (Woop, Benthin and Wald 2013).
   uint row_x, row_y, row_z;
   float kox, koy, koz, shear_x, shear_y, inv_dz;
 } ShapeRay;
 
-static inline ShapeRay shape_ray(float3 o, float3 d, float t_min) {
+static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, __global const float* leaves) {
   ShapeRay ray;
   ray.ox = o.x;
   ray.oy = o.y;
@@ -87,6 +105,8 @@ static inline ShapeRay shape_ray(float3 o, float3 d, float t_min) {
   ray.dy = d.y;
   ray.dz = d.z;
   ray.t_min = t_min;
+  ray.sees_entering = ray.sees_leaving = -1;
+  ray.leaves = leaves;
   const float dd = dot(d, d);
   ray.inv_dd = 1.0f / dd;
   ray.ff_min = fmax(dd * 0x1p-50f, 0x1p-120f);
@@ -107,10 +127,51 @@ static inline ShapeRay shape_ray(float3 o, float3 d, float t_min) {
   return ray;
 }
 
-// The nearer of a span's two ends beyond t_min. `hit`: lanes with a span.
-static inline real span_nearest(const ShapeRay* ray, real t_enter, real t_exit, real_mask* leaving) {
-  *leaving = t_enter <= real_of(ray->t_min);
-  return *leaving ? t_exit : t_enter;
+// What a line does to a shape: it goes in at t_enter and out at t_exit, through the surfaces of these numbers. `enter` and `exit`: lanes
+// in which that crossing is on the shape: both or none for closed solids; open ones miss parts, and one crossing alone is an entrance or
+// an exit by the side it is seen from. t_enter <= t_exit to rounding wherever both are there (of bilinear patches either may be first);
+// elsewhere t has no meaning.
+typedef struct {
+  real t_enter, t_exit;
+  real_mask enter, exit;
+  real_mask surface_enter, surface_exit;  // integers
+} Span;
+
+// Of a closed solid of one surface.
+static inline Span span_of(real_mask hit, real t_enter, real t_exit) {
+  Span span;
+  span.t_enter = t_enter;
+  span.t_exit = t_exit;
+  span.enter = span.exit = hit;
+  span.surface_enter = span.surface_exit = int_of(0);
+  return span;
+}
+
+// Of an open shape that lines cross once; `side`: HitRecord.surface.
+static inline Span span_of_one(real_mask hit, real t, real_mask side) {
+  const real_mask leaving = (side & int_of(CAPLET_LEAVING)) != 0;
+  Span span;
+  span.t_enter = span.t_exit = t;
+  span.enter = hit & (leaving == 0);
+  span.exit = hit & leaving;
+  span.surface_enter = span.surface_exit = side & int_of((int)CAPLET_SURFACE_MASK);
+  return span;
+}
+
+// Defines name_hit from name_span.
+#define SPAN_HIT(name)                                                                                                            \
+  static inline real_mask name##_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {     \
+    const Span span = name##_span(ray, block, lane);                                                                              \
+    return span_nearest(ray, &span, t, side);                                                                                     \
+  }
+
+// The nearest crossing beyond t_min that the ray sees: lanes that have one, t, and HitRecord.surface.
+static inline real_mask span_nearest(const ShapeRay* ray, const Span* span, real* t, real_mask* side) {
+  const real_mask enter = span->enter & (span->t_enter > ray->t_min) & int_of(ray->sees_entering);
+  const real_mask exit = span->exit & (span->t_exit > ray->t_min) & int_of(ray->sees_leaving);
+  *t = enter ? span->t_enter : span->t_exit;
+  *side = enter ? span->surface_enter : span->surface_exit | int_of(CAPLET_LEAVING);
+  return enter | exit;
 }
 
 #endif

@@ -25,17 +25,14 @@ static inline real_mask sphere_span_within(const ShapeRay* ray, real wx, real wy
   return qq <= outer * outer;
 }
 
-static inline real_mask sphere_span(const ShapeRay* ray, real wx, real wy, real wz, real r, real* t_enter, real* t_exit) {
-  return sphere_span_within(ray, wx, wy, wz, r, real_of(0.0f), t_enter, t_exit);
-}
-
-static inline real_mask sphere_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* leaving) {
+static inline Span sphere_span(const ShapeRay* ray, __global const float* block, uint lane) {
   const real wx = ray->ox - real_load(block + 8, lane), wy = ray->oy - real_load(block + 16, lane),
              wz = ray->oz - real_load(block + 24, lane);
   real t_enter, t_exit;
-  const real_mask hit = sphere_span(ray, wx, wy, wz, real_load(block + 32, lane), &t_enter, &t_exit);
-  *t = span_nearest(ray, t_enter, t_exit, leaving);
-  return hit;
+  const real_mask hit = sphere_span_within(ray, wx, wy, wz, real_load(block + 32, lane), real_of(0.0f), &t_enter, &t_exit);
+  return span_of(hit, t_enter, t_exit);
 }
+
+SPAN_HIT(sphere)
 
 #endif

@@ -7,65 +7,31 @@
 #define CAPLET_SHAPES_SURFACE_CL
 
 #include "globals.cl"
-#include "shapes/surface_capsule.cl"
-#include "shapes/surface_disk.cl"
-#include "shapes/surface_sphere.cl"
-#include "shapes/surface_tapered_capsule.cl"
-#include "shapes/surface_triangle.cl"
+#include "shapes/surface_csg.cl"
+#include "shapes/surface_shapes.cl"
 
 // World space. p lies on the surface within `error`: p +- ng * error is on the intended side. ng points outward of solids, and by
 // winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE.
 typedef struct {
-  float3 p, ng, ns, dpdu;
+  float3 p, ng, ns, dpdu, dpdv;
   float2 uv;
   float error;
-  uint geometry, primitive, surface, light;
+  uint geometry, primitive, surface, material, light;
   int leaving;
 } Surface;
 
-// The point (before ReverseOrientation) of primitive `primitive` (data at leaves[slot + 8 * row]) nearest to x in its own space.
-// `fallback`: a unit vector, the normal where x leaves it undefined.
-static inline LocalSurface surface_local(const Globals* g, const GeometryRecord geometry, uint primitive, uint slot, float3 x,
-                                         float3 fallback) {
-  __global const float* data = g->leaves + slot + 8u;
-  switch (geometry.shape) {
-    case shape_sphere:
-      return surface_sphere(data, x, fallback);
-    case shape_capsule:
-      return surface_capsule(data, x, fallback);
-    case shape_tapered_capsule:
-      return surface_tapered_capsule(data, x, fallback);
-    case shape_disk:
-      return surface_disk(data, x);
-    default:
-      return surface_triangle(g, geometry, primitive, data, x, fallback);
-  }
-}
-
-// Sum over columns of |m| |p|, translation included: what roundings of transform_point(m, p) are proportional to.
-static inline float3 transform_magnitude(__global const float* m, float3 p) {
-  const float3 a = fabs(p);
-  return (float3)(fabs(m[0]) * a.x + fabs(m[1]) * a.y + fabs(m[2]) * a.z + fabs(m[3]),
-                  fabs(m[4]) * a.x + fabs(m[5]) * a.y + fabs(m[6]) * a.z + fabs(m[7]),
-                  fabs(m[8]) * a.x + fabs(m[9]) * a.y + fabs(m[10]) * a.z + fabs(m[11]));
-}
-
-// Takes a surface point of an instance's object space to world space.
-static inline LocalSurface surface_to_world(__global const InstanceRecord* instance, LocalSurface s) {
-  __global const float* to_world = instance->world_from_object;
-  __global const float* to_object = instance->object_from_world;
-  const float3 magnitude = transform_magnitude(to_world, s.p);
-  const float3 normal = unit_or(transform_transposed(to_object, s.ng), s.ng);
-  const float3 shading = unit_or(transform_transposed(to_object, s.ns), normal);
-  // Object-space uncertainty: that of the point, and the rounding of the way there and back with both rounded matrices.
-  const float object_error = s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
-  LocalSurface out = s;
-  out.p = transform_point(to_world, s.p);
-  out.dpdu = transform_vector(to_world, s.dpdu);
-  out.ng = normal;
-  out.ns = dot(shading, normal) < 0.0f ? -shading : shading;
-  out.error = length(transform_transposed(to_world, normal)) * object_error + 8.0f * CAPLET_EPS * dot(fabs(normal), magnitude);
-  return out;
+static inline LocalSurface surface_local(const SurfaceQuery* q) {
+#ifdef CAPLET_BASIC_SHAPES
+  return surface_shape(q->geometry->shape, q);
+#else
+  uint shape = q->geometry->shape;
+  SurfaceQuery own = *q;
+  CsgOperand operand;
+  const int csg = shape == shape_csg;
+  if (csg) shape = csg_operand(q, &operand, &own);
+  const LocalSurface s = surface_shape(shape, &own);
+  return csg ? csg_surface(&operand, s) : s;
+#endif
 }
 
 // The surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
@@ -80,30 +46,42 @@ static inline Surface surface_at(const Globals* g, const RayRecord* ray, const H
   const uint primitive = as_uint(g->leaves[hit->slot]);
   const uint index = g->primitive_geometry[primitive];
   const GeometryRecord geometry = g->geometries[index];
-  const int leaving = (int)((hit->surface >> 16) & 1u);
+  const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
-  LocalSurface found = surface_local(g, geometry, primitive, hit->slot, o + hit->t * d, backward);
+  const uint surface = hit->surface & CAPLET_SURFACE_MASK;
+  const SurfaceQuery query = {g, &geometry, primitive, surface, g->leaves + hit->slot + 8u, o + hit->t * d, backward};
+  LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;
     found.ns = -found.ns;
   }
-  if (placed) found = surface_to_world(g->instances + hit->instance, found);
+  if (placed) {
+    __global const InstanceRecord* instance = g->instances + hit->instance;
+    found = surface_transformed(instance->world_from_object, instance->object_from_world, found);
+  }
 
   Surface s;
   s.p = found.p;
   s.ng = found.ng;
   s.ns = found.ns;
   s.dpdu = found.dpdu;
+  s.dpdv = found.dpdv;
   s.uv = found.uv;
   s.error = found.error;
   s.geometry = index;
   s.primitive = primitive;
-  s.surface = hit->surface & 0xffffu;
+  s.surface = surface;
   s.leaving = leaving;
   const uint base = placed ? g->instances[hit->instance].light_base : 0u;
   s.light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
                 ? CAPLET_NONE
                 : base + geometry.light_offset + (primitive - geometry.primitive_begin);
+  s.material = geometry.material;
+  if (geometry.surface_begin != CAPLET_NONE) {
+    const uint entry = g->surface_materials[geometry.surface_begin + surface];
+    s.material = entry & ~CAPLET_SURFACE_DARK;
+    if (entry & CAPLET_SURFACE_DARK) s.light = CAPLET_NONE;
+  }
   return s;
 }
 

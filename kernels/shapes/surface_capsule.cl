@@ -55,15 +55,16 @@ static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, floa
   out.ns = out.ng;
   out.p = q + radius * out.ng;
   out.uv.x = turn_around(unit_axis, unit_radial);
-  out.uv.y = fmin(fmax(arc / (r0 * angle0 + side + r1 * (CAPLET_PI - angle0)), 0.0f), 1.0f);
+  const float profile = r0 * angle0 + side + r1 * (CAPLET_PI - angle0);
+  out.uv.y = fmin(fmax(arc / profile, 0.0f), 1.0f);
+  out.dpdv = profile * unit_or(unit_axis - dot(unit_axis, out.ng) * out.ng, (float3)(0.0f));
   out.dpdu = 2.0f * CAPLET_PI * radius * cross(unit_axis, out.ng);
   out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
   return out;
 }
 
-static inline LocalSurface surface_capsule(__global const float* data, float3 x, float3 fallback) {
-  return round_cone_point((float3)(data[0], data[8], data[16]), (float3)(data[24], data[32], data[40]), data[48], data[48], x,
-                          fallback);
+static inline LocalSurface surface_capsule(const SurfaceQuery* q) {
+  return round_cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48], q->x, q->fallback);
 }
 
 #endif

@@ -7,12 +7,11 @@
 
 #include "shapes/surface_local.cl"
 
-static inline LocalSurface surface_disk(__global const float* data, float3 x) {
-  const float3 center = (float3)(data[0], data[8], data[16]);
-  const float3 normal = (float3)(data[24], data[32], data[40]);
-  const float radius = data[48];
+static inline LocalSurface surface_disk(const SurfaceQuery* q) {
+  const float3 center = data3(q->data, 0), normal = data3(q->data, 3);
+  const float radius = q->data[48];
   LocalSurface s;
-  const float3 v = x - center;
+  const float3 v = q->x - center;
   const float3 in_plane = v - dot(v, normal) * normal;
   const float3 flat_spoke = in_plane - dot(in_plane, normal) * normal;
   const float distance = fmin(length(flat_spoke), radius);
@@ -23,6 +22,7 @@ static inline LocalSurface surface_disk(__global const float* data, float3 x) {
   s.uv = (float2)(distance > 0.0f ? turn_around(normal, spoke / distance) : 0.0f,
                   radius > 0.0f ? fmax(0.0f, 1.0f - distance / radius) : 0.0f);
   s.dpdu = 2.0f * CAPLET_PI * cross(normal, spoke);
+  s.dpdv = -radius * unit_or(spoke, (float3)(0.0f));
   s.error = CAPLET_EPS * (12.0f * radius + 4.0f * norm1(s.p));
   return s;
 }

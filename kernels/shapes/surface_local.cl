@@ -5,6 +5,7 @@
 #ifndef CAPLET_SHAPES_SURFACE_LOCAL_CL
 #define CAPLET_SHAPES_SURFACE_LOCAL_CL
 
+#include "globals.cl"
 #include "math/vector.cl"
 
 // A point of a shape in the space in which its data is stored (world, or an instance's object space).
@@ -12,10 +13,22 @@ typedef struct {
   float3 p;     // on the surface, within `error`
   float3 ng;    // unit; outward of solids, by winding or stored normal for open shapes
   float3 ns;    // unit shading normal, on ng's side
-  float3 dpdu;  // derivative of the point by uv.x; zero where it is undefined (poles)
+  float3 dpdu, dpdv;  // derivatives of the point by uv; zero where they are undefined (poles)
   float2 uv;
   float error;  // bound on the distance of p from the true surface (docs/numerics.md, "Surface points")
 } LocalSurface;
+
+// What a surface function answers: the point of a shape's surface `surface` nearest to x, in the space its data is stored in.
+typedef struct {
+  const Globals* g;
+  const GeometryRecord* geometry;
+  uint primitive, surface;
+  __global const float* data;  // datum j at [8 * j]
+  float3 x;
+  float3 fallback;  // unit normal where x leaves it undefined
+} SurfaceQuery;
+
+static inline float3 data3(__global const float* data, int j) { return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]); }
 
 static inline float norm1(float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 
@@ -40,5 +53,30 @@ static inline float turn_around(float3 axis, float3 n) {
 
 // Angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.
 static inline float angle_between(float3 axis, float3 n) { return atan2(length(n - axis * dot(n, axis)), dot(n, axis)); }
+
+// Sum over columns of |m| |p|, translation included: what roundings of transform_point(m, p) are proportional to.
+static inline float3 transform_magnitude(__global const float* m, float3 p) {
+  const float3 a = fabs(p);
+  return (float3)(fabs(m[0]) * a.x + fabs(m[1]) * a.y + fabs(m[2]) * a.z + fabs(m[3]),
+                  fabs(m[4]) * a.x + fabs(m[5]) * a.y + fabs(m[6]) * a.z + fabs(m[7]),
+                  fabs(m[8]) * a.x + fabs(m[9]) * a.y + fabs(m[10]) * a.z + fabs(m[11]));
+}
+
+// Takes a surface point through an affine map (to_world, 3x4 row-major) with its inverse (to_object).
+static inline LocalSurface surface_transformed(__global const float* to_world, __global const float* to_object, LocalSurface s) {
+  const float3 magnitude = transform_magnitude(to_world, s.p);
+  const float3 normal = unit_or(transform_transposed(to_object, s.ng), s.ng);
+  const float3 shading = unit_or(transform_transposed(to_object, s.ns), normal);
+  // Object-space uncertainty: that of the point, and the rounding of the way there and back with both rounded matrices.
+  const float object_error = s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
+  LocalSurface out = s;
+  out.p = transform_point(to_world, s.p);
+  out.dpdu = transform_vector(to_world, s.dpdu);
+  out.dpdv = transform_vector(to_world, s.dpdv);
+  out.ng = normal;
+  out.ns = dot(shading, normal) < 0.0f ? -shading : shading;
+  out.error = length(transform_transposed(to_world, normal)) * object_error + 8.0f * CAPLET_EPS * dot(fabs(normal), magnitude);
+  return out;
+}
 
 #endif

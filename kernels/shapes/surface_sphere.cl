@@ -16,12 +16,14 @@ static inline LocalSurface sphere_point(float3 center, float radius, float3 axis
   s.p = center + radius * s.ng;
   s.uv = (float2)(turn_around(axis, s.ng), 1.0f - CAPLET_INV_PI * angle_between(axis, s.ng));
   s.dpdu = 2.0f * CAPLET_PI * radius * cross(axis, s.ng);
+  // v rises from the pole against the axis to the one along it.
+  s.dpdv = CAPLET_PI * radius * unit_or(axis - dot(axis, s.ng) * s.ng, (float3)(0.0f));
   s.error = CAPLET_EPS * (32.0f * radius + 4.0f * norm1(s.p));
   return s;
 }
 
-static inline LocalSurface surface_sphere(__global const float* data, float3 x, float3 fallback) {
-  return sphere_point((float3)(data[0], data[8], data[16]), data[24], (float3)(0.0f, 0.0f, 1.0f), x, fallback);
+static inline LocalSurface surface_sphere(const SurfaceQuery* q) {
+  return sphere_point(data3(q->data, 0), q->data[24], (float3)(0.0f, 0.0f, 1.0f), q->x, q->fallback);
 }
 
 #endif

@@ -7,9 +7,8 @@
 
 #include "shapes/surface_capsule.cl"
 
-static inline LocalSurface surface_tapered_capsule(__global const float* data, float3 x, float3 fallback) {
-  return round_cone_point((float3)(data[0], data[8], data[16]), (float3)(data[24], data[32], data[40]), data[48], data[56], x,
-                          fallback);
+static inline LocalSurface surface_tapered_capsule(const SurfaceQuery* q) {
+  return round_cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56], q->x, q->fallback);
 }
 
 #endif

@@ -19,15 +19,15 @@ static inline float3 robust_cross(float3 a, float3 b) {
                   difference_of_products(a.x, b.y, a.y, b.x));
 }
 
-static inline LocalSurface surface_triangle(const Globals* g, const GeometryRecord geometry, uint primitive,
-                                            __global const float* data, float3 x, float3 fallback) {
-  const float3 v0 = (float3)(data[0], data[8], data[16]);
-  const float3 e1 = (float3)(data[24], data[32], data[40]) - v0;
-  const float3 e2 = (float3)(data[48], data[56], data[64]) - v0;
-  const float3 n = unit_or(robust_cross(e1, e2), fallback);
+static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
+  const Globals* g = q->g;
+  const GeometryRecord* geometry = q->geometry;
+  const float3 v0 = data3(q->data, 0);
+  const float3 e1 = data3(q->data, 3) - v0, e2 = data3(q->data, 6) - v0;
+  const float3 n = unit_or(robust_cross(e1, e2), q->fallback);
 
   // Barycentric coordinates of x projected along the normal, kept inside the triangle.
-  const float3 v = x - v0;
+  const float3 v = q->x - v0;
   const float area = dot(robust_cross(e1, e2), n);
   float b1 = area > 0.0f ? fmin(fmax(dot(robust_cross(v, e2), n) / area, 0.0f), 1.0f) : 0.0f;
   float b2 = area > 0.0f ? fmin(fmax(dot(robust_cross(e1, v), n) / area, 0.0f), 1.0f) : 0.0f;
@@ -43,26 +43,28 @@ static inline LocalSurface surface_triangle(const Globals* g, const GeometryReco
   s.ng = s.ns = n;
   s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
 
-  const uint corner = geometry.index_begin + 3u * (primitive - geometry.primitive_begin);
-  if (geometry.normal_begin != CAPLET_NONE) {
-    __global const float* normals = g->mesh_normals + geometry.normal_begin;
+  const uint corner = geometry->index_begin + 3u * (q->primitive - geometry->primitive_begin);
+  if (geometry->normal_begin != CAPLET_NONE) {
+    __global const float* normals = g->mesh_normals + geometry->normal_begin;
     const float3 ns = b0 * load3(normals + 3u * g->mesh_indices[corner]) +
                       b1 * load3(normals + 3u * g->mesh_indices[corner + 1u]) +
                       b2 * load3(normals + 3u * g->mesh_indices[corner + 2u]);
     s.ns = unit_or(ns, s.ng);
     if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
   }
-  if (geometry.uv_begin != CAPLET_NONE) {
-    __global const float* uvs = g->mesh_uvs + geometry.uv_begin;
+  if (geometry->uv_begin != CAPLET_NONE) {
+    __global const float* uvs = g->mesh_uvs + geometry->uv_begin;
     const float2 uv0 = vload2(g->mesh_indices[corner], uvs);
     const float2 d1 = vload2(g->mesh_indices[corner + 1u], uvs) - uv0;
     const float2 d2 = vload2(g->mesh_indices[corner + 2u], uvs) - uv0;
     s.uv = uv0 + b1 * d1 + b2 * d2;
     const float determinant = difference_of_products(d1.x, d2.y, d1.y, d2.x);
     s.dpdu = determinant != 0.0f ? (d2.y * e1 - d1.y * e2) / determinant : (float3)(0.0f);
+    s.dpdv = determinant != 0.0f ? (d1.x * e2 - d2.x * e1) / determinant : (float3)(0.0f);
   } else {
     s.uv = (float2)(1.0f - b0, b2);
     s.dpdu = e1;
+    s.dpdv = e2 - e1;
   }
   return s;
 }

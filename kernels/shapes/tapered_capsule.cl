@@ -15,8 +15,7 @@
 #include "shapes/real.cl"
 #include "shapes/sphere.cl"
 
-static inline real_mask tapered_capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t,
-                                            real_mask* leaving) {
+static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
   const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
   const real bx = real_load(block + 32, lane) - ax, by = real_load(block + 40, lane) - ay, bz = real_load(block + 48, lane) - az;
   const real r0 = real_load(block + 56, lane), r1 = real_load(block + 64, lane);
@@ -38,9 +37,7 @@ static inline real_mask tapered_capsule_hit(const ShapeRay* ray, __global const 
   // Nothing lies outside the tube of the larger radius.
   const real wide = real_max(r0, r1);
   const real_mask near_axis = real_dot(qx, qy, qz, qx, qy, qz) <= wide * wide;
-  *t = shift;
-  *leaving = wide != wide;
-  if (mask_bits(near_axis) == 0) return near_axis;
+  if (mask_bits(near_axis) == 0) return span_of(near_axis, shift, shift);
 
   // Room for rounding: 4 eps of everything. A crossing that the cone and a sphere both disown would be lost.
   const real room = 0x1p-22f * (length + wide);
@@ -80,8 +77,9 @@ static inline real_mask tapered_capsule_hit(const ShapeRay* ray, __global const 
   t_enter = real_min(ok2 ? base + t2 : far, t_enter);
   t_exit = real_max(ok1 ? base + t1 : -far, t_exit);
   t_exit = real_max(ok2 ? base + t2 : -far, t_exit);
-  *t = span_nearest(ray, shift + t_enter, shift + t_exit, leaving);
-  return near_axis & (hit0 | hit1 | ok1 | ok2);
+  return span_of(near_axis & (hit0 | hit1 | ok1 | ok2), shift + t_enter, shift + t_exit);
 }
+
+SPAN_HIT(tapered_capsule)
 
 #endif

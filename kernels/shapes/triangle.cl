@@ -17,7 +17,7 @@ static inline real edge_function(real a, real b, real c, real d) {
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* leaving) {
+static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
 #pragma OPENCL FP_CONTRACT OFF
   __global const float* rx = block + 8 + ray->row_x;
   __global const float* ry = block + 8 + ray->row_y;
@@ -37,8 +37,17 @@ static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* 
   const real_mask inside = ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
   // A convex combination of the vertices' z: off by 6 eps max |z| at most.
   *t = ((u * az + v * bz + w * cz) / det) * ray->inv_dz;
-  *leaving = det != det;
+  // det is minus twice the area in the ray's plane, positive counter-clockwise: the normal points along the ray where its sign and dz's
+  // differ.
+  *side = det * ray->inv_dz < 0.0f ? int_of(CAPLET_LEAVING) : int_of(0);
   return inside & (det != 0.0f);
+}
+
+static inline Span triangle_span(const ShapeRay* ray, __global const float* block, uint lane) {
+  real t;
+  real_mask side;
+  const real_mask hit = triangle_hit(ray, block, lane, &t, &side);
+  return span_of_one(hit, t, side);
 }
 
 #endif

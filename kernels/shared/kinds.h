@@ -60,6 +60,23 @@ enum {
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 // InstanceRecord.flags
 #define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
+#define CAPLET_INSTANCE_NO_LEAVING 2u      // leaving hits within are not seen ("onesided")
+#define CAPLET_INSTANCE_NO_ENTERING 4u     // entering ones (open shapes of reversed orientation)
+// HitRecord.surface
+#define CAPLET_LEAVING 0x10000             // seen from inside; open shapes: along the normal
+#define CAPLET_SURFACE_MASK 0xffffu
+// surface_materials
+#define CAPLET_SURFACE_DARK 0x80000000u    // this surface of an emitting shape does not emit
+// Ends of cylinders and cones, as floats in their rows
+#define CAPLET_CAP_FLAT 0.0f
+#define CAPLET_CAP_ROUND 1.0f
+#define CAPLET_CAP_OPEN 2.0f
+// Program of a csg shape: below, an operand's number
+#define CAPLET_CSG_UNION 0x100u
+#define CAPLET_CSG_INTERSECTION 0x101u
+#define CAPLET_CSG_DIFFERENCE 0x102u
+#define CAPLET_CSG_MAX_OPERANDS 32
+#define CAPLET_CSG_SUBTRACTED 0x80000000u  // with an operand's first surface: its normals flip
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
 

@@ -87,7 +87,7 @@ static void stage_item(const Globals* g, uint item) {
 
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
-  const Bsdf bsdf = bsdf_make(g, g->geometries[s.geometry].material, wavelengths);
+  const Bsdf bsdf = bsdf_make(g, s.material, wavelengths);
   if (depth == 0) store_first_hit(g, path, &s, &bsdf, wo_local, wo, hit.t, wavelengths, pdfs, hit.instance);
   if (depth >= g->params->max_depth) return;
 

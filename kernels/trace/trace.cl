@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Traversal of the 8-wide tree, closest and any hit from one text, and the only switch over shapes.
+// Traversal of the 8-wide tree, closest and any hit from one text; all hits: list.cl.
 // One work-item is one ray. CAPLET_REAL_WIDTH 8: eight boxes and eight primitives at a time; 1: one after the other.
 #ifndef CAPLET_TRACE_TRACE_CL
 #define CAPLET_TRACE_TRACE_CL
 
 #include "math/vector.cl"
-#include "shapes/capsule.cl"
-#include "shapes/disk.cl"
-#include "shapes/real.cl"
-#include "shapes/sphere.cl"
-#include "shapes/tapered_capsule.cl"
-#include "shapes/triangle.cl"
+#include "shapes/shapes.cl"
 #include "shared/records.h"
 
 // A visited node leaves at most seven of its children on the stack, in both levels of trees; the host checks the depth.
@@ -88,19 +83,97 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
 #endif
 }
 
-static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t,
-                                  real_mask* leaving) {
-  switch (shape) {
-    case shape_capsule: return capsule_hit(ray, block, lane, t, leaving);
-    case shape_triangle: return triangle_hit(ray, block, lane, t, leaving);
-    case shape_sphere: return sphere_hit(ray, block, lane, t, leaving);
-    case shape_tapered_capsule: return tapered_capsule_hit(ray, block, lane, t, leaving);
-    default: return disk_hit(ray, block, lane, t, leaving);
-  }
-}
-
 // Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
 static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
+
+// Zero, infinite and NaN rays and empty intervals miss.
+static inline int ray_is_valid(const RayRecord* ray) {
+  const float dd = ray->dx * ray->dx + ray->dy * ray->dy + ray->dz * ray->dz;
+  const float oo = fabs(ray->ox) + fabs(ray->oy) + fabs(ray->oz);
+  return dd > 0.0f && dd < INFINITY && oo < INFINITY && ray->t_min < ray->t_max;
+}
+
+// The child of a node that the ray enters first goes to `next`, its others in the way on the stack, nearest on top. 0: none is met.
+static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min, float t_best, ulong* stack, int* stack_top,
+                             int* next) {
+  __global const int* child = (__global const int*)(node + 48);
+  float enter[8];
+  uint bits = node_hits(node, slab, t_min, t_best, enter);
+  if (bits == 0) return 0;
+  int top = *stack_top;
+  uint i = lowest_bit(bits);
+  bits &= bits - 1;
+  if (bits == 0) {
+    *next = child[i];
+    return 1;
+  }
+  ulong first = stack_key(enter[i], child[i]);
+  i = lowest_bit(bits);
+  bits &= bits - 1;
+  ulong second = stack_key(enter[i], child[i]);
+  ulong near = min(first, second);
+  second = max(first, second);
+  if (bits == 0) {
+    stack[top] = second;
+    *stack_top = top + 1;
+    *next = (int)(uint)near;
+    return 1;
+  }
+  i = lowest_bit(bits);
+  bits &= bits - 1;
+  ulong third = stack_key(enter[i], child[i]);
+  const ulong nearest = min(near, third);
+  third = max(near, third);
+  if (bits == 0) {
+    stack[top] = max(second, third);
+    stack[top + 1] = min(second, third);
+    *stack_top = top + 2;
+    *next = (int)(uint)nearest;
+    return 1;
+  }
+  // Four or more: insertion, nearest on top.
+  const int bottom = top;
+  stack[top++] = max(second, third);
+  stack[top++] = min(second, third);
+  stack[top++] = nearest;
+  do {
+    i = lowest_bit(bits);
+    bits &= bits - 1;
+    const ulong key = stack_key(enter[i], child[i]);
+    int place = top++;
+    while (place > bottom && stack[place - 1] < key) {
+      stack[place] = stack[place - 1];
+      place--;
+    }
+    stack[place] = key;
+  } while (bits != 0);
+  *next = (int)(uint)stack[--top];
+  *stack_top = top;
+  return 1;
+}
+
+// The next entry of the stack above `floor`, passing over what begins behind t_best. 0: there is none.
+static inline int pop_entry(const ulong* stack, int* top, int floor, float t_best, int* next) {
+  while (*top != floor) {
+    const ulong key = stack[--*top];
+    if ((uint)(key >> 32) > as_uint(t_best)) continue;
+    *next = (int)(uint)key;
+    return 1;
+  }
+  return 0;
+}
+
+// The ray in the space of an instance: it goes along unnormalised, so t stays what it is. 0: nothing is left of its direction.
+static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o, float3 world_d, float t_min,
+                                  __global const float* leaves, SlabRay* slab, ShapeRay* shape) {
+  const float3 o = transform_point(placed->object_from_world, world_o);
+  const float3 d = transform_vector(placed->object_from_world, world_d);
+  *slab = slab_ray(o, d);
+  *shape = shape_ray(o, d, t_min, leaves);
+  if (placed->flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
+  if (placed->flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
+  return dot(d, d) > 0.0f;
+}
 
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: the smaller slot wins, then the smaller instance, so
 // that the order of traversal cannot show. Zero, infinite and NaN rays miss.
@@ -112,98 +185,45 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
   hit.instance = CAPLET_NONE;
   hit.surface = 0;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
-  const float dd = dot(world_d, world_d), oo = fabs(ray.ox) + fabs(ray.oy) + fabs(ray.oz);
-  if (!(dd > 0.0f && dd < INFINITY && oo < INFINITY && ray.t_min < ray.t_max)) return hit;
+  if (!ray_is_valid(&ray)) return hit;
   const float t_min = fmax(ray.t_min, 0.0f);
   float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
   if (!(t_min < t_best)) return hit;
   uint best_slot = 0, best_instance = CAPLET_NONE, instance = CAPLET_NONE;
-  int found = 0, best_leaving = 0;
+  int found = 0, best_side = 0;
 
   ulong stack[CAPLET_STACK_SIZE];
   int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
   SlabRay slab = slab_ray(world_o, world_d);
-  ShapeRay shape = shape_ray(world_o, world_d, t_min);
+  ShapeRay shape = shape_ray(world_o, world_d, t_min, leaves);
   int current = (int)root;
   for (;;) {
     if (current >= 0) {
       __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
-      __global const int* child = (__global const int*)(node + 48);
-      float enter[8];
-      uint bits = node_hits(node, &slab, t_min, t_best, enter);
-      if (bits != 0) {
-        uint i = lowest_bit(bits);
-        bits &= bits - 1;
-        if (bits == 0) {
-          current = child[i];
-          continue;
-        }
-        ulong first = stack_key(enter[i], child[i]);
-        i = lowest_bit(bits);
-        bits &= bits - 1;
-        ulong second = stack_key(enter[i], child[i]);
-        ulong near = min(first, second);
-        second = max(first, second);
-        if (bits == 0) {
-          stack[top++] = second;
-          current = (int)(uint)near;
-          continue;
-        }
-        i = lowest_bit(bits);
-        bits &= bits - 1;
-        ulong third = stack_key(enter[i], child[i]);
-        const ulong nearest = min(near, third);
-        third = max(near, third);
-        if (bits == 0) {
-          stack[top++] = max(second, third);
-          stack[top++] = min(second, third);
-          current = (int)(uint)nearest;
-          continue;
-        }
-        // Four or more: insertion, nearest on top.
-        const int bottom = top;
-        stack[top++] = max(second, third);
-        stack[top++] = min(second, third);
-        stack[top++] = nearest;
-        do {
-          i = lowest_bit(bits);
-          bits &= bits - 1;
-          const ulong key = stack_key(enter[i], child[i]);
-          int place = top++;
-          while (place > bottom && stack[place - 1] < key) {
-            stack[place] = stack[place - 1];
-            place--;
-          }
-          stack[place] = key;
-        } while (bits != 0);
-        current = (int)(uint)stack[--top];
-        continue;
-      }
+      if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
     } else {
       const uint kind = ((uint)current >> CAPLET_LEAF_ROW_BITS) & 15u, row = (uint)current & CAPLET_LEAF_ROW_MASK;
       __global const float* block = leaves + (size_t)row * 8;
       if (kind == shape_instance) {
-        // Down into the object's tree: the ray goes along unnormalised, so t stays what it is.
         instance = ((__global const uint*)block)[0];
         __global const InstanceRecord* placed = instances + instance;
-        const float3 o = transform_point(placed->object_from_world, world_o);
-        const float3 d = transform_vector(placed->object_from_world, world_d);
-        slab = slab_ray(o, d);
-        shape = shape_ray(o, d, t_min);
         floor = top;
         current = (int)placed->root;
-        if (dot(d, d) > 0.0f) continue;
+        if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
       } else {
         for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) {
           real t;
-          real_mask leaving;
-          real_mask ok = shape_hit(kind, &shape, block, lane, &t, &leaving);
+          real_mask side;
+          real_mask ok = shape_hit(kind, &shape, block, lane, &t, &side);
           ok &= lanes_filled(block, lane) & (t > t_min) & (t <= t_best);
+          if ((shape.sees_entering & shape.sees_leaving) == 0)
+            ok &= (side & CAPLET_LEAVING) != 0 ? int_of(shape.sees_leaving) : int_of(shape.sees_entering);
           uint bits = mask_bits(ok);
           if (bits == 0) continue;
           float ts[CAPLET_REAL_WIDTH];
           real_store(t, ts);
-          const uint leaving_bits = mask_bits(leaving);
+          int sides[CAPLET_REAL_WIDTH];
+          mask_store(side, sides);
           do {
             const uint i = lowest_bit(bits);
             bits &= bits - 1;
@@ -213,7 +233,7 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
               t_best = ts[i];
               best_slot = slot;
               best_instance = instance;
-              best_leaving = (leaving_bits >> i) & 1u;
+              best_side = sides[i];
               found = 1;
             }
           } while (bits != 0);
@@ -226,29 +246,20 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
         }
       }
     }
-    // Next from the stack, passing over what begins behind the hit.
-    for (;;) {
-      if (top == floor) {
-        if (instance == CAPLET_NONE) {
-          if (found) {
-            hit.t = t_best;
-            hit.slot = best_slot;
-            hit.instance = best_instance;
-            hit.surface = best_leaving ? 1u << 16 : 0u;
-          }
-          return hit;
+    while (!pop_entry(stack, &top, floor, t_best, &current)) {
+      if (instance == CAPLET_NONE) {
+        if (found) {
+          hit.t = t_best;
+          hit.slot = best_slot;
+          hit.instance = best_instance;
+          hit.surface = (uint)best_side;
         }
-        instance = CAPLET_NONE;
-        floor = 0;
-        slab = slab_ray(world_o, world_d);
-        shape = shape_ray(world_o, world_d, t_min);
-        continue;
+        return hit;
       }
-      const ulong key = stack[--top];
-      if ((uint)(key >> 32) <= as_uint(t_best)) {
-        current = (int)(uint)key;
-        break;
-      }
+      instance = CAPLET_NONE;
+      floor = 0;
+      slab = slab_ray(world_o, world_d);
+      shape = shape_ray(world_o, world_d, t_min, leaves);
     }
   }
 }

@@ -10,9 +10,12 @@
 #include <bit>
 #include <chrono>
 #include <cstdio>
+#include <optional>
+#include <set>
 
 #include "base/error.h"
 #include "device_tracer.h"
+#include "lower/lower.h"
 #include "peer.h"
 #include "scenes.h"
 #include "shared/kinds.h"
@@ -31,16 +34,18 @@ double median(std::vector<double> values) {
 }
 
 void print_json(const std::string& name, double ours, double peer, const std::string& unit, const std::string& more = {}) {
-  fmt::print("{{\"name\": \"{}\", \"ours\": {:.4g}, \"embree\": {:.4g}, \"ratio\": {:.4g}, \"unit\": \"{}\"{}}}\n", name, ours,
-             peer, peer > 0 ? ours / peer : 0.0, unit, more);
+  const std::string beside =
+      peer > 0 ? fmt::format("\"embree\": {:.4g}, \"ratio\": {:.4g}", peer, ours / peer) : "\"embree\": null, \"ratio\": null";
+  fmt::print("{{\"name\": \"{}\", \"ours\": {:.4g}, {}, \"unit\": \"{}\"{}}}\n", name, ours, beside, unit, more);
   std::fflush(stdout);
 }
 
 struct Bench {
   caplet::test::DeviceTracer& tracer;
-  const caplet::bench::Peer& peer;
+  const caplet::bench::Peer* peer;  // null: Embree has no such shape
   const std::vector<float>& leaves;
   double seconds;
+  bool by_shape = false;  // ids of the peer are not primitive ids
 
   /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
   void run(const std::string& name, const std::vector<RayRecord>& ours, const std::vector<RayRecord>& theirs) {
@@ -48,30 +53,46 @@ struct Bench {
     std::vector<std::uint32_t> ids(theirs.size());
     tracer.set_rays(ours);
     tracer.run_closest();
-    const std::size_t peer_hits = peer.trace(theirs, ids);
+    const std::size_t peer_hits = peer ? peer->trace(theirs, ids) : 0;
     std::vector<double> a, b;
     const auto begin = Clock::now();
     while (a.size() < 3 || seconds_since(begin) < seconds) {
       auto start = Clock::now();
       tracer.run_closest();
       a.push_back(static_cast<double>(ours.size()) / seconds_since(start) * 1e-6);
+      if (peer == nullptr) continue;
       start = Clock::now();
-      peer.trace(theirs, ids);
+      peer->trace(theirs, ids);
       b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
     }
     const auto hits = tracer.hits();
     const auto our_hits = std::count_if(hits.begin(), hits.end(), [](const HitRecord& h) { return h.slot != CAPLET_NONE; });
-    std::string more = fmt::format(", \"rays\": {}, \"hits\": {}, \"embree_hits\": {}", ours.size(), our_hits, peer_hits);
-    if (&ours == &theirs) {
+    std::string more = fmt::format(", \"rays\": {}, \"hits\": {}", ours.size(), our_hits);
+    if (peer) more += fmt::format(", \"embree_hits\": {}", peer_hits);
+    if (peer && &ours == &theirs && !by_shape) {
       std::size_t same = 0;
       for (std::size_t i = 0; i < hits.size(); i++)
         same +=
             ids[i] == (hits[i].slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hits[i].slot])) ? 1 : 0;
       more += fmt::format(", \"same_primitive\": {:.6f}", static_cast<double>(same) / static_cast<double>(hits.size()));
     }
-    print_json(name, median(a), median(b), "Mrays/s", more);
+    print_json(name, median(a), peer ? median(b) : 0, "Mrays/s", more);
   }
 };
+
+void run_shapes(const std::string& kind, std::size_t count, const caplet::Device& device, double seconds, int size, int width) {
+  std::vector<caplet::FlatPrimitive> same;
+  const caplet::FlatScene scene = caplet::lower(caplet::bench::walk_scene(kind, count, same));
+  std::optional<caplet::bench::Peer> peer;
+  if (!same.empty()) peer.emplace(same);
+  caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
+  tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.params.root);
+  Bench bench{tracer, peer ? &*peer : nullptr, scene.leaves, seconds, true};
+  const auto camera = caplet::bench::camera_rays(size);
+  bench.run(kind + " camera", camera, camera);
+  const auto scattered = caplet::bench::scattered_rays(camera, tracer.closest(camera));
+  bench.run(kind + " scattered", scattered, scattered);
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"Traversal speed beside Embree 3 (rtcIntersect1, all cores)"};
@@ -80,7 +101,11 @@ int run(int argc, char** argv) {
   double seconds = 5;
   int size = 1024, width = 0;
   bool sorted = false;
-  app.add_option("scene", kind, "capsules or triangles")->required()->check(CLI::IsMember({"capsules", "triangles"}));
+  std::set<std::string> names(caplet::bench::walk_kinds().begin(), caplet::bench::walk_kinds().end());
+  names.insert({"capsules", "triangles", "shapes"});
+  app.add_option("scene", kind, "capsules, triangles, or another kind; shapes: all other kinds")
+      ->required()
+      ->check(CLI::IsMember(names));
   app.add_option("--n", count, "primitives")->check(CLI::Range(std::size_t(1), std::size_t(1) << 27));
   app.add_option("--device", device_name, "OpenCL device");
   app.add_option("--seconds", seconds, "time for each kind of ray")->check(CLI::PositiveNumber);
@@ -93,6 +118,12 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
+  if (kind != "triangles" && kind != "capsules") {
+    const caplet::Device device = caplet::Device::choose(device_name);
+    for (const std::string& one : caplet::bench::walk_kinds())
+      if (kind == "shapes" || kind == one) run_shapes(one, std::min<std::size_t>(count, 100000), device, seconds, size, width);
+    return 0;
+  }
   const auto primitives = kind == "triangles" ? caplet::bench::walk_triangles(count) : caplet::bench::walk_capsules(count);
   std::vector<float> nodes, leaves;
   const auto start = Clock::now();
@@ -110,7 +141,7 @@ int run(int argc, char** argv) {
   const caplet::Device device = caplet::Device::choose(device_name);
   caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
   tracer.upload(nodes, leaves, {}, tree.root);
-  Bench bench{tracer, peer, leaves, seconds};
+  Bench bench{tracer, &peer, leaves, seconds};
   const auto camera = caplet::bench::camera_rays(size);
   bench.run(kind + " camera", camera, camera);
   auto bounce = caplet::bench::bounce_rays(primitives, tree.slots, camera, tracer.closest(camera));

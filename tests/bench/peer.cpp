@@ -14,25 +14,40 @@
 namespace caplet::bench {
 
 Peer::Peer(std::span<const FlatPrimitive> primitives) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-  const bool triangles = primitives[0].shape == shape_triangle;
+  const auto shape = static_cast<int>(primitives[0].shape);
   const std::size_t count = primitives.size();
-  const RTCGeometry geometry =
-      rtcNewGeometry(device_, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  if (triangles) {
-    float* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
+  const RTCGeometry geometry = rtcNewGeometry(device_, shape == shape_triangle ? RTC_GEOMETRY_TYPE_TRIANGLE
+                                                       : shape == shape_sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT
+                                                       : shape == shape_disk   ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
+                                                                               : RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  const auto floats = [&](RTCBufferType type, RTCFormat format, std::size_t components, std::size_t items) {
+    return static_cast<float*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, components * sizeof(float), items));
+  };
+  if (shape == shape_triangle) {
+    float* vertices = floats(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3, 3 * count);
     unsigned* indices = static_cast<unsigned*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count));
     for (std::size_t i = 0; i < count; i++) std::copy(primitives[i].data, primitives[i].data + 9, vertices + 9 * i);
     for (std::size_t i = 0; i < 3 * count; i++) indices[i] = static_cast<unsigned>(i);
+  } else if (shape == shape_sphere) {
+    float* vertices = floats(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4, count);
+    for (std::size_t i = 0; i < count; i++) std::copy(primitives[i].data, primitives[i].data + 4, vertices + 4 * i);
+  } else if (shape == shape_disk) {
+    float* vertices = floats(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4, count);
+    float* normals = floats(RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, 3, count);
+    for (std::size_t i = 0; i < count; i++) {
+      const float* d = primitives[i].data;
+      std::copy(d, d + 3, vertices + 4 * i);
+      vertices[4 * i + 3] = d[6];
+      std::copy(d + 3, d + 6, normals + 3 * i);
+    }
   } else {
-    float* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * count));
+    float* vertices = floats(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4, 2 * count);
     unsigned* indices = static_cast<unsigned*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), count));
     for (std::size_t i = 0; i < count; i++) {
       const float* d = primitives[i].data;
-      const float ends[8] = {d[0], d[1], d[2], d[6], d[3], d[4], d[5], d[6]};
+      const float ends[8] = {d[0], d[1], d[2], d[6], d[3], d[4], d[5], shape == shape_capsule ? d[6] : d[7]};
       std::copy(ends, ends + 8, vertices + 8 * i);
       indices[i] = static_cast<unsigned>(2 * i);
     }

@@ -15,7 +15,7 @@ namespace caplet::bench {
 
 class Peer {
  public:
-  /// Capsules become two-vertex round linear curves.
+  /// Of one kind. Capsules become two-vertex round linear curves, spheres and disks Embree's points.
   explicit Peer(std::span<const FlatPrimitive> primitives);
   ~Peer();
   Peer(const Peer&) = delete;

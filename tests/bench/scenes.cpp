@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 
 #include "shared/kinds.h"
@@ -93,6 +94,93 @@ std::vector<FlatPrimitive> walk_triangles(std::size_t count) {
   return out;
 }
 
+namespace {
+
+glm::dvec3 wide(Vec a) { return {a.x, a.y, a.z}; }
+
+FlatPrimitive peer_primitive(int shape, std::size_t id, std::initializer_list<float> data) {
+  FlatPrimitive p{static_cast<std::uint32_t>(shape), static_cast<std::uint32_t>(id), {}};
+  std::copy(data.begin(), data.end(), p.data);
+  return p;
+}
+
+CapsulesShape one_capsule(Vec a, Vec b, float r0, float r1) {
+  CapsulesShape capsule;
+  capsule.p0 = {{a.x, a.y, a.z}};
+  capsule.p1 = {{b.x, b.y, b.z}};
+  capsule.radius0 = {r0};
+  if (r0 != r1) capsule.radius1 = {r1};
+  return capsule;
+}
+
+/// An octahedron around the middle of the step.
+PolyhedronShape octahedron(Vec a, Vec b, float radius) {
+  PolyhedronShape out;
+  const glm::dvec3 center = wide(0.5f * (a + b));
+  for (int i = 0; i < 8; i++) {
+    const glm::dvec3 n(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    out.normals.push_back(n);
+    out.points.push_back(center + double(radius) * n);
+  }
+  return out;
+}
+
+CsgShape bitten_ball(Vec a, Vec b, float radius) {
+  const auto ball = [&](Vec center, float r) {
+    auto shape = std::make_shared<Shape>();
+    shape->geometry = one_capsule(center, center, r, r);
+    return shape;
+  };
+  CsgShape csg;
+  csg.operation = CsgShape::Operation::set_difference;
+  csg.operands = {ball(a, 2 * radius), ball(a + 0.2f * (b - a), 1.5f * radius)};
+  return csg;
+}
+
+}  // namespace
+
+const std::vector<std::string>& walk_kinds() {
+  static const std::vector<std::string> kinds = {"spheres", "tapered", "disks",     "cylinders",
+                                                 "cones",   "boxes",   "octahedra", "csg"};
+  return kinds;
+}
+
+Scene walk_scene(const std::string& kind, std::size_t count, std::vector<FlatPrimitive>& peer) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.shapes.reserve(count);
+  peer.clear();
+  walk(count, [&](Vec a, Vec b, float r) {
+    Shape shape;
+    const std::size_t id = scene.shapes.size();
+    if (kind == "spheres") {
+      shape.geometry = one_capsule(a, a, 2 * r, 2 * r);
+      peer.push_back(peer_primitive(shape_sphere, id, {a.x, a.y, a.z, 2 * r}));
+    } else if (kind == "tapered") {
+      shape.geometry = one_capsule(a, b, r, 0.5f * r);
+      peer.push_back(peer_primitive(shape_tapered_capsule, id, {a.x, a.y, a.z, b.x, b.y, b.z, r, 0.5f * r}));
+    } else if (kind == "disks") {
+      shape.geometry = DiskShape{0, double(2 * r)};
+      const Vec n = normalize(b - a), u = normalize(cross(n, Vec{0.3f, 0.5f, 0.8f})), v = cross(n, u);
+      shape.world_from_object =
+          glm::dmat4(glm::dvec4(wide(u), 0), glm::dvec4(wide(v), 0), glm::dvec4(wide(n), 0), glm::dvec4(wide(a), 1));
+      peer.push_back(peer_primitive(shape_disk, id, {a.x, a.y, a.z, n.x, n.y, n.z, 2 * r}));
+    } else if (kind == "cylinders") {
+      shape.geometry = CylinderShape{wide(a), wide(b), double(r), {}};
+    } else if (kind == "cones") {
+      shape.geometry = ConeShape{wide(a), wide(b), {double(r), double(0.5f * r)}, {}};
+    } else if (kind == "boxes") {
+      shape.geometry = BoxShape{wide(a) - 1.5 * glm::dvec3(double(r)), wide(a) + 1.5 * glm::dvec3(double(r))};
+    } else if (kind == "octahedra") {
+      shape.geometry = octahedron(a, b, r);
+    } else {
+      shape.geometry = bitten_ball(a, b, r);
+    }
+    scene.shapes.push_back(std::move(shape));
+  });
+  return scene;
+}
+
 std::vector<RayRecord> camera_rays(int size) {
   std::vector<RayRecord> out;
   out.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
@@ -123,6 +211,22 @@ std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives, st
     const Vec w = n + 0.9999f * Vec{s * std::cos(phi), s * std::sin(phi), z};
     const Vec b = normalize(w), start = x + 1e-5f * n;
     out.push_back({start.x, start.y, start.z, 0, b.x, b.y, b.z, inf});
+  }
+  return out;
+}
+
+std::vector<RayRecord> scattered_rays(std::span<const RayRecord> rays, std::span<const HitRecord> hits) {
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<float> u(0, 1);
+  std::vector<RayRecord> out;
+  for (std::size_t i = 0; i < rays.size(); i++) {
+    if (hits[i].slot == CAPLET_NONE) continue;
+    const Vec o{rays[i].ox, rays[i].oy, rays[i].oz}, d{rays[i].dx, rays[i].dy, rays[i].dz};
+    const float phi = 6.2831853f * u(engine), z = 2 * u(engine) - 1, s = std::sqrt(1 - z * z);
+    Vec w{s * std::cos(phi), s * std::sin(phi), z};
+    if (dot(w, d) > 0) w = -1.0f * w;
+    const Vec start = o + (hits[i].t - 1e-5f) * d;
+    out.push_back({start.x, start.y, start.z, 0, w.x, w.y, w.z, inf});
   }
   return out;
 }

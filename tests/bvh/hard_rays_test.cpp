@@ -42,7 +42,7 @@ FlatPrimitive capsule(float ax, float ay, float az, float bx, float by, float bz
 }
 
 TEST_P(HardRays, AlongAxesWithZeroAndNegativeZeroComponents) {
-  for (unsigned shape = 0; shape < shape_instance; shape++) {
+  for (const unsigned shape : random_kinds) {
     const auto primitives = random_scene(41 + shape, shape, 100, 0.6f);
     Random random(42);
     std::vector<RayRecord> rays;
@@ -148,7 +148,7 @@ TEST_P(HardRays, FarOrigin) {
 }
 
 TEST_P(HardRays, FarFromTheWorldsOrigin) {
-  for (unsigned shape = 0; shape < shape_instance; shape++) {
+  for (const unsigned shape : random_kinds) {
     auto primitives = random_scene(49, shape, 50, 0.5f);
     auto rays = random_rays(50, 1000);
     const float shift[3] = {148376, 1234, -223423};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "shared/kinds.h"
@@ -44,7 +45,7 @@ std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned 
   Random random(seed);
   std::vector<FlatPrimitive> out;
   for (unsigned i = 0; i < count; i++) {
-    out.push_back(random_primitive(random, shape == shape_instance ? i % shape_instance : shape, size));
+    out.push_back(random_primitive(random, shape == shape_instance ? random_kinds[i % std::size(random_kinds)] : shape, size));
     out.back().id = i;
   }
   return out;

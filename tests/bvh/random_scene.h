@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lower/encode.h"
+#include "shared/kinds.h"
 #include "shared/records.h"
 
 namespace caplet::test {
@@ -22,9 +23,12 @@ class Random {
   std::mt19937 engine_;
 };
 
+/// The kinds that these tests make and that brute.h knows; the others: tests/shapes.
+inline constexpr unsigned random_kinds[] = {shape_sphere, shape_capsule, shape_tapered_capsule, shape_triangle, shape_disk};
+
 /// One primitive of the kind, in about [-1, 1]^3, of about `size`.
 FlatPrimitive random_primitive(Random& random, unsigned shape, float size);
-/// `count` primitives of one kind, or, with shape_instance, of all kinds mixed.
+/// `count` primitives of one kind, or, with shape_instance, of all these kinds mixed.
 std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned count, float size);
 /// CAPLET_TEST_SCALE=N in the environment makes the comparisons with brute force N times as long (1 to 1000; default 1: 20 s).
 unsigned test_scale();

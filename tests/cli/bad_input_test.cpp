@@ -48,6 +48,20 @@ BadInput option(const std::string& name, std::vector<std::string> arguments, con
   return {name, std::move(arguments), place, mentions, {{"scene.pbrt", head + capsule}}};
 }
 
+/// `pick` with arguments that are wrong, the scene being right.
+BadInput pick(const std::string& name, std::vector<std::string> arguments, const std::string& place, const std::string& mentions,
+              std::vector<std::pair<std::string, std::string>> files = {}) {
+  arguments.insert(arguments.begin(), {"pick", "scene.pbrt"});
+  files.emplace_back("scene.pbrt", head + capsule);
+  return {name, std::move(arguments), place, mentions, files};
+}
+
+/// A list of rays that is wrong.
+BadInput rays(const std::string& name, const std::string& path, const std::string& text, const std::string& place,
+              const std::string& mentions) {
+  return pick(name, {"--rays", path, "--out", "out.csv"}, place, mentions, {{path, text}});
+}
+
 BadInput file(const std::string& name, const std::string& path, const std::string& text, const std::string& place,
               const std::string& mentions) {
   return {name, {"render", path, "-o", "out.exr"}, place, mentions, {{path, text}}};
@@ -72,8 +86,24 @@ std::vector<BadInput> bad_inputs() {
       // Directives and parameters.
       scene("unknown_directive", head + "Shapes \"sphere\"\n" + capsule, "scene.pbrt:5:1", "Shapes"),
       scene("unknown_shape", head + "Shape \"potato\"\n" + capsule, "scene.pbrt:5:", "potato"),
-      scene("known_unsupported_shape", head + "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]\n" + capsule,
-            "scene.pbrt:5:", "curve"),
+      scene("known_unsupported_shape", head + "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]\n" + capsule,
+            "scene.pbrt:5:", "loopsubdiv"),
+      scene("cylinder_without_axis", head + "Shape \"cylinder\" \"point3 p0\" [1 2 3] \"point3 p1\" [1 2 3] \"float radius\" 1\n",
+            "scene.pbrt:5:", "axis"),
+      scene("polyhedron_without_bounds", head + "Shape \"polyhedron\" \"point3 P\" [0 0 0 0 0 1] \"normal N\" [0 0 -1 0 0 1]\n",
+            "scene.pbrt:5:1", "bounds"),
+      scene("materials_miscounted",
+            head + "Shape \"box\" \"point3 p0\" [0 0 0] \"point3 p1\" [1 1 1] \"string materials\" [\"a\"]\n",
+            "scene.pbrt:5:", "materials"),
+      scene("csg_of_an_open_surface",
+            head + "ObjectBegin \"a\"\n" + capsule + "ObjectEnd\nObjectBegin \"b\"\nShape \"disk\"\nObjectEnd\n" +
+                "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"a\" \"b\"]\n",
+            "scene.pbrt:11:", "open"),
+      scene(
+          "csg_of_itself",
+          head + "ObjectBegin \"a\"\nShape \"csg\" \"string operation\" \"union\" \"string operands\" [\"a\" \"a\"]\nObjectEnd\n",
+          "scene.pbrt:6:", "itself"),
+      scene("sphere_too_large", head + "Shape \"sphere\" \"float radius\" 1e30\n", "scene.pbrt:5:", "large"),
       scene("unknown_parameter", head + "Shape \"sphere\" \"float radios\" 1\n", "scene.pbrt:5:", "radios"),
       scene("unknown_material", head + "Material \"velvet\"\n" + capsule, "scene.pbrt:5:", "velvet"),
       scene("undefined_named_material", head + "NamedMaterial \"gold\"\n" + capsule, "scene.pbrt:5:", "gold"),
@@ -122,11 +152,58 @@ std::vector<BadInput> bad_inputs() {
       option("stats_folder_missing", {"-o", "out.exr", "--stats", "nowhere/stats.json"}, "--stats", "nowhere"),
       option("device_unknown", {"-o", "out.exr", "--device", "abacus"}, "--device", "abacus"),
       option("device_out_of_range", {"-o", "out.exr", "--device", "9999"}, "--device", "9999"),
+      // Picking.
+      pick("pick_nothing", {}, "pick needs one of", "--rays"),
+      pick("pick_two_things", {"--pixel", "1,1", "--ray", "0,0,5,0,0,-1"}, "pick needs one of", "--ray"),
+      pick("pixel_outside", {"--pixel", "8,0"}, "--pixel", "8x8"),
+      pick("pixel_outside_of_the_size", {"--pixel", "4,4", "--size", "4x4"}, "--pixel", "4x4"),
+      pick("pixel_outside_of_the_crop", {"--pixel", "4,4", "--crop", "0,0,4,8"}, "--pixel", "crop 0,0,4,8"),
+      pick("pixel_negative", {"--pixel=-1,0"}, "--pixel", "-1,0"),
+      pick("pixel_malformed", {"--pixel", "4"}, "--pixel", "X,Y"),
+      pick("pixel_fraction", {"--pixel", "4.5,4"}, "--pixel", "X,Y"),
+      pick("pixel_overflow", {"--pixel", "99999999999999999999,1"}, "--pixel", "X,Y"),
+      pick("ray_short", {"--ray", "0,0,5,0,0"}, "--ray", "ox,oy,oz,dx,dy,dz"),
+      pick("ray_long", {"--ray", "0,0,5,0,0,-1,0"}, "--ray", "six"),
+      pick("ray_word", {"--ray", "0,0,5,0,down,-1"}, "--ray", "'down'"),
+      pick("ray_gap", {"--ray", "0,0,5,,0,-1"}, "--ray", "''"),
+      pick("ray_nan", {"--ray", "0,0,nan,0,0,-1"}, "--ray", "finite"),
+      pick("ray_infinite", {"--ray", "0,0,5,0,0,-inf"}, "--ray", "finite"),
+      pick("ray_huge", {"--ray", "0,0,1e300,0,0,-1"}, "--ray", "range"),
+      pick("ray_without_direction", {"--ray", "0,0,5,0,0,0"}, "--ray", "direction"),
+      pick("pick_limit_zero", {"--pixel", "1,1", "--all", "--limit", "0"}, "--limit", "0"),
+      pick("pick_limit_absurd", {"--pixel", "1,1", "--all", "--limit", "99999999"}, "--limit", "99999999"),
+      pick("pick_limit_alone", {"--pixel", "1,1", "--limit", "9"}, "--limit", "--all"),
+      pick("pick_crop_without_pixel", {"--ray", "0,0,5,0,0,-1", "--crop", "0,0,4,4"}, "--crop", "--pixel"),
+      pick("pick_size_without_pixel", {"--ray", "0,0,5,0,0,-1", "--size", "4x4"}, "--size", "--pixel"),
+      pick("pick_out_without_rays", {"--pixel", "1,1", "--out", "out.csv"}, "--out", "--rays"),
+      pick("pick_device_unknown", {"--pixel", "1,1", "--device", "abacus"}, "--device", "abacus"),
+      pick("rays_without_out", {"--rays", "rays.txt"}, "--rays", "--out", {{"rays.txt", "0 0 5 0 0 -1\n"}}),
+      pick("rays_with_json", {"--rays", "rays.txt", "--out", "out.csv", "--json"}, "--json", "--rays",
+           {{"rays.txt", "0 0 5 0 0 -1\n"}}),
+      pick("rays_with_reference", {"--rays", "rays.txt", "--out", "out.csv", "--reference"}, "--reference", "--rays",
+           {{"rays.txt", "0 0 5 0 0 -1\n"}}),
+      pick("rays_out_unknown", {"--rays", "rays.txt", "--out", "out.xls"}, "--out", ".npy", {{"rays.txt", "0 0 5 0 0 -1\n"}}),
+      pick("rays_out_folder_missing", {"--rays", "rays.txt", "--out", "nowhere/out.csv"}, "--out", "nowhere",
+           {{"rays.txt", "0 0 5 0 0 -1\n"}}),
+      pick("rays_missing", {"--rays", "none.txt", "--out", "out.csv"}, "none.txt", "no such file"),
+      pick("rays_missing_npy", {"--rays", "none.npy", "--out", "out.csv"}, "none.npy", "no such file"),
+      pick("rays_folder", {"--rays", ".", "--out", "out.csv"}, ".", "folder"),
+      rays("rays_word", "rays.txt", "0 0 5 0 0 -1\n0 0 5 0 x -1\n", "rays.txt:2:9", "'x'"),
+      rays("rays_five", "rays.txt", "# two rays\n0 0 5 0 0\n", "rays.txt:2:10", "six"),
+      rays("rays_nan", "rays.txt", "0 0 5 0 0 nan\n", "rays.txt:1:11", "finite"),
+      rays("rays_without_direction", "rays.txt", "0 0 5 0 0 -1\n0 0 5  0 0 0\n", "rays.txt:2:8", "direction"),
+      rays("rays_garbage", "rays.txt", garbage, "rays.txt:1:1", "not a number"),
+      rays("rays_no_npy", "rays.npy", garbage, "rays.npy", ".npy"),
+      {"pick_missing_scene", {"pick", "none.pbrt", "--pixel", "1,1"}, "none.pbrt", ""},
       {"no_scene", {"render"}, "", "SCENE"},
       {"no_command", {}, "", "subcommand"},
       {"unknown_command", {"rendr"}, "", "rendr"},
       {"info_missing_file", {"info", "none.swc"}, "none.swc", ""},
   };
+  // Found when other rays have been answered: nothing is left behind all the same.
+  std::string many;
+  for (int i = 0; i < 300'000; ++i) many += "0 0 5 0 0 -1\n";
+  rows.push_back(rays("rays_wrong_at_the_end", "rays.txt", many + "0 0 5 0 0 zero\n", "rays.txt:300001:11", "'zero'"));
   BadInput no_device = option("no_device", {"-o", "out.exr"}, "--device", "device");
   no_device.environment = {{"OCL_ICD_VENDORS", "/nonexistent"}, {"OPENCL_VENDOR_PATH", "/nonexistent"}};
   rows.push_back(no_device);

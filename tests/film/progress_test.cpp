@@ -77,6 +77,15 @@ TEST(Progress, LinesAreFewAndPlain) {
   EXPECT_THAT(bench.written.back(), HasSubstr("100 %"));
 }
 
+TEST(Progress, ZeroStartsTheClock) {
+  Bench bench(ProgressReporter::Style::lines);
+  bench.now += 100s;  // compiling
+  bench.reporter.update(0, 0, "");
+  bench.now += 10s;
+  bench.reporter.update(0.5, 1e6, "x");
+  EXPECT_THAT(bench.written.back(), HasSubstr("10 s left"));
+}
+
 TEST(Progress, QuietIsQuiet) {
   Bench bench(ProgressReporter::Style::none);
   bench.reporter.update(0.5, 1, "");

@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <sstream>
 
 #include "import/ply.h"
@@ -93,6 +94,17 @@ TEST_P(PlyEncodings, OtherElementsAndFacesFirst) {
   using T = std::array<std::uint32_t, 3>;
   EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{2, 1, 0}));
   EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 9.876543e-5f)));
+}
+
+TEST_P(PlyEncodings, BodyStartsWithTheByteOfANewline) {
+  const float x = std::bit_cast<float>(0x0a00000a);  // in either byte order
+  Writer ply(GetParam());
+  ply.header(std::string("element vertex 3\n") + xyz + "element face 1\nproperty list uchar int vertex_indices\n");
+  for (float v : {x, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f, 9.f}) ply.value(v);
+  ply.line().value(std::uint8_t{3}).value(0).value(1).value(2);
+  const TriangleMeshShape mesh = parse_ply("test.ply", ply.bytes());
+  EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(x, 1, 2), glm::vec3(3, 4, 5), glm::vec3(6, 7, 9)));
+  EXPECT_EQ(mesh.triangles.size(), 1u);
 }
 
 TEST_P(PlyEncodings, TruncationAtEveryByte) {

@@ -91,7 +91,7 @@ TEST(Capsules, LargeFilesDoNotDependOnThreads) {
                         i % 3 == 0 ? fmt::format(" m{}", i / 20000) : "");
   ASSERT_GT(text.size(), std::size_t{2} << 20);
   const std::filesystem::path path = test::write_file("large.capsules", text);
-  for (const std::size_t threads : {1, 4}) {
+  for (const std::size_t threads : {std::size_t{1}, std::size_t{4}}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     Asked asked;
     const CapsulesShape capsules = read_capsules(path, std::ref(asked));

@@ -26,6 +26,22 @@ TEST(ExampleScenes, Instances) {
   EXPECT_EQ(count_primitives(scene), (Counts{{"capsule", 25}, {"disk", 1}}));
 }
 
+TEST(ExampleScenes, GalleryShowsEveryShape) {
+  const Scene scene = example("gallery.pbrt");
+  Counts counts = count_primitives(scene);
+  EXPECT_GT(counts["capsule"], 9U + 1U);  // the row, the tapered one, and the curve's chain
+  counts.erase("capsule");
+  EXPECT_EQ(counts, (Counts{{"sphere", 2},
+                            {"cylinder", 4},
+                            {"cone", 2},
+                            {"box", 1},
+                            {"polyhedron", 1},
+                            {"csg", 3},
+                            {"disk", 3},
+                            {"bilinear_patch", 1},
+                            {"triangle", 6}}));
+}
+
 // 64 nodes and 3 * 4 * 4 * 3 struts.
 TEST(ExampleScenes, Lattice) {
   const Scene scene = example("lattice.capsules");

@@ -199,6 +199,11 @@ TEST(SwcSegments, AllRadiiMissingFollowTheExtent) {
   EXPECT_EQ(radius_of(spheres_of(import_text("1 1 7 7 7 0 -1\n")).at(0)), 1.0);
 }
 
+TEST(SwcSegments, MissingRadiiOfTinyFilesAreNotZero) {
+  for (const char* text : {"1 2 0 0 0 0 -1\n2 2 1e-45 0 0 0 1\n", "1 2 0 0 0 1e-45 -1\n2 2 1 0 0 0 1\n"})
+    EXPECT_GT(capsules_of(import_text(text)).radius0[0], 0) << text;
+}
+
 // --- Somata ---
 
 TEST(SwcSoma, OnePointIsASphere) {

@@ -2,37 +2,72 @@
 // Copyright Caplet authors
 //
 // Random primitives and rays for the shape tests: scales from 1e-3 to 1e3, coordinates up to 1e5, lengths up to 1e4 radii; rays
-// that come from outside, far, inside and the surface, run along the axes, touch, and pass rims and ends.
+// that come from outside, far, inside and the surface, run along the axes, touch, and pass rims, edges, ends and apexes.
 // CAPLET_TEST_SCALE=N in the environment tries N times as many primitives (default 1: some 20 s on two cores in all).
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <iosfwd>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "probe.h"
+#include "scene/scene.h"
 
 namespace caplet::test {
 
+struct ShapeKind {
+  int shape;
+  const char* name;
+};
+void PrintTo(const ShapeKind& kind, std::ostream* out);
+/// Every kind that a ray can hit.
+std::span<const ShapeKind> shape_kinds();
+
 struct CaseSet {
   std::vector<FlatPrimitive> primitives;
-  std::vector<std::uint32_t> which;  // of each ray
+  std::vector<reference::Primitive> witnesses;  // of each primitive
+  std::vector<float> leaves;                    // for Probe
+  std::vector<std::uint32_t> which;             // of each ray
   std::vector<RayRecord> rays;
+  const reference::Primitive& witness(std::size_t ray) const { return witnesses[which[ray]]; }
+  const FlatPrimitive& primitive(std::size_t ray) const { return primitives[which[ray]]; }
+  void renew_witnesses();  // after changes to the primitives; not for csg shapes
 };
 
 class CaseMaker {
  public:
   explicit CaseMaker(std::uint32_t seed) : random_(seed) {}
-  /// `hard`: the full range of scales; otherwise radii 0.1 to 10 near the origin.
+  /// Appends a primitive. `hard`: the full range of scales; otherwise radii 0.1 to 10 near the origin.
+  void add_primitive(int shape, bool hard, CaseSet& out);
+  /// A primitive of a kind that needs no `leaves`.
   FlatPrimitive primitive(int shape, bool hard);
-  RayRecord ray(const FlatPrimitive& primitive);
+  RayRecord ray(const FlatPrimitive& primitive, const reference::Primitive& witness);
   CaseSet set(int shape, bool hard, int primitives, int rays_each);
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   glm::dvec3 direction();  // uniform over the sphere
 
  private:
-  glm::dvec3 surface_point(const FlatPrimitive& primitive, glm::dvec3* normal);
+  struct Frame;  // where a primitive is to be, and how large
+  Frame frame(bool hard);
+  FlatPrimitive basic(int shape, bool hard, const Frame& at);
+  FlatPrimitive solid(int shape, bool hard, const Frame& at);
+  FlatPrimitive open(int shape, bool hard, const Frame& at);
+  FlatPrimitive polyhedron(bool hard, const Frame& at, std::vector<float>& leaves);
+  Shape csg_shape(int depth);
+  glm::dvec3 surface_point(const FlatPrimitive& primitive, const reference::Primitive& witness, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Spool& spool, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Box& box, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Polyhedron& polyhedron, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::PartialSphere& sphere, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::OpenCylinder& cylinder, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::PartialDisk& disk, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Bilinear& patch, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Csg& csg, glm::dvec3* normal);
+  glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& witness);
+  double between(double low, double high) { return below(4) == 0 ? low : below(3) == 0 ? high : uniform(low, high); }
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   std::mt19937 random_;
 };
@@ -46,6 +81,19 @@ struct Extent {
   double radius;  // of the bounding ball
   double reach;   // L + r0 + r1, or the edge lengths: what kernel errors grow with
 };
-Extent extent_of(const FlatPrimitive& primitive);
+Extent extent_of(const FlatPrimitive& primitive, const reference::Primitive& witness);
+
+/// Bound on the distance of o + t d from the surface, as docs/numerics.md states it: a multiple of eps (|o - c| + size). The
+/// final rounding of t moves the point by eps |t d| <= eps (|o - c| + size) more.
+double surface_bound(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray);
+
+/// The primitives placed by random affine maps (turned, stretched by 0.2 to 3 along each axis, every other one mirrored, moved),
+/// the rays with them.
+struct PlacedCases {
+  CaseSet cases;  // rays in the world
+  std::vector<PlacedPrimitive> placed;
+  std::vector<glm::dmat4> world_from_object;  // as rounded to float
+};
+PlacedCases placed_cases(CaseSet cases, std::uint32_t seed);
 
 }  // namespace caplet::test

@@ -4,9 +4,11 @@
 // The probe's kernels and their host side.
 #include "probe.h"
 
+#include <bit>
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <stdexcept>
 
 #include "shared/kinds.h"
 
@@ -15,11 +17,11 @@ namespace caplet::test {
 namespace {
 
 const char* const kernel_text = R"(
-#include "trace/trace.cl"
+#include "trace/list.cl"
 #include "shapes/surface.cl"
 
 typedef struct {
-  float p[3], error, ng[3], u, ns[3], v, dpdu[3], pad;
+  float p[3], error, ng[3], u, ns[3], v, dpdu[3], pad2, dpdv[3], pad3;
   uint geometry, primitive, surface, light, leaving, any, pad0, pad1;
 } SurfaceOut;
 
@@ -48,6 +50,7 @@ __kernel void probe_trace(__global const float* nodes, __global const float* lea
   vstore3(s.ng, 0, surfaces[i].ng);
   vstore3(s.ns, 0, surfaces[i].ns);
   vstore3(s.dpdu, 0, surfaces[i].dpdu);
+  vstore3(s.dpdv, 0, surfaces[i].dpdv);
   surfaces[i].error = s.error;
   surfaces[i].u = s.uv.x;
   surfaces[i].v = s.uv.y;
@@ -56,6 +59,17 @@ __kernel void probe_trace(__global const float* nodes, __global const float* lea
   surfaces[i].surface = s.surface;
   surfaces[i].light = s.light;
   surfaces[i].leaving = (uint)s.leaving;
+}
+
+__kernel void probe_list(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                         __global const uint* roots, __global const RayRecord* rays, __global HitRecord* hits, __global int* any,
+                         __global uint* counts, __global HitRecord* sorted, uint capacity, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  const RayRecord ray = rays[i];
+  hits[i] = trace_closest(nodes, leaves, instances, roots[i], ray);
+  any[i] = trace_any(nodes, leaves, instances, roots[i], ray);
+  counts[i] = trace_all(nodes, leaves, instances, roots[i], ray, capacity, sorted + (size_t)i * capacity);
 }
 
 __kernel void probe_leave(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
@@ -102,8 +116,11 @@ FlatPrimitive make(int shape, std::initializer_list<float> values) {
 
 }  // namespace
 
-reference::Primitive witness_of(const FlatPrimitive& p) {
+reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
   const float* d = p.data;
+  const auto end = [](float radius, float cap) {
+    return reference::Spool::End{radius, cap == CAPLET_CAP_ROUND, cap == CAPLET_CAP_OPEN};
+  };
   switch (p.shape) {
     case shape_sphere:
       return reference::Sphere{point(d), d[3]};
@@ -113,8 +130,80 @@ reference::Primitive witness_of(const FlatPrimitive& p) {
       return reference::Capsule{point(d), point(d + 3), d[6], d[7]};
     case shape_triangle:
       return reference::Triangle{point(d), point(d + 3), point(d + 6)};
-    default:
+    case shape_disk:
       return reference::Disk{point(d), point(d + 3), d[6]};
+    case shape_cylinder:
+      return reference::make_spool(point(d), point(d + 3), end(d[6], d[7]), end(d[6], d[8]));
+    case shape_cone:
+      return reference::make_spool(point(d), point(d + 3), end(d[6], d[8]), end(d[7], d[9]));
+    case shape_box:
+      return reference::Box{point(d), point(d + 3)};
+    case shape_polyhedron: {
+      const std::size_t begin = std::bit_cast<std::uint32_t>(d[0]), count = std::bit_cast<std::uint32_t>(leaves.at(begin + 3));
+      std::vector<glm::dvec3> normals;
+      std::vector<double> offsets;
+      for (std::size_t i = 0; i < count; ++i) {
+        normals.push_back(point(&leaves.at(begin + 8 + 4 * i)));
+        offsets.push_back(leaves.at(begin + 8 + 4 * i + 3));
+      }
+      return reference::make_polyhedron(point(&leaves.at(begin)), normals, offsets);
+    }
+    case shape_partial_sphere:
+      return reference::PartialSphere{d[0], d[1], d[2], d[3]};
+    case shape_open_cylinder:
+      return reference::OpenCylinder{d[0], d[1], d[2], d[3]};
+    case shape_partial_disk:
+      return reference::PartialDisk{d[0], d[1], d[2], d[3]};
+    case shape_bilinear:
+      return reference::Bilinear{point(d), point(d + 3), point(d + 6), point(d + 9)};
+    default:
+      throw std::logic_error("no witness of this shape from its data");
+  }
+}
+
+int length_count(const FlatPrimitive& p) {
+  switch (p.shape) {
+    case shape_sphere:
+      return 4;
+    case shape_capsule:
+    case shape_cylinder:
+    case shape_disk:  // and a normal in the middle
+      return 7;
+    case shape_tapered_capsule:
+    case shape_cone:
+      return 8;
+    case shape_triangle:
+      return 9;
+    case shape_box:
+      return 6;
+    case shape_partial_sphere:
+    case shape_open_cylinder:
+    case shape_partial_disk:
+      return 3;
+    case shape_bilinear:
+      return 12;
+    default:
+      return 0;
+  }
+}
+
+int coordinate_count(const FlatPrimitive& p) {
+  switch (p.shape) {
+    case shape_sphere:
+    case shape_disk:
+      return 3;
+    case shape_triangle:
+      return 9;
+    case shape_bilinear:
+      return 12;
+    case shape_capsule:
+    case shape_tapered_capsule:
+    case shape_cylinder:
+    case shape_cone:
+    case shape_box:
+      return 6;
+    default:
+      return 0;
   }
 }
 
@@ -132,14 +221,39 @@ FlatPrimitive make_disk(std::array<float, 3> c, std::array<float, 3> n, float r)
   return make(shape_disk, {c[0], c[1], c[2], n[0], n[1], n[2], r});
 }
 
-Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& primitives)
-    : Probe(device, width, unplaced(primitives)) {}
+FlatPrimitive make_cylinder(std::array<float, 3> p0, std::array<float, 3> p1, float r, float cap0, float cap1) {
+  return make(shape_cylinder, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r, cap0, cap1});
+}
+FlatPrimitive make_cone(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1, float cap0, float cap1) {
+  return make(shape_cone, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r0, r1, cap0, cap1});
+}
+FlatPrimitive make_box(std::array<float, 3> min, std::array<float, 3> max) {
+  return make(shape_box, {min[0], min[1], min[2], max[0], max[1], max[2]});
+}
+FlatPrimitive make_partial_sphere(float r, float z_min, float z_max, float phi_max) {
+  return make(shape_partial_sphere, {r, z_min, z_max, phi_max});
+}
+FlatPrimitive make_open_cylinder(float r, float z_min, float z_max, float phi_max) {
+  return make(shape_open_cylinder, {r, z_min, z_max, phi_max});
+}
+FlatPrimitive make_partial_disk(float height, float r, float inner, float phi_max) {
+  return make(shape_partial_disk, {height, r, inner, phi_max});
+}
+FlatPrimitive make_bilinear(std::array<float, 3> p00, std::array<float, 3> p10, std::array<float, 3> p01,
+                            std::array<float, 3> p11) {
+  return make(shape_bilinear, {p00[0], p00[1], p00[2], p10[0], p10[1], p10[2], p01[0], p01[1], p01[2], p11[0], p11[1], p11[2]});
+}
 
-Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives) : device_(device) {
+Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& primitives, const std::vector<float>& leaves)
+    : Probe(device, width, unplaced(primitives), leaves) {}
+
+Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives, const std::vector<float>& leaves)
+    : device_(device), leaves_(leaves) {
   const Program program =
       Program::from_source(device, "shape probe", flatten_kernels(kernel_text), "-DCAPLET_REAL_WIDTH=" + std::to_string(width));
   trace_ = program.kernel("probe_trace");
   leave_ = program.kernel("probe_leave");
+  list_ = program.kernel("probe_list");
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const PlacedPrimitive& placed = primitives[i];
     FlatPrimitive p = placed.primitive;
@@ -148,11 +262,11 @@ Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>
     geometry.shape = p.shape;
     geometry.primitive_begin = i;
     geometry.light_offset = placed.placed ? 3 : i % 2 == 0 ? CAPLET_NONE : i;
-    geometry.index_begin = 3 * i;
-    geometry.normal_begin = geometry.uv_begin = CAPLET_NONE;
+    geometry.index_begin = 4 * i;
+    geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = CAPLET_NONE;
     geometries_.push_back(geometry);
     primitive_geometry_.push_back(i);
-    for (std::uint32_t k = 0; k < 3; ++k) mesh_indices_.push_back(3 * i + k);
+    for (std::uint32_t k = 0; k < 4; ++k) mesh_indices_.push_back(4 * i + k);
     trees_.push_back(encode_tree(std::span(&p, 1), nodes_, leaves_));
     if (placed.placed) {
       InstanceRecord instance{};
@@ -194,6 +308,32 @@ std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const 
   const std::vector<SurfaceOut> surface_records = surfaces.read();
   std::vector<Probed> out;
   for (std::size_t i = 0; i < rays.size(); ++i) out.push_back({hit_records[i], surface_records[i], surface_records[i].any != 0});
+  return out;
+}
+
+std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which, const std::vector<RayRecord>& rays,
+                                std::uint32_t capacity) const {
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t i : which) roots.push_back(roots_[i]);
+  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_);
+  const auto instances = upload(device_, instances_);
+  const auto root_buffer = upload(device_, roots);
+  const auto ray_buffer = upload(device_, rays);
+  const Buffer<HitRecord> hits(device_, rays.size()), sorted(device_, rays.size() * capacity);
+  const Buffer<int> any(device_, rays.size());
+  const Buffer<std::uint32_t> counts(device_, rays.size());
+  cl::Kernel kernel = list_;
+  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, ray_buffer, hits, any, counts, sorted,
+                static_cast<cl_uint>(capacity), static_cast<cl_uint>(rays.size()));
+  launch(device_, kernel, rays.size(), local_size);
+  const std::vector<HitRecord> nearest = hits.read(), all = sorted.read();
+  const std::vector<int> any_values = any.read();
+  const std::vector<std::uint32_t> count_values = counts.read();
+  std::vector<Listed> out(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * capacity);
+    out[i] = {nearest[i], any_values[i] != 0, count_values[i], {first, first + std::min(count_values[i], capacity)}};
+  }
   return out;
 }
 

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
+#include <tuple>
 
 #include "reference/scene_witness.h"
 #include "reference/solver.h"
@@ -16,6 +18,7 @@ namespace {
 
 using namespace caplet;
 using namespace caplet::reference;
+using caplet::reference::full_turn;
 using glm::dvec3;
 
 // Bisection ends at neighbouring doubles of an offset from the foot; t is then off by a few roundings of |t| and of the scene's
@@ -33,7 +36,26 @@ void expect_crossings(const Primitive& primitive, const Ray& ray, std::initializ
   std::size_t i = 0;
   for (const double t : expected) {
     EXPECT_NEAR(found[i].t, t, rounding * (1 + std::abs(t)) * 10);
-    EXPECT_EQ(found[i].leaving, is_solid(primitive) && i == 1);
+    if (is_solid(primitive)) {
+      EXPECT_EQ(found[i].leaving, i % 2 == 1);
+    }
+    ++i;
+  }
+}
+
+struct Expected {
+  double t;
+  int surface;
+  bool leaving;
+};
+void expect_surfaces(const Primitive& primitive, const Ray& ray, std::initializer_list<Expected> expected) {
+  const auto found = crossings(primitive, ray);
+  ASSERT_EQ(found.size(), expected.size());
+  std::size_t i = 0;
+  for (const Expected& e : expected) {
+    EXPECT_NEAR(found[i].t, e.t, rounding * (1 + std::abs(e.t)) * 10);
+    EXPECT_EQ(found[i].surface, e.surface) << i;
+    EXPECT_EQ(found[i].leaving, e.leaving) << i;
     ++i;
   }
 }
@@ -85,6 +107,205 @@ TEST(Witness, TriangleAndDisk) {
   expect_crossings(disk, {{1, 1, 0}, {0, 0, 0.5}}, {2});
   expect_crossings(disk, {{1.5, 1.5, 0}, {0, 0, 0.5}}, {});
   EXPECT_NEAR(margin(disk, {{1, 0, 0}, {0, 0, 1}}), 1, 1e-9);
+}
+
+TEST(Witness, OpenShapesSayWhetherTheRayGoesAlongTheNormal) {
+  const Triangle triangle{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  expect_surfaces(triangle, {{0.2, 0.3, 0}, {0, 0, 0.5}}, {{2, 0, true}});
+  expect_surfaces(triangle, {{0.2, 0.3, 3}, {0, 0, -1}}, {{2, 0, false}});
+  expect_surfaces(Disk{{0, 0, 1}, {0, 0, -3}, 2}, {{1, 1, 0}, {0, 0, 0.5}}, {{2, 0, false}});
+  const PartialDisk ring{1, 2, 1, 2 * 1.5707963267948966};
+  expect_surfaces(ring, {{0.5, 1.4, 0}, {0, 0, 1}}, {{1, 0, true}});
+  expect_surfaces(ring, {{0.5, 1.4, 3}, {0, 0, -1}}, {{2, 0, false}});
+  expect_surfaces(ring, {{0.5, 0.4, 0}, {0, 0, 1}}, {});
+  expect_surfaces(ring, {{0.5, -1.4, 0}, {0, 0, 1}}, {});
+  EXPECT_NEAR(margin(ring, {{0, 1.3, 0}, {0, 0, 1}}), 0.3, 1e-9);
+  EXPECT_NEAR(margin(ring, {{1.5, 0.1, 0}, {0, 0, 1}}), 0.1, 1e-9);
+  EXPECT_NEAR(value(ring, {0, 0.5, 1}), 0.5, rounding);
+}
+
+TEST(Witness, CylindersAndCones) {
+  const auto cylinder = [](bool round0, bool open0, bool round1, bool open1) {
+    return make_spool({0, 0, 0}, {0, 0, 4}, {1, round0, open0}, {1, round1, open1});
+  };
+  const Ray along{{0.6, 0, -2}, {0, 0, 1}}, across{{-3, 0, 2}, {2, 0, 0}};
+  expect_surfaces(cylinder(false, false, false, false), along, {{2, 1, false}, {6, 2, true}});
+  expect_surfaces(cylinder(true, false, true, false), along, {{1.2, 1, false}, {6.8, 2, true}});
+  expect_surfaces(cylinder(false, true, true, false), along, {{6.8, 2, true}});
+  expect_surfaces(cylinder(false, true, false, true), along, {});
+  expect_surfaces(cylinder(false, false, true, false), across, {{1, 0, false}, {2, 0, true}});
+  // In at the side, out at the cap.
+  expect_surfaces(cylinder(false, false, false, false), {{-3, 0, 1}, {1, 0, 1}}, {{2, 0, false}, {3, 2, true}});
+  expect_surfaces(cylinder(false, true, false, true), {{-3, 0, 1}, {1, 0, 1}}, {{2, 0, false}});
+
+  // A frustum whose side has slope 1, and its apex.
+  const Spool frustum = make_spool({0, 0, 0}, {0, 0, 2}, {3, false, false}, {1, false, false});
+  expect_surfaces(frustum, {{-5, 0, 1}, {1, 0, 0}}, {{3, 0, false}, {7, 0, true}});
+  expect_surfaces(frustum, {{2, 0, 5}, {0, 0, -1}}, {{4, 0, false}, {5, 1, true}});
+  const Spool cone = make_spool({0, 0, 0}, {0, 0, 2}, {2, false, false}, {0, false, false});
+  expect_surfaces(cone, {{0, 0, 5}, {0, 0, -1}}, {{3, 0, false}, {5, 1, true}});
+  EXPECT_NEAR(value(cone, {0, 0, 3}), 1, rounding);
+  EXPECT_NEAR(value(cone, {2, 0, 1}), std::sqrt(0.5), rounding);
+
+  // Round ends of two radii: the tapered capsule.
+  const Capsule tapered{{0, 0, 0}, {0, 0, 4}, 2, 1};
+  const Spool same = make_spool(tapered.p0, tapered.p1, {2, true, false}, {1, true, false});
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const dvec3 x = 3.0 * random_vector(random);
+    // Outside both are the distance.
+    if (value(tapered, x) > 0) {
+      EXPECT_NEAR(value(same, x), value(tapered, x), 1e-12);
+    } else {
+      EXPECT_LE(value(same, x), 1e-12);
+    }
+  }
+}
+
+// The hull of a disk and a ball, by its definition: points between a point of the one and a point of the other.
+TEST(Witness, MixedEndsAreTheHullOfADiskAndABall) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform;
+  for (const auto& [disk, ball, length] :
+       {std::tuple(2.0, 1.0, 3.0), {1.0, 2.0, 3.0}, {1.0, 1.0, 0.5}, {0.0, 1.0, 2.0}, {3.0, 2.0, 1.0}}) {
+    const Spool spool = make_spool({0, 0, 0}, {0, 0, length}, {disk, false, false}, {ball, true, false});
+    double greatest = -HUGE_VAL;
+    for (int i = 0; i < 100000; ++i) {
+      const double a = full_turn * uniform(random);
+      const dvec3 p = disk * dvec3(std::cos(a), std::sin(a), 0);
+      const dvec3 q = dvec3(0, 0, length) + ball * glm::normalize(random_vector(random));
+      greatest = std::max(greatest, value(spool, p + uniform(random) * (q - p)));
+    }
+    EXPECT_LE(greatest, 1e-12);
+    // And no larger: a plane that touches the spool touches the disk or the ball.
+    for (int i = 0; i < 1000; ++i) {
+      const dvec3 n = glm::normalize(random_vector(random));
+      const double support = std::max(disk * std::hypot(n.x, n.y), n.z * length + ball);
+      for (int k = 0; k < 10; ++k) {
+        const dvec3 x = (1 + std::abs(uniform(random))) * support * n + 3.0 * glm::cross(n, random_vector(random));
+        if (glm::dot(n, x) > support) {
+          EXPECT_GE(value(spool, x), glm::dot(n, x) - support - 1e-12);
+        }
+      }
+    }
+  }
+}
+
+TEST(Witness, BoxesAndPolyhedra) {
+  const Box box{{-1, -2, -3}, {1, 2, 3}};
+  expect_surfaces(box, {{-5, 0.5, 0.5}, {2, 0, 0}}, {{2, 0, false}, {3, 1, true}});
+  expect_surfaces(box, {{0.5, 5, 0.5}, {0, -1, 0}}, {{3, 3, false}, {7, 2, true}});
+  expect_surfaces(box, {{0.5, 0.5, -5}, {0, 0.25, 1}}, {{2, 4, false}, {6, 3, true}});
+  const std::vector<dvec3> normals = {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}};
+  const std::vector<double> offsets = {0, 0, 0, 1};
+  const Polyhedron tetrahedron = make_polyhedron({1, 1, 1}, normals, offsets);
+  EXPECT_GE(tetrahedron.ball_radius, std::sqrt(0.5));
+  EXPECT_LT(tetrahedron.ball_radius, 1);
+  expect_surfaces(tetrahedron, {{0, 1.25, 1.25}, {1, 0, 0}}, {{1, 0, false}, {1.5, 3, true}});
+  expect_surfaces(tetrahedron, {{1.25, 0, 1.25}, {0, 1, 0}}, {{1, 1, false}, {1.5, 3, true}});
+}
+
+TEST(Witness, PartsOfSpheresAndTubes) {
+  const PartialSphere sphere{2, -1, 1.5, 4.71238898038469};
+  expect_surfaces(sphere, {{-5, 0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}, {5 + std::sqrt(4 - 0.01), 0, true}});
+  expect_surfaces(sphere, {{-5, -0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}});
+  expect_surfaces(sphere, {{0.1, 0, -5}, {0, 0, 1}}, {});
+  EXPECT_NEAR(value(sphere, {0, 0, 2}), std::hypot(std::sqrt(4 - 2.25), 0.5), rounding);
+  EXPECT_NEAR(margin(sphere, {{-5, 0.1, 1.4}, {1, 0, 0}}), 0.1, 1e-9);
+  const OpenCylinder tube{1, -1, 2, 4.71238898038469};
+  expect_surfaces(tube, {{-5, 0.6, 0}, {1, 0, 0}}, {{4.2, 0, false}, {5.8, 0, true}});
+  expect_surfaces(tube, {{-5, -0.6, 0}, {1, 0, 0}}, {{4.2, 0, false}});
+  expect_surfaces(tube, {{-5, 0.6, 2.5}, {1, 0, 0}}, {});
+  expect_surfaces(tube, {{0.5, 0, -5}, {0, 0, 1}}, {});
+  EXPECT_NEAR(value(tube, {3, 0, 4}), std::sqrt(8), rounding);
+}
+
+TEST(Witness, BilinearPatches) {
+  // z = x y: two crossings of a line along (1, -1) below, where x y is concave.
+  const Bilinear saddle{{-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, 1}};
+  expect_surfaces(saddle, {{0.5, 0.25, -3}, {0, 0, 1}}, {{3.125, 0, true}});
+  expect_surfaces(saddle, {{0.5, 0.25, 3}, {0, 0, -1}}, {{2.875, 0, false}});
+  expect_surfaces(saddle, {{-0.8, 0.8, -0.25}, {1, -1, 0}}, {{0.3, 0, false}, {1.3, 0, true}});
+  expect_surfaces(saddle, {{-0.8, 0.8, 0.25}, {1, -1, 0}}, {});
+  EXPECT_NEAR(margin(saddle, {{-0.8, 0.8, 0.02}, {1, -1, 0}}), -0.02, 1e-6);
+  EXPECT_NEAR(margin(saddle, {{0.75, 0.5, -3}, {0, 0, 1}}), 0.25, 1e-9);
+  EXPECT_NEAR(value(saddle, {0.5, 0.25, 0.125}), 0, 1e-12);
+  EXPECT_NEAR(value(saddle, {1, 1, 3}), 2, 1e-9);
+  // A parallelogram.
+  const Bilinear flat{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {3, 1, 0}};
+  expect_surfaces(flat, {{1.25, 0.5, -1}, {0, 0, 1}}, {{1, 0, true}});
+  expect_surfaces(flat, {{0.25, 0.5, -1}, {0, 0, 1}}, {});
+  expect_surfaces(flat, {{-4, 0.5, 0}, {1, 0, 0}}, {});
+}
+
+TEST(Witness, CsgByMembership) {
+  const auto moved = [](const dvec3& by) { return glm::translate(glm::dmat4(1), by); };
+  const Csg lens = make_csg(Csg::Operation::set_intersection, std::vector<CsgPart>{{Sphere{{0, 0, 0}, 2}, moved({0, 0, -1})},
+                                                                                   {Sphere{{0, 0, 0}, 2}, moved({0, 0, 1})}});
+  expect_surfaces(lens, {{0, 0, -5}, {0, 0, 1}}, {{4, 1, false}, {6, 0, true}});
+  expect_surfaces(lens, {{1.8, 0, -5}, {0, 0, 1}}, {});
+  const Csg hollow = make_csg(Csg::Operation::set_difference,
+                              std::vector<CsgPart>{{Box{{-2, -2, -2}, {2, 2, 2}}, glm::dmat4(1)}, {lens, glm::dmat4(1)}});
+  EXPECT_EQ(surface_count(hollow), 8);
+  expect_surfaces(hollow, {{0, 0, -5}, {0, 0, 1}}, {{3, 4, false}, {4, 7, true}, {6, 6, false}, {7, 5, true}});
+  EXPECT_LT(glm::length(normal_at(hollow, {0, 0, -1}, 1e-6) - dvec3(0, 0, 1)), 1e-6);
+  // Touching capsules: no inner surface.
+  const Csg chain = make_csg(Csg::Operation::set_union, std::vector<CsgPart>{{Box{{0, 0, 0}, {1, 1, 1}}, glm::dmat4(1)},
+                                                                             {Box{{0, 0, 0}, {1, 1, 1}}, moved({1, 0, 0})}});
+  expect_surfaces(chain, {{-1, 0.5, 0.5}, {1, 0, 0}}, {{1, 0, false}, {3, 7, true}});
+}
+
+// All sign changes of the value, by excluding intervals that a 1-Lipschitz function cannot change sign in: no use is made of the
+// operands' own crossings.
+TEST(Witness, CsgCrossingsAreTheSignChangesOfTheValue) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform;
+  int crossed = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::vector<CsgPart> parts;
+    for (int k = 0; k < 4; ++k) {
+      const glm::dmat4 m = glm::scale(glm::rotate(glm::translate(glm::dmat4(1), 0.7 * random_vector(random)), 6 * uniform(random),
+                                                  glm::normalize(random_vector(random))),
+                                      dvec3(0.3 + uniform(random), 0.3 + uniform(random), 0.3 + uniform(random)));
+      const Primitive primitive = k == 0   ? Primitive(Box{{-1, -1, -1}, {1, 1, 1}})
+                                  : k == 1 ? Primitive(Sphere{})
+                                  : k == 2 ? Primitive(make_spool({0, 0, -1}, {0, 0, 1}, {1, false, false}, {0.5, false, false}))
+                                           : Primitive(Capsule{{0, 0, -1}, {0, 0, 1}, 0.5, 0.3});
+      parts.push_back({primitive, m});
+    }
+    const auto operation = [&] { return static_cast<Csg::Operation>(i / 7 % 3); };
+    const Csg inner = make_csg(operation(), std::vector<CsgPart>(parts.begin(), parts.begin() + 2));
+    parts.erase(parts.begin(), parts.begin() + 2);
+    parts.push_back({inner, glm::dmat4(1)});
+    const Csg csg = make_csg(static_cast<Csg::Operation>(i % 3), parts);
+    for (int r = 0; r < 10; ++r) {
+      const dvec3 origin = 6.0 * glm::normalize(random_vector(random));
+      const Ray ray{origin, glm::normalize(0.7 * random_vector(random) - origin)};
+      const auto f = [&](double t) { return value(csg, origin + t * ray.direction); };
+      std::vector<double> roots;
+      const std::function<void(double, double)> search = [&](double a, double b) {
+        const double middle = 0.5 * (a + b);
+        if (std::abs(f(middle)) > 0.5 * (b - a)) return;
+        if (b - a > 1e-5) {
+          search(a, middle);
+          search(middle, b);
+        } else if ((f(a) > 0) != (f(b) > 0)) {
+          const bool falls = f(a) > 0;
+          for (int n = 0; n < 60; ++n) {
+            const double half = 0.5 * (a + b);
+            ((f(half) > 0) == falls ? a : b) = half;
+          }
+          roots.push_back(a);
+        }
+      };
+      search(0, 16);
+      const auto found = crossings(csg, ray);
+      ASSERT_EQ(found.size(), roots.size()) << i << " " << r;
+      for (std::size_t k = 0; k < roots.size(); ++k) EXPECT_NEAR(found[k].t, roots[k], 1e-11);
+      crossed += !found.empty();
+    }
+  }
+  EXPECT_GT(crossed, 500);
 }
 
 TEST(Witness, MarginIsTheDistanceToTangency) {
@@ -150,6 +371,56 @@ TEST(SceneWitness, InstancesKeepT) {
   EXPECT_EQ(hits[1]->instance, 0u);
   EXPECT_NEAR(hits[2]->t, 8.5, 10 * rounding);
   EXPECT_FALSE(hits[3]);
+}
+
+TEST(SceneWitness, SurfacesMaterialsAndNormals) {
+  Scene scene;
+  Shape box;
+  box.geometry = BoxShape{{-1, -1, -1}, {1, 1, 1}};
+  box.materials = {10, 11, 12, 13, 14, 15};
+  Shape sphere;
+  sphere.geometry = SphereShape{0.5};
+  sphere.material = 20;
+  sphere.world_from_object = glm::translate(glm::dmat4(1), {1, 0, 0});
+  Shape bitten;
+  bitten.geometry =
+      CsgShape{CsgShape::Operation::set_difference, {std::make_shared<const Shape>(box), std::make_shared<const Shape>(sphere)}};
+  scene.objects.push_back({"bitten", {bitten}, {}});
+  // Mirrored in x, twice as long in z.
+  scene.instances.push_back({0, glm::scale(glm::translate(glm::dmat4(1), {5, 0, 0}), {-1, 1, 2}), {}});
+  Shape tube;
+  tube.geometry = OpenCylinderShape{1, -1, 1, caplet::full_turn};
+  tube.material = 30;
+  tube.one_sided = true;
+  tube.reverse_orientation = true;
+  scene.shapes.push_back(tube);
+  const SceneWitness witness(scene);
+
+  const Ray ray{{-9, 0, 0.1}, {2, 0, 0}};
+  const auto hits = witness.all(ray);
+  // The tube is seen from inside alone, then the bite, which is its sphere's inside, then the far face: that of the least x.
+  ASSERT_EQ(hits.size(), 3u);
+  EXPECT_NEAR(hits[0].t, 5, rounding);
+  EXPECT_EQ(hits[0].material, 30u);
+  EXPECT_TRUE(hits[0].leaving);
+  EXPECT_LT(glm::length(witness.normal(hits[0], {1, 0, 0.1}) - dvec3(-1, 0, 0)), 1e-9);
+  const double chord = std::sqrt(0.25 - 0.05 * 0.05);
+  EXPECT_NEAR(hits[1].t, (9 + 4 + chord) / 2, 10 * rounding);
+  EXPECT_EQ(hits[1].surface, 6u);
+  EXPECT_EQ(hits[1].material, 20u);
+  EXPECT_EQ(hits[1].instance, 0u);
+  EXPECT_FALSE(hits[1].leaving);
+  // Of the ellipsoid with half axes 1/2 and 1, into its middle.
+  EXPECT_LT(glm::length(witness.normal(hits[1], {4 + chord, 0, 0.1}) + glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))), 1e-6);
+  EXPECT_NEAR(hits[2].t, (9 + 6) / 2.0, 10 * rounding);
+  EXPECT_EQ(hits[2].surface, 0u);
+  EXPECT_EQ(hits[2].material, 10u);
+  EXPECT_LT(glm::length(witness.normal(hits[2], {6, 0, 0.1}) - dvec3(1, 0, 0)), 1e-9);
+
+  EXPECT_EQ(witness.all(ray, 2).size(), 2u);
+  const auto first = witness.closest(ray);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->t, hits[0].t);
 }
 
 }  // namespace

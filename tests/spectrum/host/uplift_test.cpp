@@ -4,8 +4,13 @@
 // RGB -> spectrum -> RGB. The colours of spectra are summed here by another rule (quarter nanometres) and with the published sRGB
 // matrix, so that they do not share the solver's response tables.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <random>
 
 #include "lower/spectrum.h"
@@ -124,6 +129,27 @@ TEST(Uplift, EnvironmentTexels) {
   EXPECT_LT(std::sqrt(sum / colors), 1e-4);
   RecordProperty("worst", std::to_string(worst));
   RecordProperty("rms", std::to_string(std::sqrt(sum / colors)));
+}
+
+// The first texel of a space makes its table, in parallel, inside whatever loop asked: a thread that waits for parts of the table
+// must not take another texel meanwhile, for that one waits for the table. Four texels and six threads make that likely (about
+// one process in two hung when nothing prevented it); each process begins without tables, and one that hangs is ended.
+TEST(UpliftDeathTest, FirstTexelsMayBeAskedForInParallel) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto first_texels = [] {
+    alarm(60);
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 6);
+    for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
+      std::array<std::array<float, 4>, 4> texels;
+      tbb::parallel_for(
+          std::size_t{0}, texels.size(),
+          [&](std::size_t i) { texels[i] = environment_texel(glm::dvec3(0.5, 0.25, 0.125), space); }, tbb::simple_partitioner());
+      for (const std::array<float, 4>& texel : texels)
+        if (texel != texels[0] || texel[3] != 1) std::_Exit(1);
+    }
+    std::_Exit(0);
+  };
+  for (int process = 0; process < 4; ++process) ASSERT_EXIT(first_texels(), testing::ExitedWithCode(0), "");
 }
 
 TEST(Uplift, GreyTexelsAreExactAndBlackOnesDark) {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet pick`: what is under a pixel, or hit by a ray, or by each of millions of rays.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <limits>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/pick_report.h"
+#include "cli/pick_table.h"
+#include "film/image.h"
+#include "import/import.h"
+#include "lower/camera.h"
+#include "lower/lower.h"
+#include "render/query.h"
+#include "table/ray_file.h"
+
+namespace caplet::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
+constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, whatever --limit allows a ray
+
+struct Options {
+  std::string scene, pixel, ray, rays, out, device, size, crop;
+  std::size_t limit = 256;
+  bool all = false, json = false, reference = false, quiet = false;
+};
+
+RayRecord to_record(const RayNumbers& n) {
+  return {n[0], n[1], n[2], 0, n[3], n[4], n[5], std::numeric_limits<float>::infinity()};
+}
+
+[[noreturn]] void refuse_overflow(const std::vector<std::uint64_t>& rays, std::size_t limit) {
+  constexpr std::size_t named = 8;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(rays.size(), named); ++i) names += fmt::format("{}{}", i > 0 ? ", " : "", rays[i]);
+  if (rays.size() > named) names += fmt::format(" and {} more", rays.size() - named);
+  throw RunError(fmt::format("ray {}: more than {} crossings; nothing is written (raise --limit)", names, limit));
+}
+
+// --- One ray ---
+
+void pick_one(const Options& options, const Scene& scene, const std::optional<std::array<int, 2>>& pixel, const RayRecord& ray,
+              const Device& device) {
+  Query query(lower(scene), device);
+  PickReport report;
+  report.pixel = pixel;
+  report.ray = ray;
+  report.device = device.info().name;
+  report.all = options.all;
+  if (options.all) {
+    HitLists lists = query.all(std::span(&ray, 1), options.limit);
+    if (!lists.overflowed.empty()) refuse_overflow({0}, options.limit);
+    report.crossings = std::move(lists.crossings);
+  } else if (const PickRecord pick = query.closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
+    report.crossings = {pick};
+  }
+  if (options.reference) report.reference = reference_crossings(scene, ray, options.all);
+  fmt::print("{}", options.json ? json_text(report, scene) : plain_text(report, scene));
+}
+
+// --- Lists of rays ---
+
+/// Rows of a chunk of rays, numbered from `first`; rays with more crossings than the limit are added to `overflowed`.
+std::vector<PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const Options& options,
+                            std::vector<std::uint64_t>& overflowed) {
+  std::vector<PickRow> rows;
+  if (options.all) {
+    const HitLists lists = query.all(rays, options.limit);
+    for (const std::size_t ray : lists.overflowed) overflowed.push_back(first + ray);
+    rows.reserve(lists.crossings.size());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) rows.push_back({first + i, lists.crossings[k]});
+    return rows;
+  }
+  const std::vector<PickRecord> picks = query.closest(rays);
+  rows.reserve(picks.size());
+  for (std::size_t i = 0; i < picks.size(); ++i)
+    if (picks[i].object != CAPLET_NONE) rows.push_back({first + i, picks[i]});
+  return rows;
+}
+
+void pick_many(const Options& options, const Scene& scene, RayFile& file, const Device& device) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Query query(lower(scene), device);
+  std::uint64_t ray_count = 0, row_count = 0;
+  double device_seconds = 0;
+  const std::size_t chunk =
+      options.all ? std::clamp<std::size_t>(crossings_in_a_chunk / options.limit, 1, rays_in_a_chunk) : rays_in_a_chunk;
+  write_atomically(options.out, [&](const fs::path& temporary) {
+    const std::unique_ptr<PickTable> table = create_pick_table(temporary, scene);
+    std::vector<std::uint64_t> overflowed;
+    for (;;) {
+      if (interrupt_requested()) throw RunError("interrupted; nothing is written");
+      const std::vector<RayNumbers> numbers = file.next(chunk);
+      std::vector<RayRecord> rays;
+      rays.reserve(numbers.size());
+      for (const RayNumbers& n : numbers) rays.push_back(to_record(n));
+      const double before = seconds();
+      const std::vector<PickRow> rows = answer(query, rays, ray_count, options, overflowed);
+      device_seconds += seconds() - before;
+      if (overflowed.empty()) table->append(rows);  // otherwise only the other rays to blame are looked for
+      ray_count += rays.size();
+      row_count += rows.size();
+      if (rays.size() < chunk) break;
+    }
+    if (!overflowed.empty()) refuse_overflow(overflowed, options.limit);
+    table->finish();
+  });
+  device_seconds -= query.compile_seconds();
+  log::info("{} rays, {} crossings on {}: {:.3g} Mrays/s, {:.1f} s in all; wrote {}", ray_count, row_count, device.info().name,
+            static_cast<double>(ray_count) / 1e6 / std::max(device_seconds, 1e-9), seconds(), options.out);
+}
+
+// --- The command ---
+
+void check_combination(const Options& o) {
+  const int asked = !o.pixel.empty() + !o.ray.empty() + !o.rays.empty();
+  if (asked != 1) throw InputError("pick needs one of --pixel X,Y, --ray ox,oy,oz,dx,dy,dz and --rays FILE");
+  const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
+  if (!o.rays.empty()) {
+    if (o.out.empty()) refuse("--rays", "needs --out FILE.csv or FILE.npy");
+    if (o.json) refuse("--json", "tells of one ray: it does not go with --rays");
+    if (o.reference) refuse("--reference", "tells of one ray: it does not go with --rays");
+  } else if (!o.out.empty()) {
+    refuse("--out", "goes with --rays");
+  }
+  if (o.pixel.empty() && !(o.size.empty() && o.crop.empty())) refuse(o.size.empty() ? "--crop" : "--size", "goes with --pixel");
+}
+
+void run_pick(const Options& options, bool has_limit) {
+  log::set_quiet(options.quiet);
+  check_combination(options);
+  if (has_limit && !options.all) throw InputError(SourceLocation{"--limit"}, "goes with --all");
+  Overrides overrides;
+  if (!options.size.empty()) overrides.size = parse_size(options.size);
+  if (!options.crop.empty()) overrides.crop = parse_crop(options.crop);
+  std::optional<std::array<int, 2>> pixel;
+  if (!options.pixel.empty()) pixel = parse_pixel(options.pixel);
+  std::optional<RayRecord> ray;
+  if (!options.ray.empty()) ray = to_record(parse_ray(options.ray));
+  std::optional<RayFile> rays;
+  if (!options.rays.empty()) {
+    check_table_format(options.out, "--out");
+    check_writable(options.out, "--out");
+    rays.emplace(options.rays);
+    install_interrupt_handlers();
+  }
+  const Device device = Device::choose(options.device);
+  Scene scene = import_scene(options.scene, FileImageReader());
+  apply(overrides, scene);
+  if (pixel) {
+    check_pixel(*pixel, scene.film);
+    ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
+  }
+  self_test(device);
+  if (rays)
+    pick_many(options, scene, *rays, device);
+  else
+    pick_one(options, scene, pixel, *ray, device);
+}
+
+}  // namespace
+
+void add_pick(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("pick", "Tell what a pixel shows or rays hit: name, surface, material, point, normal, uv");
+  command->add_option("SCENE", o->scene, "Scene file")->required();
+  command->add_option("--pixel", o->pixel, "The ray through the middle of this pixel, from the top left")->type_name("X,Y");
+  command->add_option("--ray", o->ray, "This ray: origin and direction (of any length; t counts in its lengths)")
+      ->type_name("ox,oy,oz,dx,dy,dz");
+  command->add_option("--rays", o->rays, "Many rays: text of six numbers a line, or .npy (N x 6, float32 or float64)")
+      ->type_name("FILE");
+  command->add_option("--out", o->out, "Table of what --rays hit, a row per crossing: .csv or .npy")->type_name("FILE");
+  command->add_flag("--all", o->all, "Every crossing in order, not the nearest alone");
+  CLI::Option* limit = command->add_option("--limit", o->limit, "Most crossings of a ray for --all; more are an error")
+                           ->check(CLI::Range(std::size_t{1}, max_query_capacity))
+                           ->capture_default_str()
+                           ->type_name("N");
+  command->add_flag("--json", o->json, "Print a JSON object for machines");
+  command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method");
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+      ->type_name("D");
+  command->add_option("--size", o->size, "Picture size that --pixel counts in, as in `render`")->type_name("WxH");
+  command->add_option("--crop", o->crop, "Pixels that may be picked, as in `render`")->type_name("x0,y0,x1,y1");
+  command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  command->callback([o, limit] { run_pick(*o, limit->count() > 0); });
+}
+
+}  // namespace caplet::cli

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Csg shapes: operands, flattened, and the expression over them. Layout: kernels/shapes/csg.cl.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/check.h"
+#include "lower/flat_shapes.h"
+#include "shared/kinds.h"
+
+namespace caplet {
+
+namespace {
+
+using Matrix = glm::dmat4;
+using glm::dvec3;
+
+constexpr double eps = 0x1p-24;
+constexpr std::size_t lanes_per_group = 4;
+
+constexpr std::array<std::uint32_t, shape_count> rows_of = {
+#define SHAPE(name, rows) rows,
+#include "shared/shapes.def"
+#undef SHAPE
+};
+
+struct Solid {
+  const Shape* shape;
+  Matrix space_from_solid;
+  std::uint32_t surface_begin;
+  bool subtracted;
+};
+
+/// A solid as its kernel reads it, in csg space or, placed, in its own.
+struct Operand {
+  FlatPrimitive flat, grown;
+  std::uint32_t surface;  // with CAPLET_CSG_SUBTRACTED
+  bool placed;
+  Matrix csg_from_object{1};
+  double error;  // in csg space
+};
+
+/// The expression as a postfix program over its solids, in the order of their surfaces.
+class Flattening {
+ public:
+  std::vector<Solid> solids;
+  std::vector<std::uint32_t> program;
+
+  void add(const CsgShape& csg, const Matrix& m, bool subtracted) {
+    using Operation = CsgShape::Operation;
+    CHECK_LT_(std::size_t(0), csg.operands.size());
+    const bool takes_away = csg.operation == Operation::set_difference;
+    for (std::size_t i = 0; i < csg.operands.size(); ++i) {
+      const Shape& operand = *csg.operands[i];
+      const Matrix placed = m * operand.world_from_object;
+      const bool turned = subtracted != (takes_away && i > 0);
+      if (const auto* nested = std::get_if<CsgShape>(&operand.geometry)) {
+        add(*nested, placed, turned);
+      } else {
+        if (!is_closed(operand)) throw InputError(operand.where, "a csg operand must be a closed solid");
+        if (solids.size() == CAPLET_CSG_MAX_OPERANDS)
+          throw InputError(operand.where, fmt::format("a csg shape of more than {} solids", CAPLET_CSG_MAX_OPERANDS));
+        program.push_back(narrow<std::uint32_t>(solids.size()));
+        solids.push_back({&operand, placed, surfaces_, turned});
+        surfaces_ += narrow<std::uint32_t>(surface_count(operand));
+        if (surfaces_ > CAPLET_SURFACE_MASK)
+          throw InputError(operand.where, fmt::format("a csg shape of more than {} surfaces", CAPLET_SURFACE_MASK));
+      }
+      if (i > 0)
+        program.push_back(csg.operation == Operation::set_union          ? CAPLET_CSG_UNION
+                          : csg.operation == Operation::set_intersection ? CAPLET_CSG_INTERSECTION
+                                                                         : CAPLET_CSG_DIFFERENCE);
+    }
+  }
+
+ private:
+  std::uint32_t surfaces_ = 0;
+};
+
+/// What a solid's kernel form is: the same overloads as for shapes by themselves.
+struct FlatOf {
+  const Matrix& m;
+  std::vector<float>& leaves;
+  const SourceLocation& where;
+
+  FlatPrimitive operator()(const SphereShape& s) const { return flat_primitive(s, m, leaves); }
+  FlatPrimitive operator()(const CylinderShape& s) const { return flat_primitive(s, m, leaves); }
+  FlatPrimitive operator()(const ConeShape& s) const { return flat_primitive(s, m, leaves); }
+  FlatPrimitive operator()(const BoxShape& s) const { return flat_primitive(s, m, leaves); }
+  FlatPrimitive operator()(const PolyhedronShape& s) const { return flat_primitive(s, m, leaves); }
+  FlatPrimitive operator()(const CapsulesShape& capsules) const {
+    if (capsules.p0.size() != 1) throw InputError(where, "a csg operand of capsules must hold exactly one");
+    const double scale = similarity_scale(m);
+    const float r0 = capsules.radius0[0], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[0];
+    FlatPrimitive p{};
+    put(p, 0, apply_point(m, dvec3(capsules.p0[0])));
+    if (capsules.p0[0] == capsules.p1[0]) {
+      p.shape = shape_sphere;
+      p.data[3] = static_cast<float>(std::max(r0, r1) * scale);
+      return p;
+    }
+    p.shape = r0 == r1 ? shape_capsule : shape_tapered_capsule;
+    put(p, 3, apply_point(m, dvec3(capsules.p1[0])));
+    p.data[6] = static_cast<float>(r0 * scale);
+    p.data[7] = p.shape == shape_capsule ? 0 : static_cast<float>(r1 * scale);
+    return p;
+  }
+  template <class Open>
+  FlatPrimitive operator()(const Open&) const {
+    throw InputError(where, "a csg operand must be a closed solid");
+  }
+};
+
+double length3(const double (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/// By how much the radius of a flat end grows when the side of slope `k` (radius lost a unit of height towards the other end) and
+/// the end itself move out by `b`: where the two moved lines meet.
+double rim_growth(double k, double b) { return b * (std::sqrt(1 + k * k) + k); }
+
+/// Radius lost a unit of height, seen from a flat end of radius `flat` across `length` to a ball of radius `round`: the tangent
+/// from the rim to the ball.
+double slope_to_ball(double flat, double round, double length) {
+  const double distance = std::hypot(flat, length);
+  return distance > round ? -std::tan(std::asin(round / distance) - std::atan2(flat, length)) : 0;
+}
+
+/// A cylinder or cone with its surfaces moved out by `b`.
+FlatPrimitive grown_hull(FlatPrimitive p, double b) {
+  const bool cylinder = p.shape == shape_cylinder;
+  float* d = p.data;
+  const double r0 = double(d[6]), r1 = cylinder ? r0 : double(d[7]);
+  const bool round0 = d[cylinder ? 7 : 8] == CAPLET_CAP_ROUND, round1 = d[cylinder ? 8 : 9] == CAPLET_CAP_ROUND;
+  const dvec3 p0(d[0], d[1], d[2]), p1(d[3], d[4], d[5]);
+  const double length = glm::length(p1 - p0);
+  const dvec3 axis = length > 0 ? (p1 - p0) / length : dvec3(0);
+  const double k = !(length > 0) || cylinder ? 0
+                   : round0 == round1        ? (r0 - r1) / length
+                   : round1                  ? slope_to_ball(r0, r1, length)
+                                             : -slope_to_ball(r1, r0, length);
+  if (!round0) put(p, 0, p0 - b * axis);
+  if (!round1) put(p, 3, p1 + b * axis);
+  if (cylinder) {
+    d[6] = static_cast<float>(r0 + b);
+  } else {
+    d[6] = static_cast<float>(r0 + (round0 ? b : rim_growth(k, b)));
+    d[7] = static_cast<float>(r1 + (round1 ? b : rim_growth(-k, b)));
+  }
+  return p;
+}
+
+/// The solid with its surfaces moved out by `b`.
+FlatPrimitive grown_by(FlatPrimitive p, double b, std::vector<float>& leaves) {
+  const auto more = [b](float& x, double sign) { x = static_cast<float>(double(x) + sign * b); };
+  switch (p.shape) {
+    case shape_sphere:
+      more(p.data[3], 1);
+      break;
+    case shape_tapered_capsule:
+      more(p.data[7], 1);
+      [[fallthrough]];
+    case shape_capsule:
+      more(p.data[6], 1);
+      break;
+    case shape_cylinder:
+    case shape_cone:
+      return grown_hull(p, b);
+    case shape_box:
+      for (int k = 0; k < 3; ++k) {
+        more(p.data[k], -1);
+        more(p.data[3 + k], 1);
+      }
+      break;
+    default: {
+      CHECK_EQ_(p.shape, std::uint32_t(shape_polyhedron));
+      const std::size_t from = std::bit_cast<std::uint32_t>(p.data[0]), to = leaves.size();
+      const std::size_t count = std::bit_cast<std::uint32_t>(leaves[from + 3]);
+      leaves.resize(to + 8 + (4 * count + 7) / 8 * 8);
+      std::copy_n(leaves.begin() + static_cast<std::ptrdiff_t>(from), 8 + 4 * count,
+                  leaves.begin() + static_cast<std::ptrdiff_t>(to));
+      for (std::size_t i = 0; i < count; ++i) more(leaves[to + 8 + 4 * i + 3], 1);
+      p.data[0] = std::bit_cast<float>(narrow<std::uint32_t>(to));
+    }
+  }
+  return p;
+}
+
+/// `solid` around csg space's centre, whose ball of `radius` the rays come from.
+Operand make_operand(const Solid& solid, const dvec3& center, double radius, std::vector<float>& leaves) {
+  Operand out{};
+  Shape moved = *solid.shape;
+  moved.world_from_object = glm::translate(Matrix(1), -center) * solid.space_from_solid;
+  out.placed = !bakes(moved);
+  // Where rays begin in the operand's space, and where it lies itself.
+  double from = radius, scale = 1;
+  if (out.placed) {
+    out.csg_from_object = moved.world_from_object;
+    const Matrix object_from_csg = glm::inverse(out.csg_from_object);
+    double reach[3] = {};
+    scale = 0;
+    for (int k = 0; k < 3; ++k) {
+      reach[k] = std::abs(object_from_csg[3][k]);
+      for (int j = 0; j < 3; ++j) reach[k] += std::abs(object_from_csg[j][k]) * radius;
+      scale += glm::dot(dvec3(out.csg_from_object[k]), dvec3(out.csg_from_object[k]));
+    }
+    from = length3(reach);
+    scale = std::sqrt(scale);
+    moved.world_from_object = Matrix(1);
+  }
+  const Bounds bounds = bounds_of(moved);
+  const double extent = glm::length(glm::max(glm::abs(bounds.min), glm::abs(bounds.max)));
+  // The kernels claim 16 eps (distance of the origin + size): at most from + extent, and 2 extent. The way into the operand's
+  // space adds 5 eps of its terms (matrix, products, sums), 8 here.
+  const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
+  out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
+  out.grown = grown_by(out.flat, error, leaves);
+  out.error = error * scale;
+  out.surface = solid.surface_begin | (solid.subtracted ? CAPLET_CSG_SUBTRACTED : 0u);
+  return out;
+}
+
+void write_matrix(float* rows, const Matrix& m) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
+}
+
+/// Operands that one call of a span function answers.
+struct Group {
+  std::vector<std::size_t> operands;
+};
+
+std::vector<Group> grouped(const std::vector<Operand>& operands) {
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    const auto fits = [&](const Group& group) {
+      const Operand& first = operands[group.operands[0]];
+      return group.operands.size() < lanes_per_group && first.flat.shape == operands[i].flat.shape &&
+             first.placed == operands[i].placed && first.csg_from_object == operands[i].csg_from_object;
+    };
+    const auto found = std::find_if(groups.begin(), groups.end(), fits);
+    if (found != groups.end())
+      found->operands.push_back(i);
+    else
+      groups.push_back({{i}});
+  }
+  return groups;
+}
+
+float bits(std::size_t number) { return std::bit_cast<float>(narrow<std::uint32_t>(number)); }
+
+std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
+
+/// Appends `count` zeros, whole rows, and returns where they begin.
+std::size_t append_rows(std::vector<float>& leaves, std::size_t count) {
+  const std::size_t begin = round_up(leaves.size());
+  leaves.resize(begin + round_up(count));
+  return begin;
+}
+
+void write_group(const Group& group, const std::vector<Operand>& operands, std::size_t first, std::size_t row,
+                 std::vector<float>& leaves) {
+  const Operand& one = operands[group.operands[0]];
+  const std::uint32_t rows = rows_of[one.flat.shape];
+  const std::size_t block = append_rows(leaves, rows * 8);
+  for (std::size_t lane = 0; lane < lanes_per_group; ++lane) {
+    // Lanes without an operand repeat the first.
+    const Operand& operand = operands[group.operands[lane < group.operands.size() ? lane : 0]];
+    for (std::size_t j = 0; j + 1 < rows; ++j) {
+      leaves[block + 8 * (j + 1) + lane] = operand.flat.data[j];
+      leaves[block + 8 * (j + 1) + lanes_per_group + lane] = operand.grown.data[j];
+    }
+  }
+  std::size_t transform = CAPLET_NONE;
+  if (one.placed) {
+    transform = append_rows(leaves, 24);
+    write_matrix(&leaves[transform], glm::inverse(one.csg_from_object));
+    write_matrix(&leaves[transform + 12], one.csg_from_object);
+  }
+  const std::size_t values[] = {one.flat.shape, block, group.operands.size(), first, transform};
+  for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = bits(values[k]);
+}
+
+}  // namespace
+
+FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<float>& leaves) {
+  Flattening flattening;
+  flattening.add(csg, m, false);
+
+  Shape whole;
+  whole.geometry = csg;
+  whole.world_from_object = m;
+  Bounds box = bounds_of(whole);
+  for (int k = 0; k < 3; ++k)  // an intersection of boxes that do not meet: nothing, somewhere
+    if (!(box.min[k] <= box.max[k])) box.min[k] = box.max[k] = 0.5 * (box.min[k] + box.max[k]);
+  dvec3 center;
+  for (int k = 0; k < 3; ++k) center[k] = static_cast<float>(0.5 * (box.min[k] + box.max[k]));
+  // Rays that begin on the surface begin within; 2^-16 is more than any rounding on the way.
+  const double radius = glm::length(glm::max(box.max - center, center - box.min)) * (1 + 0x1p-16);
+
+  std::vector<Operand> operands;
+  double error = 0;
+  for (const Solid& solid : flattening.solids) {
+    operands.push_back(make_operand(solid, center, radius, leaves));
+    error = std::max(error, operands.back().error);
+  }
+  const std::vector<Group> groups = grouped(operands);
+  std::vector<std::uint32_t> number(operands.size());
+  std::vector<std::uint32_t> surfaces;
+  for (const Group& group : groups)
+    for (const std::size_t i : group.operands) {
+      number[i] = narrow<std::uint32_t>(surfaces.size());
+      surfaces.push_back(operands[i].surface);
+    }
+
+  const std::size_t begin =
+      append_rows(leaves, 8 * (1 + groups.size()) + round_up(surfaces.size()) + round_up(flattening.program.size()));
+  for (int k = 0; k < 3; ++k) leaves[begin + static_cast<std::size_t>(k)] = static_cast<float>(center[k]);
+  leaves[begin + 3] = std::nextafter(static_cast<float>(radius), INFINITY);
+  leaves[begin + 4] = bits(groups.size());
+  leaves[begin + 5] = bits(flattening.program.size());
+  leaves[begin + 6] = bits(operands.size());
+  std::size_t at = begin + 8, first = 0;
+  for (const Group& group : groups) {
+    write_group(group, operands, first, at, leaves);
+    first += group.operands.size();
+    at += 8;
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i) leaves[at + i] = bits(surfaces[i]);
+  at += round_up(surfaces.size());
+  for (std::size_t i = 0; i < flattening.program.size(); ++i) {
+    const std::uint32_t code = flattening.program[i];
+    leaves[at + i] = bits(code < CAPLET_CSG_UNION ? number[code] : code);
+  }
+
+  FlatPrimitive p{shape_csg, 0, {}};
+  p.data[0] = bits(begin);
+  put(p, 3, box.min - error);
+  put(p, 6, box.max + error);
+  return p;
+}
+
+}  // namespace caplet

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/flat_shapes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <numbers>
+
+#include "base/check.h"
+#include "shared/kinds.h"
+
+namespace caplet {
+
+namespace {
+
+using Matrix = glm::dmat4;
+using glm::dvec3;
+
+constexpr double pi = std::numbers::pi;
+
+/// The common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise 0.
+double disk_scale(const Matrix& m) {
+  const glm::dmat3 a(m);
+  const double x = glm::length(a[0]), y = glm::length(a[1]), s = (x + y) / 2;
+  return std::abs(x - y) <= 2e-6 * s && std::abs(glm::dot(a[0], a[1])) <= 2e-6 * s * s ? s : 0;
+}
+
+/// Boxes along the axes stay so under scales and moves; their surfaces keep their numbers under positive ones.
+bool keeps_boxes(const Matrix& m) {
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (r == c ? !(m[c][r] > 0) : m[c][r] != 0) return false;
+  return true;
+}
+
+FlatPrimitive make(int shape) { return FlatPrimitive{static_cast<std::uint32_t>(shape), 0, {}}; }
+
+float cap_number(Cap cap) { return cap == Cap::flat ? CAPLET_CAP_FLAT : cap == Cap::round ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN; }
+
+FlatPrimitive of_quadric(int shape, double radius, double z_min, double z_max, double phi_max) {
+  FlatPrimitive p = make(shape);
+  const double values[] = {radius, z_min, z_max, phi_max};
+  std::transform(std::begin(values), std::end(values), p.data, [](double x) { return static_cast<float>(x); });
+  return p;
+}
+
+/// Through memory: GCC 12 drops the rounding of a double to float and back where it vectorises it.
+double rounded_to_float(double x) {
+  volatile float rounded = static_cast<float>(x);
+  return rounded;
+}
+
+double length3(const float* a, const float* b) { return glm::length(dvec3(b[0], b[1], b[2]) - dvec3(a[0], a[1], a[2])); }
+
+struct BakesOf {
+  const Matrix& m;
+
+  bool operator()(const TriangleMeshShape&) const { return true; }
+  bool operator()(const BilinearMeshShape&) const { return true; }
+  bool operator()(const PolyhedronShape&) const { return true; }
+  bool operator()(const CsgShape&) const { return true; }
+  bool operator()(const DiskShape& disk) const { return disk.is_whole() ? disk_scale(m) > 0 : m == Matrix(1); }
+  bool operator()(const BoxShape&) const { return keeps_boxes(m); }
+  bool operator()(const PartialSphereShape&) const { return m == Matrix(1); }
+  bool operator()(const OpenCylinderShape&) const { return m == Matrix(1); }
+  bool operator()(const SphereShape&) const { return similarity_scale(m) > 0; }
+  bool operator()(const CapsulesShape&) const { return similarity_scale(m) > 0; }
+  bool operator()(const CylinderShape&) const { return similarity_scale(m) > 0; }
+  bool operator()(const ConeShape&) const { return similarity_scale(m) > 0; }
+};
+
+}  // namespace
+
+dvec3 apply_point(const Matrix& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
+
+void put(FlatPrimitive& p, int at, const dvec3& v) {
+  for (int k = 0; k < 3; ++k) p.data[at + k] = static_cast<float>(v[k]);
+}
+
+double similarity_scale(const Matrix& m) {
+  const glm::dmat3 a(m);
+  const double x = glm::length(a[0]), y = glm::length(a[1]), z = glm::length(a[2]);
+  const double s = (x + y + z) / 3;
+  // Scene files carry rotations to six or seven digits: an angle error of 1e-6 moves a surface by less than a float's rounding of
+  // it.
+  const double slack = 2e-6 * s;
+  const bool equal = std::abs(x - s) <= slack && std::abs(y - s) <= slack && std::abs(z - s) <= slack;
+  const bool orthogonal = std::abs(glm::dot(a[0], a[1])) <= slack * s && std::abs(glm::dot(a[0], a[2])) <= slack * s &&
+                          std::abs(glm::dot(a[1], a[2])) <= slack * s;
+  return equal && orthogonal ? s : 0;
+}
+
+bool bakes(const Shape& shape) { return std::visit(BakesOf{shape.world_from_object}, shape.geometry); }
+
+FlatPrimitive flat_primitive(const SphereShape& sphere, const Matrix& m, std::vector<float>&) {
+  FlatPrimitive p = make(shape_sphere);
+  put(p, 0, apply_point(m, dvec3(0)));
+  p.data[3] = static_cast<float>(sphere.radius * similarity_scale(m));
+  return p;
+}
+
+FlatPrimitive flat_primitive(const DiskShape& disk, const Matrix& m, std::vector<float>&) {
+  if (!disk.is_whole()) return of_quadric(shape_partial_disk, disk.height, disk.radius, disk.inner_radius, disk.phi_max);
+  FlatPrimitive p = make(shape_disk);
+  put(p, 0, apply_point(m, dvec3(0, 0, disk.height)));
+  put(p, 3, glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1)));
+  p.data[6] = static_cast<float>(disk.radius * disk_scale(m));
+  return p;
+}
+
+FlatPrimitive flat_primitive(const CylinderShape& cylinder, const Matrix& m, std::vector<float>&) {
+  FlatPrimitive p = make(shape_cylinder);
+  put(p, 0, apply_point(m, cylinder.p0));
+  put(p, 3, apply_point(m, cylinder.p1));
+  p.data[6] = static_cast<float>(cylinder.radius * similarity_scale(m));
+  p.data[7] = cap_number(cylinder.caps[0]);
+  p.data[8] = cap_number(cylinder.caps[1]);
+  return p;
+}
+
+FlatPrimitive flat_primitive(const ConeShape& cone, const Matrix& m, std::vector<float>&) {
+  FlatPrimitive p = make(shape_cone);
+  const double scale = similarity_scale(m);
+  put(p, 0, apply_point(m, cone.p0));
+  put(p, 3, apply_point(m, cone.p1));
+  p.data[6] = static_cast<float>(cone.radius[0] * scale);
+  p.data[7] = static_cast<float>(cone.radius[1] * scale);
+  p.data[8] = cap_number(cone.caps[0]);
+  p.data[9] = cap_number(cone.caps[1]);
+  return p;
+}
+
+FlatPrimitive flat_primitive(const BoxShape& box, const Matrix& m, std::vector<float>&) {
+  FlatPrimitive p = make(shape_box);
+  put(p, 0, apply_point(m, glm::min(box.p0, box.p1)));
+  put(p, 3, apply_point(m, glm::max(box.p0, box.p1)));
+  return p;
+}
+
+FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m, std::vector<float>& leaves) {
+  // Planes are kept relative to the centre of the bounds, so that their rounding goes with the solid's size.
+  const std::vector<dvec3> corners = polyhedron_corners(polyhedron);
+  CHECK_LT_(std::size_t(0), corners.size());
+  Bounds box;
+  for (const dvec3& corner : corners) box.extend(apply_point(m, corner));
+  dvec3 center;
+  for (int k = 0; k < 3; ++k) center[k] = rounded_to_float(0.5 * (box.min[k] + box.max[k]));
+  const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(m)));
+  const std::size_t count = polyhedron.points.size(), begin = (leaves.size() + 7) / 8 * 8;
+  leaves.resize(begin + 8 + (4 * count + 7) / 8 * 8);
+  float* out = &leaves[begin];
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(center[k]);
+  out[3] = std::bit_cast<float>(narrow<std::uint32_t>(count));
+  double radius = 0;
+  for (const dvec3& corner : corners) radius = std::max(radius, glm::length(apply_point(m, corner) - center));
+  out[4] = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < count; ++i) {
+    const dvec3 n = glm::normalize(normal_matrix * polyhedron.normals[i]);
+    for (int k = 0; k < 3; ++k) out[8 + 4 * i + static_cast<std::size_t>(k)] = static_cast<float>(n[k]);
+    out[8 + 4 * i + 3] = static_cast<float>(glm::dot(n, apply_point(m, polyhedron.points[i]) - center));
+  }
+  FlatPrimitive p = make(shape_polyhedron);
+  p.data[0] = std::bit_cast<float>(narrow<std::uint32_t>(begin));
+  put(p, 3, box.min);
+  put(p, 6, box.max);
+  return p;
+}
+
+FlatPrimitive flat_primitive(const PartialSphereShape& s, const Matrix&, std::vector<float>&) {
+  return of_quadric(shape_partial_sphere, s.radius, s.z_min, s.z_max, s.phi_max);
+}
+
+FlatPrimitive flat_primitive(const OpenCylinderShape& c, const Matrix&, std::vector<float>&) {
+  return of_quadric(shape_open_cylinder, c.radius, c.z_min, c.z_max, c.phi_max);
+}
+
+namespace {
+
+struct End {
+  double radius;
+  float cap;
+};
+
+/// What a flat end adds. Round ones have no disk, open ones none that is seen.
+double disk_area(const End& end) { return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0; }
+
+/// The hull of a disk (or the rim of an open end) of radius `rim` and a ball at a distance `length` along its axis: tangents from
+/// the rim touch the ball at `angle` to either side of the rim's direction, as seen from the centre.
+double disk_and_ball_area(const End& disk, double length, double ball) {
+  const double rim = disk.radius, apart = std::hypot(rim, length);
+  if (apart <= ball) return 4 * pi * ball * ball;  // the ball holds the disk
+  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart, s = tangent / apart;
+  // Height and distance from the axis of the unit normals where the tangents touch.
+  const double front = (-length * c + rim * s) / apart, front_off = (rim * c + length * s) / apart;
+  double area = pi * (rim + ball * front_off) * tangent + 2 * pi * ball * ball * (1 - front);
+  if (length >= ball) return area + disk_area(disk);
+  // The ball reaches through the disk, which is inside then; behind it the hull has a second cone.
+  const double back = (-length * c - rim * s) / apart, back_off = (rim * c - length * s) / apart;
+  return area + pi * (rim + ball * back_off) * tangent + 2 * pi * ball * ball * (1 + back);
+}
+
+/// The hull of two balls: both caps, and the cone between the circles where it touches them. `s` and `c`: sine and cosine of its
+/// half angle.
+double two_balls_area(double length, double r0, double r1) {
+  const double taper = r0 - r1;
+  if (length <= std::abs(taper)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
+  const double s = taper / length, c = std::sqrt(1 - s * s);
+  return 2 * pi * (r0 * r0 * (1 + s) + r1 * r1 * (1 - s)) + pi * (r0 + r1) * c * length * c;
+}
+
+/// Cylinders and cones.
+double hull_area(double length, const End& end0, const End& end1) {
+  const bool round0 = end0.cap == CAPLET_CAP_ROUND, round1 = end1.cap == CAPLET_CAP_ROUND;
+  if (round0 && round1) return two_balls_area(length, end0.radius, end1.radius);
+  if (round0) return disk_and_ball_area(end1, length, end0.radius);
+  if (round1) return disk_and_ball_area(end0, length, end1.radius);
+  return pi * (end0.radius + end1.radius) * std::hypot(length, end0.radius - end1.radius) + disk_area(end0) + disk_area(end1);
+}
+
+double polygon_area(const std::vector<dvec3>& corners) {
+  dvec3 sum(0);
+  for (std::size_t i = 2; i < corners.size(); ++i) sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+  return 0.5 * glm::length(sum);
+}
+
+double polyhedron_area(const float* head) {
+  PolyhedronShape planes;
+  const auto count = std::bit_cast<std::uint32_t>(head[3]);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float* plane = head + 8 + 4 * i;
+    planes.normals.emplace_back(plane[0], plane[1], plane[2]);
+    planes.points.push_back(double(plane[3]) * planes.normals.back());
+  }
+  double area = 0;
+  for (const auto& face : polyhedron_faces(planes)) area += polygon_area(face);
+  return area;
+}
+
+/// dp/du x dp/dv is n0 + u n1 + v n2: its length, summed by Simpson's rule over 32 x 32 cells. Relative error 1e-8 where it
+/// vanishes nowhere near the patch, 1e-3 where the patch is folded or has a corner of 180 degrees.
+double bilinear_area(const float* d) {
+  const dvec3 p00(d[0], d[1], d[2]), p10(d[3], d[4], d[5]), p01(d[6], d[7], d[8]), p11(d[9], d[10], d[11]);
+  const dvec3 u = p10 - p00, v = p01 - p00, twist = p11 - p01 - u;
+  const dvec3 n0 = glm::cross(u, v), n1 = glm::cross(u, twist), n2 = glm::cross(twist, v);
+  constexpr int n = 64;
+  const auto weight = [](int i) { return i == 0 || i == n ? 1.0 : i % 2 == 0 ? 2.0 : 4.0; };
+  double sum = 0;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) sum += weight(i) * weight(j) * glm::length(n0 + (double(i) / n) * n1 + (double(j) / n) * n2);
+  return sum / (9.0 * n * n);
+}
+
+}  // namespace
+
+double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves) {
+  const float* d = p.data;
+  switch (p.shape) {
+    case shape_sphere:
+      return 4 * pi * d[3] * d[3];
+    case shape_capsule:
+      return 2 * pi * d[6] * length3(d, d + 3) + 4 * pi * d[6] * d[6];
+    case shape_tapered_capsule:
+      return two_balls_area(length3(d, d + 3), d[6], d[7]);
+    case shape_cylinder:
+      return hull_area(length3(d, d + 3), {d[6], d[7]}, {d[6], d[8]});
+    case shape_cone:
+      return hull_area(length3(d, d + 3), {d[6], d[8]}, {d[7], d[9]});
+    case shape_polyhedron:
+      return polyhedron_area(&leaves[std::bit_cast<std::uint32_t>(d[0])]);
+    case shape_bilinear:
+      return bilinear_area(d);
+    case shape_triangle: {
+      const dvec3 a(d[0], d[1], d[2]), b(d[3], d[4], d[5]), c(d[6], d[7], d[8]);
+      return 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    case shape_disk:
+      return pi * d[6] * d[6];
+    case shape_partial_sphere:
+      return d[3] * d[0] * (std::min(d[2], d[0]) - std::max(d[1], -d[0]));
+    case shape_open_cylinder:
+      return d[3] * d[0] * (d[2] - d[1]);
+    case shape_partial_disk:
+      return 0.5 * d[3] * (d[1] * d[1] - d[2] * d[2]);
+    case shape_box: {
+      const double x = d[3] - d[0], y = d[4] - d[1], z = d[5] - d[2];
+      return 2 * (x * y + y * z + z * x);
+    }
+    default:
+      return 0;
+  }
+}
+
+}  // namespace caplet

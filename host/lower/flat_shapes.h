@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Shapes of the scene -> what their kernels read (shared/shapes.def), and which transforms that form can hold.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <vector>
+
+#include "lower/encode.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// The common scale when `m` keeps angles (a rotation or reflection times a factor), within float rounding; otherwise 0.
+double similarity_scale(const glm::dmat4& m);
+
+/// True when the shape's kernel form can hold its transform; otherwise it becomes an instance.
+bool bakes(const Shape& shape);
+
+glm::dvec3 apply_point(const glm::dmat4& m, const glm::dvec3& p);
+
+/// Writes v to p.data[at .. at + 2].
+void put(FlatPrimitive& p, int at, const glm::dvec3& v);
+
+/// Shapes of one primitive under `m` (which bakes); id is left 0. Data of no fixed size are appended to `leaves`.
+FlatPrimitive flat_primitive(const SphereShape& sphere, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const DiskShape& disk, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const CylinderShape& cylinder, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const ConeShape& cone, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const BoxShape& box, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const PartialSphereShape& sphere, const glm::dmat4& m, std::vector<float>& leaves);
+FlatPrimitive flat_primitive(const OpenCylinderShape& cylinder, const glm::dmat4& m, std::vector<float>& leaves);
+/// Any m: operands hold their own transforms. In csg.cpp.
+FlatPrimitive flat_primitive(const CsgShape& csg, const glm::dmat4& m, std::vector<float>& leaves);
+
+/// Surface area of a primitive in its tree's space, without open ends; of csg shapes 0. Bilinear patches by a sum (error 1e-8 of
+/// it for patches without folds), all others in closed form.
+double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
+
+}  // namespace caplet

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Bilinear patches: the point nearest to x by a search over the rulings of either family, each a segment.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "parts.h"
+
+namespace caplet::reference {
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+struct Nearest {
+  double distance = HUGE_VAL;
+  dvec2 uv{0};
+};
+
+Nearest nearest_on_ruling(const Bilinear& b, double u, const dvec3& x) {
+  const dvec3 a = b.p00 + u * (b.p10 - b.p00), c = b.p01 + u * (b.p11 - b.p01), ruling = c - a;
+  const double squared = glm::dot(ruling, ruling);
+  const double v = squared > 0 ? std::clamp(glm::dot(x - a, ruling) / squared, 0.0, 1.0) : 0.0;
+  return {glm::length(x - (a + v * ruling)), {u, v}};
+}
+
+Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
+  // The squared distance to the ruling's line is a rational function of u of low degree: it has few minima. Where the ruling's
+  // ends clamp, two may lie close together: 256 samples, and the other family, part them.
+  constexpr int samples = 256;
+  double at[samples + 1];
+  for (int i = 0; i <= samples; ++i) at[i] = nearest_on_ruling(b, double(i) / samples, x).distance;
+  Nearest best;
+  constexpr double golden = 0.6180339887498949;
+  for (int i = 0; i <= samples; ++i) {
+    if ((i > 0 && at[i - 1] < at[i]) || (i < samples && at[i + 1] < at[i])) continue;
+    double low = std::max(0.0, (i - 1.0) / samples), high = std::min(1.0, (i + 1.0) / samples);
+    while (high - low > 1e-16) {
+      const double left = high - golden * (high - low), right = low + golden * (high - low);
+      if (left <= low || right >= high) break;
+      if (nearest_on_ruling(b, left, x).distance <= nearest_on_ruling(b, right, x).distance)
+        high = right;
+      else
+        low = left;
+    }
+    for (const double u : {low, high, 0.5 * (low + high)}) {
+      const Nearest found = nearest_on_ruling(b, u, x);
+      if (found.distance < best.distance) best = found;
+    }
+  }
+  return best;
+}
+
+Nearest nearest_of(const Bilinear& b, const dvec3& x) {
+  const Nearest by_u = nearest_by_u(b, x);
+  const Nearest by_v = nearest_by_u({b.p00, b.p01, b.p10, b.p11}, x);
+  return by_u.distance <= by_v.distance ? by_u : Nearest{by_v.distance, {by_v.uv.y, by_v.uv.x}};
+}
+
+}  // namespace
+
+double value_of(const Bilinear& b, const dvec3& x) { return nearest_of(b, x).distance; }
+
+dvec3 normal_of(const Bilinear& b, const dvec3& x) {
+  const dvec2 uv = nearest_of(b, x).uv;
+  const dvec3 du = (1 - uv.y) * (b.p10 - b.p00) + uv.y * (b.p11 - b.p01);
+  const dvec3 dv = (1 - uv.x) * (b.p01 - b.p00) + uv.x * (b.p11 - b.p10);
+  return glm::normalize(glm::cross(du, dv));
+}
+
+}  // namespace caplet::reference

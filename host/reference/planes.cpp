@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Solids between planes.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "parts.h"
+
+namespace caplet::reference {
+
+namespace {
+
+using glm::dvec3;
+
+// The greatest of the planes' distances, which plane, and how much less the others are: going d moves each by no more than d.
+struct Greatest {
+  double value = -HUGE_VAL, second = -HUGE_VAL;
+  int plane = 0;
+  void add(double distance, int number) {
+    if (distance > value) {
+      second = value;
+      value = distance;
+      plane = number;
+    } else {
+      second = std::max(second, distance);
+    }
+  }
+};
+
+Greatest greatest_of(const Box& b, const dvec3& x) {
+  Greatest out;
+  for (int k = 0; k < 3; ++k) {
+    out.add(b.min[k] - x[k], 2 * k);
+    out.add(x[k] - b.max[k], 2 * k + 1);
+  }
+  return out;
+}
+
+Greatest greatest_of(const Polyhedron& p, const dvec3& x) {
+  Greatest out;
+  const dvec3 w = x - p.center;
+  for (std::size_t i = 0; i < p.normals.size(); ++i) out.add(glm::dot(p.normals[i], w) - p.offsets[i], static_cast<int>(i));
+  return out;
+}
+
+}  // namespace
+
+double value_of(const Box& b, const dvec3& x) { return greatest_of(b, x).value; }
+double value_of(const Polyhedron& p, const dvec3& x) { return greatest_of(p, x).value; }
+
+SurfaceAt surface_of(const Box& b, const dvec3& x) {
+  const Greatest g = greatest_of(b, x);
+  return {g.plane, 0.5 * (g.value - g.second)};
+}
+SurfaceAt surface_of(const Polyhedron& p, const dvec3& x) {
+  const Greatest g = greatest_of(p, x);
+  return {g.plane, 0.5 * (g.value - g.second)};
+}
+
+double distance_from(const Box& b, const dvec3& x, int surface) {
+  const int axis = surface / 2;
+  return std::abs(x[axis] - (surface % 2 == 0 ? b.min[axis] : b.max[axis]));
+}
+double distance_from(const Polyhedron& p, const dvec3& x, int surface) {
+  const auto i = static_cast<std::size_t>(surface);
+  return std::abs(glm::dot(p.normals[i], x - p.center) - p.offsets[i]);
+}
+
+Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, std::span<const double> offsets) {
+  Polyhedron out;
+  out.center = center;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const double size = glm::length(normals[i]);
+    out.normals.push_back(normals[i] / size);
+    out.offsets.push_back(offsets[i] / size);
+  }
+  // Corners are the ends of edges; an edge is what the other planes leave of the line of two of them.
+  const std::size_t n = out.normals.size();
+  dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const dvec3 a = out.normals[i], b = out.normals[j], along = glm::cross(a, b);
+      const double sine2 = glm::dot(along, along);
+      if (sine2 < 1e-24) continue;
+      const dvec3 on = (out.offsets[i] * glm::cross(b, along) + out.offsets[j] * glm::cross(along, a)) / sine2;
+      double from = -HUGE_VAL, to = HUGE_VAL;
+      for (std::size_t k = 0; k < n; ++k) {
+        if (k == i || k == j) continue;
+        const double slope = glm::dot(out.normals[k], along), height = glm::dot(out.normals[k], on) - out.offsets[k];
+        if (std::abs(slope) < 1e-14) {
+          if (height > 1e-9 * glm::length(on)) to = -HUGE_VAL;
+        } else if (slope > 0) {
+          to = std::min(to, -height / slope);
+        } else {
+          from = std::max(from, -height / slope);
+        }
+      }
+      const double slack = 1e-9 * (std::abs(from) + std::abs(to));
+      if (!(from <= to + slack) || !std::isfinite(from) || !std::isfinite(to)) continue;
+      for (const double s : {from, to}) out.corners.push_back(center + on + s * along);
+    }
+  for (const dvec3& corner : out.corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  out.ball_center = 0.5 * (low + high);
+  for (const dvec3& corner : out.corners) out.ball_radius = std::max(out.ball_radius, glm::length(corner - out.ball_center));
+  out.ball_radius *= 1 + 1e-6;
+  return out;
+}
+
+}  // namespace caplet::reference

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The hull of two ends through its support function h(n) = max over both ends: the signed distance of x is the greatest
+// n . x - h(n) over unit normals n (exact in- and outside for any convex set). All is symmetric around the axis, so n and x lie
+// in one half plane: n = (along the axis, outward). Each end's part of h makes n . x - h(n) a single sinusoid; its greatest value
+// is at the peak of one of them, where both ends are touched, or along the axis.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "parts.h"
+
+namespace caplet::reference {
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+// Support of an end whose centre lies `along` the axis.
+double support(const Spool::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
+
+struct Profile {
+  double along, across;
+};
+Profile profile_of(const Spool& s, const dvec3& x) {
+  const dvec3 w = x - s.p0;
+  const double along = glm::dot(w, s.axis);
+  return {along, glm::length(w - along * s.axis)};
+}
+
+struct Values {
+  double side = -HUGE_VAL, end[2] = {-HUGE_VAL, -HUGE_VAL};
+  double greatest() const { return std::max({side, end[0], end[1]}); }
+};
+
+Values values_at(const Spool& s, const Profile& x) {
+  Values out;
+  // `which`: the end whose normal n is; in: the one it is where both are touched.
+  const auto value_along = [&](const dvec2& n, std::size_t* which) {
+    const double h0 = support(s.ends[0], 0, n), h1 = support(s.ends[1], s.length, n);
+    if (which) *which = (*which == 0 ? h1 > h0 : h1 >= h0) ? 1 : 0;
+    return n.x * x.along + n.y * x.across - std::max(h0, h1);
+  };
+  for (int i = 0; i < s.side_count; ++i)
+    out.side = std::max(out.side, value_along(s.side_normals[static_cast<std::size_t>(i)], nullptr));
+  const auto try_end = [&](const dvec2& n, std::size_t which) {
+    const double value = value_along(n, &which);
+    out.end[which] = std::max(out.end[which], value);
+  };
+  try_end({-1, 0}, 0);
+  try_end({1, 0}, 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const dvec2 peak{x.along - (i == 0 ? 0 : s.length), x.across - (s.ends[i].round ? 0 : s.ends[i].radius)};
+    const double size = glm::length(peak);
+    if (size > 0 && peak.y >= 0) try_end(peak / size, i);
+    if (size == 0) try_end({0, 1}, i);
+  }
+  return out;
+}
+
+// Where the side's plane touches an end.
+dvec2 contact(const Spool& s, std::size_t end, const dvec2& n) {
+  const dvec2 center{end == 0 ? 0 : s.length, 0};
+  return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
+}
+
+double distance2(const dvec2& x, const dvec2& a, const dvec2& b) {
+  return distance_to_segment(dvec3(x, 0), dvec3(a, 0), dvec3(b, 0));
+}
+
+}  // namespace
+
+dvec3 any_perpendicular(const dvec3& n) {
+  return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+}
+
+Spool make_spool(const dvec3& p0, const dvec3& p1, const Spool::End& end0, const Spool::End& end1) {
+  Spool s;
+  s.p0 = p0;
+  s.p1 = p1;
+  s.ends = {end0, end1};
+  s.length = glm::length(p1 - p0);
+  s.axis = s.length > 0 ? (p1 - p0) / s.length : dvec3(0, 0, 1);
+  // Both ends are touched where their supports are equal. The difference is a sinusoid of the normal's angle plus a constant:
+  // monotone between its extremes.
+  const auto normal = [](double angle) { return dvec2(std::cos(angle), std::max(0.0, std::sin(angle))); };
+  const auto difference = [&](double angle) { return support(end0, 0, normal(angle)) - support(end1, s.length, normal(angle)); };
+  const double d0 = end0.round ? 0 : end0.radius, d1 = end1.round ? 0 : end1.radius;
+  constexpr double pi = full_turn / 2;
+  double extreme = std::atan2(d1 - d0, s.length);
+  if (extreme < 0) extreme += pi;
+  const double stations[3] = {0, extreme, pi};
+  for (int i = 0; i < 2; ++i) {
+    double low = stations[i], high = stations[i + 1];
+    const bool low_positive = difference(low) > 0, high_positive = difference(high) > 0;
+    if (low_positive == high_positive || !(low < high)) continue;
+    for (;;) {
+      const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) break;
+      ((difference(middle) > 0) == low_positive ? low : high) = middle;
+    }
+    s.side_normals[static_cast<std::size_t>(s.side_count++)] = normal(0.5 * (low + high));
+  }
+  return s;
+}
+
+double hull_value(const Spool& s, const dvec3& x) { return values_at(s, profile_of(s, x)).greatest(); }
+
+double value_of(const Spool& s, const dvec3& x) {
+  const Profile profile = profile_of(s, x);
+  const Values values = values_at(s, profile);
+  const double signed_distance = values.greatest();
+  if (!s.ends[0].open && !s.ends[1].open) return signed_distance;
+  // The distance to the surfaces that are there, each by its own line in the half plane.
+  const dvec2 p{profile.along, profile.across};
+  double least = HUGE_VAL;
+  for (int i = 0; i < s.side_count; ++i) {
+    const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
+    least = std::min(least, distance2(p, contact(s, 0, n), contact(s, 1, n)));
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (s.ends[i].open) continue;
+    const dvec2 center{i == 0 ? 0 : s.length, 0};
+    if (!s.ends[i].round) {
+      least = std::min(least, distance2(p, center, center + dvec2(0, s.ends[i].radius)));
+      continue;
+    }
+    const dvec2 w = p - center;
+    const double size = glm::length(w);
+    const dvec2 n = size > 0 ? w / size : dvec2(i == 0 ? -1 : 1, 0);
+    if (support(s.ends[i], center.x, n) >= support(s.ends[1 - i], i == 0 ? s.length : 0, n))
+      least = std::min(least, std::abs(size - s.ends[i].radius));
+  }
+  return least;
+}
+
+SurfaceAt surface_of(const Spool& s, const dvec3& x) {
+  const Profile profile = profile_of(s, x);
+  const Values values = values_at(s, profile);
+  SurfaceAt out;
+  const double greatest = values.greatest();
+  out.surface = values.side == greatest ? 0 : values.end[0] == greatest ? 1 : 2;
+  out.margin = HUGE_VAL;
+  // Surfaces change at the circles where the side touches the ends.
+  for (int i = 0; i < s.side_count; ++i)
+    for (std::size_t end = 0; end < 2; ++end)
+      out.margin = std::min(out.margin, glm::length(dvec2(profile.along, profile.across) -
+                                                    contact(s, end, s.side_normals[static_cast<std::size_t>(i)])));
+  return out;
+}
+
+double distance_from(const Spool& s, const dvec3& x, int surface) {
+  const Profile profile = profile_of(s, x);
+  const dvec2 p{profile.along, profile.across};
+  double least = HUGE_VAL;
+  if (surface == 0) {
+    for (int i = 0; i < s.side_count; ++i) {
+      const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
+      least = std::min(least, std::abs(glm::dot(n, p - contact(s, 0, n))));
+    }
+    return least;
+  }
+  const auto end = static_cast<std::size_t>(surface - 1);
+  const dvec2 center{end == 0 ? 0 : s.length, 0};
+  if (s.ends[end].round) return std::abs(glm::length(p - center) - s.ends[end].radius);
+  return distance2(p, center, center + dvec2(0, s.ends[end].radius));
+}
+
+std::vector<Curve> boundary_of(const Spool& s) {
+  std::vector<Curve> out;
+  const dvec3 u = any_perpendicular(s.axis), v = glm::cross(s.axis, u);
+  for (std::size_t end = 0; end < 2; ++end)
+    for (int i = 0; i < s.side_count && s.ends[end].open; ++i) {
+      const dvec2 rim = contact(s, end, s.side_normals[static_cast<std::size_t>(i)]);
+      out.push_back({Curve::Kind::arc, s.p0 + rim.x * s.axis, u, v, rim.y, 0, full_turn});
+    }
+  return out;
+}
+
+}  // namespace caplet::reference

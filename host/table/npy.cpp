@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "table/npy.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "base/check.h"
+
+namespace caplet {
+
+static_assert(std::endian::native == std::endian::little, "elements are written as they lie in memory");
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view magic = "\x93NUMPY";
+constexpr std::size_t preamble = 10;  // of version 1.0: magic, version, length of the header
+constexpr std::size_t alignment = 64;
+constexpr std::size_t longest_header = 1 << 16;
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& message) {
+  throw InputError(SourceLocation{path.string()}, message);
+}
+
+/// The header's text: a Python dictionary of strings, booleans, tuples of whole numbers and, in types, lists.
+class HeaderParser {
+ public:
+  explicit HeaderParser(std::string_view text) : text_(text) {}
+
+  std::optional<NpyHeader> parse() {
+    NpyHeader header;
+    bool has_type = false, has_order = false, has_shape = false;
+    if (!take('{')) return std::nullopt;
+    while (!take('}')) {
+      const auto key = string();
+      if (!key || !take(':')) return std::nullopt;
+      if (*key == "descr") {
+        const auto type = descr();
+        if (!type) return std::nullopt;
+        header.type = *type;
+        has_type = true;
+      } else if (*key == "fortran_order") {
+        const auto order = boolean();
+        if (!order) return std::nullopt;
+        header.fortran_order = *order;
+        has_order = true;
+      } else if (*key == "shape") {
+        auto shape = tuple();
+        if (!shape) return std::nullopt;
+        header.shape = std::move(*shape);
+        has_shape = true;
+      } else {
+        return std::nullopt;
+      }
+      if (!take(',') && peek() != '}') return std::nullopt;
+    }
+    skip_blanks();
+    if (!text_.empty() || !has_type || !has_order || !has_shape) return std::nullopt;
+    return header;
+  }
+
+ private:
+  void skip_blanks() {
+    while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\n' || text_.front() == '\t')) text_.remove_prefix(1);
+  }
+  char peek() {
+    skip_blanks();
+    return text_.empty() ? '\0' : text_.front();
+  }
+  bool take(char c) {
+    if (peek() != c) return false;
+    text_.remove_prefix(1);
+    return true;
+  }
+  bool take_word(std::string_view word) {
+    skip_blanks();
+    if (!text_.starts_with(word)) return false;
+    text_.remove_prefix(word.size());
+    return true;
+  }
+  std::optional<std::string> string() {
+    const char quote = peek();
+    if (quote != '\'' && quote != '"') return std::nullopt;
+    const std::size_t end = text_.find(quote, 1);
+    if (end == std::string_view::npos) return std::nullopt;
+    std::string out(text_.substr(1, end - 1));
+    text_.remove_prefix(end + 1);
+    return out;
+  }
+  std::optional<bool> boolean() {
+    if (take_word("True")) return true;
+    if (take_word("False")) return false;
+    return std::nullopt;
+  }
+  std::optional<std::vector<std::uint64_t>> tuple() {
+    std::vector<std::uint64_t> out;
+    if (!take('(')) return std::nullopt;
+    while (!take(')')) {
+      skip_blanks();
+      std::uint64_t value = 0;
+      const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
+      if (error != std::errc()) return std::nullopt;
+      text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+      take('L');  // Python 2 wrote long numbers so
+      out.push_back(value);
+      if (!take(',') && peek() != ')') return std::nullopt;
+    }
+    return out;
+  }
+  std::optional<std::string> descr() {
+    if (peek() != '[') return string();
+    // Names may hold brackets: what is in quotes does not count.
+    int depth = 0;
+    char quote = '\0';
+    for (std::size_t i = 0; i < text_.size(); ++i) {
+      const char c = text_[i];
+      if (quote != '\0') {
+        if (c == quote) quote = '\0';
+      } else if (c == '\'' || c == '"') {
+        quote = c;
+      } else if (c == '[' || c == '(') {
+        ++depth;
+      } else if ((c == ']' || c == ')') && --depth == 0) {
+        std::string out(text_.substr(0, i + 1));
+        text_.remove_prefix(i + 1);
+        return out;
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::string_view text_;
+};
+
+/// Reads up to where the data starts.
+NpyHeader read_header(std::ifstream& file, const fs::path& path) {
+  const auto bytes = [&](std::size_t count) {
+    std::string out(count, '\0');
+    file.read(out.data(), static_cast<std::streamsize>(count));
+    if (static_cast<std::size_t>(file.gcount()) != count) refuse(path, "the file ends within its .npy header");
+    return out;
+  };
+  std::string start(magic.size(), '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (file.gcount() != static_cast<std::streamsize>(start.size()) || start != magic) refuse(path, "this is no .npy file");
+  const std::string version = bytes(2);
+  if (version[0] < 1 || version[0] > 3)
+    refuse(path, fmt::format(".npy version {} is not known", static_cast<int>(static_cast<unsigned char>(version[0]))));
+  std::size_t length = 0;
+  const std::string stored = bytes(version[0] == 1 ? 2 : 4);
+  for (std::size_t i = stored.size(); i-- > 0;) length = length << 8 | static_cast<unsigned char>(stored[i]);
+  if (length > longest_header) refuse(path, fmt::format("the .npy header claims {} bytes", length));
+  const auto header = HeaderParser(bytes(length)).parse();
+  if (!header) refuse(path, "the .npy header is malformed");
+  return *header;
+}
+
+std::string shape_text(const std::vector<std::uint64_t>& shape) {
+  return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+}
+
+/// Characters of UTF-8 text, one after the other; what is no UTF-8 is U+FFFD byte by byte.
+template <class Receive>
+void for_each_character(std::string_view text, const Receive& receive) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+    const unsigned first = byte(i);
+    const std::size_t more = first < 0x80 ? 0 : first >= 0xc2 && first < 0xe0 ? 1 : first >= 0xe0 && first < 0xf0 ? 2 : 3;
+    std::uint32_t character = more == 0 ? first : first & (0x3fu >> more);
+    bool good = (first < 0x80 || (first >= 0xc2 && first < 0xf5)) && i + more < text.size();
+    for (std::size_t k = 1; good && k <= more; ++k) {
+      good = (byte(i + k) & 0xc0u) == 0x80u;
+      character = character << 6 | (byte(i + k) & 0x3fu);
+    }
+    constexpr std::uint32_t least[] = {0, 0x80, 0x800, 0x10000};
+    good = good && character >= least[more] && character <= 0x10ffff && (character < 0xd800 || character > 0xdfff);
+    receive(good ? character : 0xfffdu);
+    i += good ? more + 1 : 1;
+  }
+}
+
+/// Of an element: the number in its type, in characters of four bytes for text.
+std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
+
+}  // namespace
+
+NpyReader::NpyReader(const fs::path& path, std::size_t columns) : path_(path) {
+  std::error_code error;
+  if (const fs::file_status status = fs::status(path, error); !fs::is_regular_file(status))
+    refuse(path, fs::is_directory(status) ? "cannot read: it is a folder"
+                 : fs::exists(status)     ? "cannot read: it is not a regular file"
+                                          : "cannot read: there is no such file");
+  file_.open(path, std::ios::binary);
+  if (!file_) refuse(path, "cannot read");
+  const NpyHeader header = read_header(file_, path);
+  if (header.type != "<f4" && header.type != "<f8")
+    refuse(path, fmt::format("the array's type is {}; '<f4' (float32) or '<f8' (float64) is needed",
+                             header.type.starts_with('[') ? "structured" : "'" + header.type.substr(0, 32) + "'"));
+  if (header.shape.size() != 2 || header.shape[1] != columns)
+    refuse(path, fmt::format("the array's shape is {}; (N, {}) is needed", shape_text(header.shape), columns));
+  if (header.fortran_order) refuse(path, "the array is in Fortran order; C order is needed (numpy.ascontiguousarray)");
+  is_double_ = header.type == "<f8";
+  rows_ = header.shape[0];
+  const std::uint64_t row_bytes = columns * (is_double_ ? sizeof(double) : sizeof(float));
+  const auto data = static_cast<std::uint64_t>(file_.tellg()), size = static_cast<std::uint64_t>(fs::file_size(path, error));
+  if (rows_ > (size - data) / row_bytes)
+    refuse(path, fmt::format("the file is cut off: {} rows are {} bytes, {} are there", rows_,
+                             rows_ > UINT64_MAX / row_bytes ? "far too many" : std::to_string(rows_ * row_bytes), size - data));
+  if (rows_ * row_bytes != size - data)
+    refuse(path, fmt::format("{} bytes follow the array's {} rows", size - data - rows_ * row_bytes, rows_));
+}
+
+void NpyReader::read(std::span<double> out) {
+  if (is_double_) {
+    file_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size_bytes()));
+  } else {
+    singles_.resize(out.size());
+    file_.read(reinterpret_cast<char*>(singles_.data()), static_cast<std::streamsize>(singles_.size() * sizeof(float)));
+    std::copy(singles_.begin(), singles_.end(), out.begin());
+  }
+  if (!file_) throw RunError(fmt::format("{}: cannot be read any further", path_.string()));
+}
+
+NpyWriter::NpyWriter(const fs::path& path, std::vector<NpyField> fields)
+    : path_(path), fields_(std::move(fields)), file_(path, std::ios::binary) {
+  for (const NpyField& field : fields_) row_bytes_ += bytes_of(field.type);
+  write_header(0);
+}
+
+void NpyWriter::write_header(std::uint64_t rows) {
+  std::string text = "{'descr': [";
+  for (const NpyField& field : fields_) text += fmt::format("('{}', '{}'), ", field.name, field.type);
+  text.resize(text.size() - 2);
+  text += "], 'fortran_order': False, 'shape': (";
+  // The same length for every count of rows, so that it can be written over.
+  const std::size_t least = preamble + text.size() + std::to_string(UINT64_MAX).size() + std::string_view(",), }\n").size();
+  const std::size_t length = (least + alignment - 1) / alignment * alignment - preamble;
+  text += fmt::format("{},), }}", rows);
+  text.resize(length - 1, ' ');
+  text += '\n';
+  std::string start(magic);
+  start += {'\1', '\0', static_cast<char>(length & 0xff), static_cast<char>(length >> 8 & 0xff)};
+  file_ << start << text;
+  check();
+}
+
+void NpyWriter::append(std::span<const char> bytes) {
+  CHECK_EQ_(bytes.size() % row_bytes_, std::size_t{0});
+  file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  rows_ += bytes.size() / row_bytes_;
+  check();
+}
+
+void NpyWriter::finish() {
+  file_.seekp(0);
+  write_header(rows_);
+  file_.close();
+  check();
+}
+
+void NpyWriter::check() const {
+  if (!file_) throw RunError(fmt::format("{}: cannot be written", path_.string()));
+}
+
+void append_unicode(std::string& row, const std::string& text, std::size_t length) {
+  std::size_t count = 0;
+  for_each_character(text, [&](std::uint32_t character) {
+    if (count++ >= length) return;
+    for (int shift = 0; shift < 32; shift += 8) row += static_cast<char>(character >> shift & 0xff);
+  });
+  if (count < length) row.append((length - count) * 4, '\0');
+}
+
+std::size_t unicode_length(const std::string& text) {
+  std::size_t count = 0;
+  for_each_character(text, [&](std::uint32_t) { ++count; });
+  return count;
+}
+
+}  // namespace caplet

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Lists of rays in files, read piece by piece: text of six numbers a line, or .npy.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "table/npy.h"
+
+namespace caplet {
+
+/// Origin, then direction (of any length).
+using RayNumbers = std::array<float, 6>;
+
+/// Larger coordinates, and directions longer than this or shorter than its inverse, have no squares among floats.
+inline constexpr double largest_ray_number = 0x1p60;  // 1.15e18
+
+/// The six numbers as floats. Otherwise what is wrong (not finite, too large, no direction) and with which number.
+struct BadRay {
+  std::size_t number;  // 0..5
+  std::string message;
+};
+std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& ray);
+
+/// A whole token as a number, decimal notation, a leading '+' allowed. Otherwise what is wrong with it.
+std::optional<std::string> parse_number(std::string_view token, double& value);
+
+/// .npy by extension (rows of six float32 or float64), else text: six numbers a line, blanks or commas between them, `#` starts a
+/// comment, blank lines are passed over.
+class RayFile {
+ public:
+  /// Throws InputError when the file is missing, unreadable or no such list.
+  explicit RayFile(const std::filesystem::path& path);
+
+  /// Up to `most` more rays; fewer only at the end. Throws InputError with every bad ray among them, up to 20, with line and
+  /// column or, in a .npy file, its row.
+  std::vector<RayNumbers> next(std::size_t most);
+
+ private:
+  std::vector<RayNumbers> next_rows(std::size_t most);
+  std::optional<std::string_view> take_line();
+  std::optional<RayNumbers> parse_line(std::string_view line, Diagnostics& diagnostics) const;
+
+  std::filesystem::path path_;
+  std::optional<NpyReader> npy_;
+  std::uint64_t row_ = 0;  // of the .npy file, the next one
+  std::ifstream text_;
+  std::string buffer_;
+  std::size_t at_ = 0;  // in buffer_
+  int line_ = 0;
+};
+
+}  // namespace caplet

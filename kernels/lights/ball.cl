@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Lights of any shape: a direction uniform in the cone that the shape's bounding ball fills (from within the ball: any direction), and the
+// first crossing of that one primitive along it. The density does not depend on the shape, so every shape is sampled exactly; what misses
+// it is black.
+#ifndef CAPLET_LIGHTS_BALL_CL
+#define CAPLET_LIGHTS_BALL_CL
+
+#include "globals.cl"
+#include "lights/sphere.cl"
+#include "math/vector.cl"
+#include "shapes/shapes.cl"
+#include "shapes/surface.cl"
+
+// ball: centre and radius, world space.
+static inline float ball_pdf(__global const float* ball, float3 p) {
+  const float3 axis = load3(ball) - p;
+  const float cone = sphere_cone(dot(axis, axis), ball[3]);
+  return cone > 0.0f ? 1.0f / (2.0f * CAPLET_PI * cone) : 0.25f * CAPLET_INV_PI;
+}
+
+static inline float3 ball_sample(__global const float* ball, float3 p, float2 u) {
+  const float3 axis = load3(ball) - p;
+  const float cone = sphere_cone(dot(axis, axis), ball[3]);
+  const float t = u.x * (cone > 0.0f ? cone : 2.0f);
+  const float sine = sqrt(fmax(0.0f, t * (2.0f - t))), phi = 2.0f * CAPLET_PI * u.y;
+  const Frame frame = frame_from_normal(unit_or(axis, (float3)(0.0f, 0.0f, 1.0f)));
+  return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) + frame.n * (1.0f - t));
+}
+
+// The first crossing of the primitive at `slot` by the ray from p along wi; 0 when there is none.
+static inline int primitive_crossing(const Globals* g, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
+  const GeometryRecord geometry = g->geometries[g->primitive_geometry[as_uint(g->leaves[slot])]];
+  float3 o = p, d = wi;
+  if (instance != CAPLET_NONE) {
+    o = transform_point(g->instances[instance].object_from_world, p);
+    d = transform_vector(g->instances[instance].object_from_world, wi);
+  }
+  const ShapeRay ray = shape_ray(o, d, 0.0f, g->leaves);
+  const uint lane = slot & 7u;
+  real t;
+  real_mask side;
+  const real_mask found = shape_hit(geometry.shape, &ray, g->leaves + (slot - lane), lane, &t, &side);
+  float ts[CAPLET_REAL_WIDTH];
+  int sides[CAPLET_REAL_WIDTH];
+  real_store(t, ts);
+  mask_store(side, sides);
+  const uint at = lane % CAPLET_REAL_WIDTH;
+  hit->t = ts[at];
+  hit->slot = slot;
+  hit->instance = instance;
+  hit->surface = (uint)sides[at];
+  return (mask_bits(found) >> at) & 1u;
+}
+
+#endif

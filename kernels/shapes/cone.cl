@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The cone's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round). Rows of a block:
+// p0 p1 r0 r1 cap0 cap1. A frustum where both are flat, a tapered capsule where both are round.
+//
+// The ends are joined by the cone c |e| + k y = D that touches both, at height y above p0 and offset e from the axis: (c, k) is
+// the normal's parts across and along the axis. It touches a disk in its rim, a ball in the circle at k times the radius above
+// the centre. The solid is the intersection of
+// - the nappe c |e| <= D - k y, whose part beyond a ball's circle is replaced by the ball's own surface (as in capsule.cl),
+// - a half-space at every flat end; and where the other end's ball reaches through that disk without holding it (its radius is
+//   longer than the axis), instead, the second cone from the rim to the ball, outside the disk.
+// So is its span: the latest entrance and the earliest exit of them all, which no gap between side and cap can spoil. A ball that
+// holds the other end is all there is.
+// Distance of the reported point from the surface: 16 eps (|o - p0| + L + r0 + r1) (docs/numerics.md, "Cones").
+#ifndef CAPLET_SHAPES_CONE_CL
+#define CAPLET_SHAPES_CONE_CL
+
+#include "shapes/real.cl"
+#include "shapes/sphere.cl"
+
+// A line in cylinder coordinates of an axis: offset e + t f and height u + v t, t from the moved origin.
+typedef struct {
+  real ex, ey, ez, fx, fy, fz, ff;
+  real u, v;
+  real nearest;  // t of the point nearest to the axis
+} AxisLine;
+
+// Lanes whose line meets the nappe c |e| <= D - k y, and both crossings: t (infinite where the line stays within) and height.
+// `thin`: height of the circle at the thin end of the part that matters.
+static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, real thin, real* t_enter, real* t_exit,
+                                   real* y_enter, real* y_exit) {
+  const real zero = real_of(0.0f), far = real_of(INFINITY);
+  const real cc = c * c, slope = l->v * k;
+  const real a = cc * l->ff - slope * slope;
+  const real_mask across = a > 0.0f;  // steeper to the axis than the cone: both crossings are on one nappe
+  const real base = (across | (slope == 0.0f)) ? l->nearest : (thin - l->u) / l->v;
+  const real qx = l->ex + base * l->fx, qy = l->ey + base * l->fy, qz = l->ez + base * l->fz;
+  const real y = l->u + base * l->v, rest = D - y * k;
+  const real b = cc * real_dot(qx, qy, qz, l->fx, l->fy, l->fz) + rest * slope;
+  const real free = cc * real_dot(qx, qy, qz, qx, qy, qz) - rest * rest;
+  const real disc = b * b - a * free;
+  const real root = sqrt(real_max(disc, zero));
+  const real s = -(b + (b < 0.0f ? -root : root));  // no cancellation
+  // Parallel to the cone the other nappe is met at infinity.
+  const real t1 = s / (a == 0.0f ? real_of(-FLT_MIN) : a), t2 = s == 0.0f ? zero : free / s;
+  const real first = real_min(t1, t2), second = real_max(t1, t2);
+  // Along the cone the nappe is met once, where D - k y is greater, and never left towards its wide end; along a tube not at all.
+  const real_mask along = (a == 0.0f) & (slope == 0.0f);
+  const real low = across ? first : (slope < 0.0f ? second : -far);
+  const real high = across ? second : (slope > 0.0f ? first : far);
+  *t_enter = base + low;
+  *t_exit = base + high;
+  *y_enter = y + low * l->v;
+  *y_exit = y + high * l->v;
+  return along ? (free <= 0.0f) & (rest >= 0.0f) : (across ? (disc >= 0.0f) & (rest >= 0.0f) : slope != 0.0f);
+}
+
+// The hull of the ends at p0 and p0 + b, for a ray from p0 + w. Caps: CAPLET_CAP_*.
+static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, real bx, real by, real bz, real r0, real r1,
+                                real cap0, real cap1) {
+  const real zero = real_of(0.0f), one = real_of(1.0f), far = real_of(INFINITY);
+  const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
+
+  // The ray's point nearest to p0, in cylinder coordinates.
+  AxisLine l;
+  const real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
+  const real px = wx + shift * ray->dx, py = wy + shift * ray->dy, pz = wz + shift * ray->dz;
+  const real bb = real_dot(bx, by, bz, bx, by, bz);
+  const real inv_length = 1.0f / (bb > 0.0f ? sqrt(bb) : one);
+  const real mx = bx * inv_length, my = by * inv_length, mz = bz * inv_length;
+  const real length = bb * inv_length;  // as heights along m are measured
+  l.u = real_dot(px, py, pz, mx, my, mz);
+  l.v = real_dot(mx, my, mz, ray->dx, ray->dy, ray->dz);
+  l.ex = px - l.u * mx;
+  l.ey = py - l.u * my;
+  l.ez = pz - l.u * mz;
+  l.fx = ray->dx - l.v * mx;
+  l.fy = ray->dy - l.v * my;
+  l.fz = ray->dz - l.v * mz;
+  l.ff = real_dot(l.fx, l.fy, l.fz, l.fx, l.fy, l.fz);
+  // Along the axis f is rounding noise: none at all, then, so that the point stays where it is.
+  const real_mask crosses = l.ff * ray->inv_dd > 0x1p-50f;
+  l.fx = crosses ? l.fx : zero;
+  l.fy = crosses ? l.fy : zero;
+  l.fz = crosses ? l.fz : zero;
+  l.ff = crosses ? l.ff : zero;
+  l.nearest = crosses ? -real_dot(l.ex, l.ey, l.ez, l.fx, l.fy, l.fz) / l.ff : zero;
+  const real qx = l.ex + l.nearest * l.fx, qy = l.ey + l.nearest * l.fy, qz = l.ez + l.nearest * l.fz;
+  // Nothing lies outside the tube of the larger radius.
+  const real wide = real_max(r0, r1);
+  const real tube = wide * wide - real_dot(qx, qy, qz, qx, qy, qz);
+  const real_mask near_axis = tube >= 0.0f;
+  if (mask_bits(near_axis) == 0) return span_of(near_axis, shift, shift);
+
+  // Balls, touched within 4 eps of everything: a crossing that the cone and a ball both disown would be lost.
+  const real room = 0x1p-22f * (length + wide);
+  real enter0, exit0, enter1, exit1;
+  const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &enter0, &exit0);
+  const real_mask met1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &enter1, &exit1);
+
+  // The joining cone. From a rim of radius s to a ball of radius R its generator has the length w, w^2 = L^2 + s^2 - R^2; between
+  // two balls w^2 = L^2 - (r0 - r1)^2, between two rims L^2 + (r0 - r1)^2.
+  const real taper = r0 - r1, product = taper * (r0 + r1);
+  const real_mask balls = round0 & round1, mixed = (round0 | round1) & (balls == 0);
+  const real ball = round0 ? r0 : r1, rim = round0 ? r1 : r0;
+  const real ww = balls ? (length - taper) * (length + taper)
+                        : (mixed ? length * length + (round0 ? -product : product) : length * length + taper * taper);
+  const real w = sqrt(real_max(ww, zero));
+  const real dd = length * length + rim * rim;
+  const real inv = 1.0f / (balls ? length : (mixed ? dd : w));
+  const real c = (balls ? w : (mixed ? rim * ball + length * w : length)) * inv;
+  const real k = mixed ? product / real_max(length * ball + rim * w, real_of(FLT_MIN)) : taper * inv;  // 0 without radii
+  const real D = round0 ? r0 : c * r0;
+  const real low = round0 ? r0 * k : zero, high = round1 ? length + r1 * k : length;
+  const real_mask one_ball = (round0 | round1) & (ww <= 0.0f);
+  const real_mask all0 = one_ball & round0 & ((taper >= 0.0f) | (round1 == 0)), all1 = one_ball & (all0 == 0);
+
+  Span span;
+  real y_enter, y_exit;
+  real_mask hit = nappe_span(&l, c, k, D, taper > 0.0f ? high : low, &span.t_enter, &span.t_exit, &y_enter, &y_exit);
+  hit = (hit & (bb > 0.0f)) | one_ball;
+  const real_mask enter_at0 = all0 | (round0 & (y_enter < low) & (all1 == 0)),
+                  exit_at0 = all0 | (round0 & (y_exit < low) & (all1 == 0));
+  const real_mask enter_at1 = all1 | (round1 & (y_enter > high) & (all0 == 0)),
+                  exit_at1 = all1 | (round1 & (y_exit > high) & (all0 == 0));
+  hit &= ((enter_at0 | exit_at0) == 0) | met0;
+  hit &= ((enter_at1 | exit_at1) == 0) | met1;
+  span.t_enter = enter_at0 ? enter0 : (enter_at1 ? enter1 : span.t_enter);
+  span.t_exit = exit_at0 ? exit0 : (exit_at1 ? exit1 : span.t_exit);
+  // A shallow ray may meet a ball on the other side of the circle than the cone: what counts is where it does.
+  y_enter = l.u + l.v * span.t_enter;
+  y_exit = l.u + l.v * span.t_exit;
+  const real_mask side = int_of(0), one_end = int_of(1), other_end = int_of(2);
+  span.surface_enter =
+      (all0 | (enter_at0 & (y_enter < low))) ? one_end : ((all1 | (enter_at1 & (y_enter > high))) ? other_end : side);
+  span.surface_exit = (all0 | (exit_at0 & (y_exit < low))) ? one_end : ((all1 | (exit_at1 & (y_exit > high))) ? other_end : side);
+  span.enter = span.exit = int_of(-1);
+
+  // At a wide flat end of a short cone two surfaces meet in a sharp edge, and roundings of both move it far out: the tube through
+  // that rim does not let them.
+  const real_mask sharp = ((taper > 0.0f) & (round0 == 0)) | ((taper < 0.0f) & (round1 == 0));
+  const real h = crosses ? sqrt(real_max(tube, zero) / l.ff) : far;
+  const real_mask enter_tube = sharp & (l.nearest - h > span.t_enter), exit_tube = sharp & (l.nearest + h < span.t_exit);
+  span.t_enter = enter_tube ? l.nearest - h : span.t_enter;
+  span.t_exit = exit_tube ? l.nearest + h : span.t_exit;
+  span.surface_enter = enter_tube ? side : span.surface_enter;
+  span.surface_exit = exit_tube ? side : span.surface_exit;
+
+  // Half-spaces of flat ends. A line along them stays on its side for ever.
+  const real_mask pierced = mixed & (ball > length);
+  const real_mask flat0 = (round0 | pierced | one_ball) == 0, flat1 = (round1 | pierced | one_ball) == 0;
+  const real_mask up = l.v >= 0.0f;
+  const real v = l.v == 0.0f ? real_of(FLT_MIN) : l.v;
+  const real at0 = -l.u / v, at1 = (length - l.u) / v;
+  const real flat_enter = (up ? flat0 : flat1) ? (up ? at0 : at1) : -far,
+             flat_exit = (up ? flat1 : flat0) ? (up ? at1 : at0) : far;
+  const real_mask enter_flat = flat_enter > span.t_enter, exit_flat = flat_exit < span.t_exit;
+  const real_mask open0 = cap0 == CAPLET_CAP_OPEN, open1 = cap1 == CAPLET_CAP_OPEN;
+  span.t_enter = enter_flat ? flat_enter : span.t_enter;
+  span.t_exit = exit_flat ? flat_exit : span.t_exit;
+  span.surface_enter = enter_flat ? (up ? one_end : other_end) : span.surface_enter;
+  span.surface_exit = exit_flat ? (up ? other_end : one_end) : span.surface_exit;
+  span.enter &= (enter_flat & (up ? open0 : open1)) == 0;
+  span.exit &= (exit_flat & (up ? open1 : open0)) == 0;
+
+  const real_mask second = pierced & (one_ball == 0);
+  if (mask_bits(second) != 0) {
+    const real c2 = (ball - length) * (ball + length) / (rim * ball + length * w);
+    const real turned = (length * ball + rim * w) / dd;
+    const real k2 = round0 ? turned : -turned;
+    const real circle = round0 ? ball * k2 : length + ball * k2;
+    const real D2 = round0 ? ball : ball + length * k2;
+    real t_enter, t_exit;
+    const real_mask within = nappe_span(&l, c2, k2, D2, circle, &t_enter, &t_exit, &y_enter, &y_exit);
+    const real_mask enter_beyond = round0 ? y_enter > circle : y_enter < circle;
+    const real_mask exit_beyond = round0 ? y_exit > circle : y_exit < circle;
+    hit &= (second == 0) | (within & (((enter_beyond | exit_beyond) == 0) | (round0 ? met0 : met1)));
+    t_enter = enter_beyond ? (round0 ? enter0 : enter1) : t_enter;
+    t_exit = exit_beyond ? (round0 ? exit0 : exit1) : t_exit;
+    y_enter = l.u + l.v * t_enter;
+    y_exit = l.u + l.v * t_exit;
+    const real_mask number = round0 ? one_end : other_end;
+    const real_mask enter_ball = enter_beyond & (round0 ? y_enter > circle : y_enter < circle);
+    const real_mask exit_ball = exit_beyond & (round0 ? y_exit > circle : y_exit < circle);
+    const real_mask later = second & (t_enter > span.t_enter), earlier = second & (t_exit < span.t_exit);
+    span.t_enter = later ? t_enter : span.t_enter;
+    span.t_exit = earlier ? t_exit : span.t_exit;
+    span.surface_enter = later ? (enter_ball ? number : side) : span.surface_enter;
+    span.surface_exit = earlier ? (exit_ball ? number : side) : span.surface_exit;
+  }
+
+  hit &= near_axis & (span.t_enter <= span.t_exit);
+  span.enter &= hit;
+  span.exit &= hit;
+  span.t_enter += shift;
+  span.t_exit += shift;
+  return span;
+}
+
+static inline Span cone_span(const ShapeRay* ray, __global const float* block, uint lane) {
+  const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
+  return cone_span_of(ray, ray->ox - ax, ray->oy - ay, ray->oz - az, real_load(block + 32, lane) - ax,
+                      real_load(block + 40, lane) - ay, real_load(block + 48, lane) - az, real_load(block + 56, lane),
+                      real_load(block + 64, lane), real_load(block + 72, lane), real_load(block + 80, lane));
+}
+
+SPAN_HIT(cone)
+
+#endif

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Closed solids combined by union, intersection and difference: the crossings of all operands in order along the ray, each turning its
+// operand on or off; where the expression's value changes the ray crosses the result. Rows of a block: begin (by its bits).
+//
+// leaves[begin ..], written by host/lower/csg.cpp, rows of 8; whole numbers by their bits; offsets count floats of `leaves`:
+//   header: centre c (3), radius of a ball around c that holds the result, groups, length of the program, operands, 0
+//   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the first operand, offset of the transform
+//     (object_from_csg and csg_from_object, 12 floats each), or CAPLET_NONE, 0 0 0
+//   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED where it is taken away
+//   program: postfix, one number each: an operand, or CAPLET_CSG_UNION, _INTERSECTION, _DIFFERENCE
+// A group is a leaf block of up to four operands of one kind in one space: lanes 0..3 hold them, lanes 4..7 the same solids grown
+// by their error bound. csg space is the space of the tree moved by -c: coordinates are as small as the shape.
+//
+// A computed crossing is off its operand's surface by no more than the bound b. The solid is convex, so from where the ray enters the
+// grown solid (t - s) to as far beyond the crossing (t + s) it is within b of the surface. Crossings of different operands that have an
+// instant in common in these intervals are one event: moving each surface by no more than b makes them coincide. So solids that touch
+// have no surface between them, and what is subtracted flush leaves no skin (docs/numerics.md, "CSG").
+#ifndef CAPLET_SHAPES_CSG_CL
+#define CAPLET_SHAPES_CSG_CL
+
+#include "math/vector.cl"
+#include "shapes/solids.cl"
+
+// The operands' crossings of one ray. Event 2 i is where operand i is entered, 2 i + 1 where it is left.
+typedef struct {
+  float t[2 * CAPLET_CSG_MAX_OPERANDS], slack[2 * CAPLET_CSG_MAX_OPERANDS];
+  ushort surface[2 * CAPLET_CSG_MAX_OPERANDS];  // of the operand
+  ulong pending;                                // events to come, as bits
+  uint inside;                                  // operands the ray is in
+  int value;                                    // whether it is in the result
+  float last;                                   // t of the crossing reported last
+  __global const uint* operands;
+  __global const uint* program;
+  uint program_length;
+} CsgLine;
+
+static inline uint lowest_event(ulong bits) { return (uint)popcount(~bits & (bits - 1ul)); }
+
+static inline int csg_value(const CsgLine* line) {
+  uint stack = 0;  // lowest bit on top
+  for (uint i = 0; i < line->program_length; i++) {
+    const uint code = line->program[i];
+    if (code < CAPLET_CSG_UNION) {
+      stack = stack << 1 | (line->inside >> code & 1u);
+      continue;
+    }
+    const uint right = stack & 1u;
+    stack >>= 1;
+    if (code == CAPLET_CSG_UNION) stack |= right;
+    if (code == CAPLET_CSG_INTERSECTION) stack &= right | ~1u;
+    if (code == CAPLET_CSG_DIFFERENCE) stack &= ~right;
+  }
+  return (int)(stack & 1u);
+}
+
+// Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to `grown_exit`; `shift` is added to all t.
+static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter, float grown_exit, float shift,
+                           int surface_enter, int surface_exit) {
+  exit = fmax(exit, enter);
+  if (!(fabs(enter) < MAXFLOAT && fabs(exit) < MAXFLOAT)) return;
+  line->t[2 * i] = shift + enter;
+  line->t[2 * i + 1] = shift + exit;
+  line->slack[2 * i] = fmax(enter - grown_enter, 0.0f);
+  line->slack[2 * i + 1] = fmax(grown_exit - exit, 0.0f);
+  line->surface[2 * i] = (ushort)surface_enter;
+  line->surface[2 * i + 1] = (ushort)surface_exit;
+  line->pending |= 3ul << (2 * i);
+}
+
+// The crossings of the operands of one group with the ray `own`.
+static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group, float shift) {
+  __global const float* block = own->leaves + group[1];
+  const uint kind = group[0], count = group[2], first = group[3];
+#if CAPLET_REAL_WIDTH == 8
+  const Span span = solid_span(kind, own, block, 0);
+  const uint bits = mask_bits(span.enter & span.exit);
+  if ((bits & 15u) == 0) return;
+  float enter[8], exit[8];
+  int surface_enter[8], surface_exit[8];
+  real_store(span.t_enter, enter);
+  real_store(span.t_exit, exit);
+  mask_store(span.surface_enter, surface_enter);
+  mask_store(span.surface_exit, surface_exit);
+  for (uint i = 0; i < count; i++) {
+    if ((bits >> i & 1u) == 0) continue;
+    const uint grown = (bits >> (i + 4) & 1u) != 0 ? i + 4 : i;
+    csg_add(line, first + i, enter[i], exit[i], enter[grown], exit[grown], shift, surface_enter[i], surface_exit[i]);
+  }
+#else
+  for (uint i = 0; i < count; i++) {
+    const Span span = solid_span(kind, own, block, i);
+    if ((span.enter & span.exit) == 0) continue;
+    Span grown = solid_span(kind, own, block, i + 4);
+    if ((grown.enter & grown.exit) == 0) grown = span;
+    csg_add(line, first + i, span.t_enter, span.t_exit, grown.t_enter, grown.t_exit, shift, span.surface_enter, span.surface_exit);
+  }
+#endif
+}
+
+// The crossings of all operands of the csg shape at leaves[begin]. 0: there are none.
+static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
+  __global const float* header = ray->leaves + begin;
+  __global const uint* numbers = (__global const uint*)header;
+  const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
+  float3 o = (float3)(ray->ox, ray->oy, ray->oz) - load3(header);
+  // From outside the ray goes to its point nearest to c first, once for all operands: what is lost on the way is the same for all, and
+  // the rest does not grow with the distance.
+  const float radius = header[3], nearest = -dot(o, d) * ray->inv_dd;
+  const float3 near = o + nearest * d;
+  if (!(dot(near, near) <= radius * radius)) return 0;
+  const int outside = dot(o, o) > radius * radius;
+  const float shift = outside ? nearest : 0.0f;
+  o = outside ? near : o;
+
+  const uint groups = numbers[4];
+  line->pending = 0;
+  line->inside = 0;
+  line->value = 0;
+  line->last = -INFINITY;
+  line->operands = numbers + 8 * (1 + groups);
+  line->program = line->operands + (numbers[6] + 7) / 8 * 8;
+  line->program_length = numbers[5];
+  for (uint i = 0; i < groups; i++) {
+    __global const uint* group = numbers + 8 * (1 + i);
+    float3 group_o = o, group_d = d;
+    if (group[4] != CAPLET_NONE) {
+      group_o = transform_point(ray->leaves + group[4], o);
+      group_d = transform_vector(ray->leaves + group[4], d);
+    }
+    const ShapeRay own = shape_ray(group_o, group_d, ray->t_min, ray->leaves);
+    csg_add_group(line, &own, group, shift);
+  }
+  return line->pending != 0;
+}
+
+// The earliest event to come; of equal ones that of the lowest number, so that an operand is entered before it is left.
+static inline uint csg_earliest(const CsgLine* line) {
+  uint earliest = lowest_event(line->pending);
+  for (ulong rest = line->pending & (line->pending - 1ul); rest != 0; rest &= rest - 1ul) {
+    const uint event = lowest_event(rest);
+    if (line->t[event] < line->t[earliest]) earliest = event;
+  }
+  return earliest;
+}
+
+// The next crossing of the result beyond t_min: 1, its t and HitRecord.surface. 0: there is none.
+static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* side) {
+  while (line->pending != 0) {
+    const int before = line->value;
+    uint event = csg_earliest(line);
+    const int first_seen = line->t[event] > ray->t_min;
+    uint members = 0, crossed = event;
+    float low = -INFINITY, high = INFINITY;  // the instants all members have in common
+    for (;;) {
+      const int leaves_operand = (int)(event & 1u);
+      const float own_t = line->t[event], partner = line->t[event ^ 1u], slack = line->slack[event];
+      const float own_low = leaves_operand ? fmax(own_t - slack, partner) : own_t - slack;
+      const float own_high = leaves_operand ? own_t + slack : fmin(own_t + slack, partner);
+      const float common_low = fmax(low, own_low), common_high = fmin(high, own_high);
+      if (members != 0 && ((members >> (event >> 1) & 1u) != 0 || !(common_low <= common_high))) break;
+      low = common_low;
+      high = common_high;
+      members |= 1u << (event >> 1);
+      line->pending &= ~(1ul << event);
+      line->inside ^= 1u << (event >> 1);
+      const int value = csg_value(line);
+      // The first member that makes the difference.
+      if (line->value == before && value != before) crossed = event;
+      line->value = value;
+      if (line->pending == 0) break;
+      event = csg_earliest(line);
+    }
+    // Where the ray begins at several surfaces at once it has them all behind it: unless the instants that they have in common, and the
+    // crossing itself, lie ahead. (One of them may be grazed for long, and its own crossing be far behind.)
+    const int seen = line->t[crossed] > ray->t_min && (first_seen || low > ray->t_min);
+    if (line->value == before || !seen) continue;
+    if ((line->value != 0 ? ray->sees_entering : ray->sees_leaving) == 0) continue;
+    const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
+    // A chord of no length keeps its order: left after it is entered.
+    line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
+    *t = line->last;
+    *side = (int)surface | (line->value != 0 ? 0 : CAPLET_LEAVING);
+    return 1;
+  }
+  return 0;
+}
+
+// The nearest crossing of the csg shape at leaves[begin] beyond t_min.
+static inline int csg_nearest(const ShapeRay* ray, uint begin, float* t, int* side) {
+  CsgLine line;
+  return csg_start(ray, begin, &line) && csg_next(ray, &line, t, side);
+}
+
+static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+  __global const int* ids = (__global const int*)block;
+  __global const uint* begins = (__global const uint*)(block + 8);
+#if CAPLET_REAL_WIDTH == 8
+  float ts[8];
+  int sides[8], hits[8];
+  for (uint i = 0; i < 8; i++) {
+    ts[i] = 0.0f;
+    sides[i] = 0;
+    hits[i] = ids[i] >= 0 && csg_nearest(ray, begins[i], &ts[i], &sides[i]) ? -1 : 0;
+  }
+  (void)lane;
+  *t = vload8(0, ts);
+  *side = vload8(0, sides);
+  return vload8(0, hits);
+#else
+  *t = 0.0f;
+  *side = 0;
+  return ids[lane] >= 0 && csg_nearest(ray, begins[lane], t, side);
+#endif
+}
+
+#endif

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A csg shape's surface: that of an operand, in two halves around surface_shape, so that the switch over shapes stands in a kernel once.
+#ifndef CAPLET_SHAPES_SURFACE_CSG_CL
+#define CAPLET_SHAPES_SURFACE_CSG_CL
+
+#include "shapes/surface_shapes.cl"
+
+// Where a csg shape's surface comes from.
+typedef struct {
+  float3 center;
+  int subtracted;
+  __global const float* transform;  // object_from_csg, csg_from_object, where placed
+  int placed;
+} CsgOperand;
+
+// The operand that surface q->surface belongs to: its shape kind, and what to ask of surface_shape. Layout: csg.cl.
+static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, SurfaceQuery* own) {
+  __global const float* leaves = q->g->leaves;
+  __global const float* header = leaves + as_uint(q->data[0]);
+  __global const uint* numbers = (__global const uint*)header;
+  const uint groups = numbers[4];
+  __global const uint* operands = numbers + 8 * (1 + groups);
+  // Operands are not in the order of their surfaces: the last one that begins no later.
+  uint found = 0, begin = 0;
+  for (uint i = 0; i < numbers[6]; i++) {
+    const uint first = operands[i] & CAPLET_SURFACE_MASK;
+    if (first > q->surface || first < begin) continue;
+    begin = first;
+    found = i;
+  }
+  uint group = 0;
+  while (group + 1 < groups && found >= numbers[8 * (2 + group) + 3]) group++;
+  __global const uint* row = numbers + 8 * (1 + group);
+
+  operand->center = load3(header);
+  operand->subtracted = (operands[found] & CAPLET_CSG_SUBTRACTED) != 0;
+  operand->placed = row[4] != CAPLET_NONE;
+  operand->transform = leaves + (operand->placed ? row[4] : 0u);
+  own->surface = q->surface - begin;
+  own->data = leaves + row[1] + 8u + (found - row[3]);
+  own->x = q->x - operand->center;
+  own->fallback = operand->subtracted ? -q->fallback : q->fallback;
+  if (operand->placed) {
+    own->x = transform_point(operand->transform, own->x);
+    own->fallback = unit_or(transform_transposed(operand->transform + 12, own->fallback), own->fallback);
+  }
+  return row[0];
+}
+
+// The csg shape's surface from its operand's.
+static inline LocalSurface csg_surface(const CsgOperand* operand, LocalSurface s) {
+  if (operand->placed) s = surface_transformed(operand->transform + 12, operand->transform, s);
+  if (operand->subtracted) {
+    s.ng = -s.ng;
+    s.ns = -s.ns;
+  }
+  // Into csg space a ray's origin is rounded by eps of its distance from the centre, and the point on the way back by eps of its size;
+  // twice each.
+  const float3 moved = operand->center + s.p;
+  s.error += CAPLET_EPS * (2.0f * norm1(s.p) + 2.0f * norm1(moved));
+  s.p = moved;
+  return s;
+}
+
+#endif

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What queries tell of a hit.
+#ifndef CAPLET_STAGES_PICK_RECORD_CL
+#define CAPLET_STAGES_PICK_RECORD_CL
+
+#include "globals.cl"
+#include "shapes/surface.cl"
+
+// Shapes whose two sides are told apart by a normal alone.
+static inline int shape_is_sheet(uint shape) {
+  return shape == shape_triangle || shape == shape_disk || shape == shape_partial_sphere || shape == shape_open_cylinder ||
+         shape == shape_partial_disk || shape == shape_bilinear;
+}
+
+// The record of a hit of `ray`, or of a miss. The normal points against the ray, from inside too.
+static inline PickRecord pick_record(const Globals* g, const RayRecord* ray, const HitRecord* hit) {
+  PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE, CAPLET_NONE, 0, 0, 0, 0, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+  if (hit->slot == CAPLET_NONE) return out;
+  const Surface s = surface_at(g, ray, hit);
+  __global const GeometryRecord* geometry = g->geometries + s.geometry;
+  const float3 normal = dot(s.ng, (float3)(ray->dx, ray->dy, ray->dz)) > 0.0f ? -s.ng : s.ng;
+  out.t = hit->t;
+  out.error = s.error;
+  out.u = s.uv.x;
+  out.v = s.uv.y;
+  out.object = out.shape = geometry->object;
+  if (hit->instance != CAPLET_NONE && g->instances[hit->instance].object != CAPLET_NONE)
+    out.object = g->instances[hit->instance].object;
+  out.primitive = s.primitive - geometry->primitive_begin;
+  out.surface = s.surface;
+  out.material = s.material;
+  out.leaving = s.leaving ? 1u : 0u;
+  if (shape_is_sheet(geometry->shape) && (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL)) out.leaving ^= 1u;
+  vstore3(s.p, 0, out.point);
+  vstore3(normal, 0, out.normal);
+  return out;
+}
+
+#endif

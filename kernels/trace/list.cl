@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Hit lists: all crossings of a ray, in order.
+#ifndef CAPLET_TRACE_LIST_CL
+#define CAPLET_TRACE_LIST_CL
+
+#include "trace/trace.cl"
+
+// The crossings of the lanes of a block with the ray's line; not for csg shapes, which have any number of them.
+static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
+  switch (shape) {
+#define SHAPE(name, rows) \
+  case shape_##name: return name##_span(ray, block, lane);
+#ifdef CAPLET_BASIC_SHAPES
+    SHAPE(capsule, 0)
+    SHAPE(triangle, 0)
+    SHAPE(sphere, 0)
+    SHAPE(tapered_capsule, 0)
+    SHAPE(disk, 0)
+#else
+#define COMPOUND(name, rows)
+#include "shared/shapes.def"
+#endif
+#undef SHAPE
+    default: break;
+  }
+  return span_of(int_of(0), real_of(0.0f), real_of(0.0f));
+}
+
+// The list of one ray while it is made: the nearest crossings so far, in order.
+typedef struct {
+  __global HitRecord* sorted;
+  uint capacity, count;
+  int more;       // some were left out
+  float t_end;    // crossings at or beyond cannot matter, or, full, beyond the last one
+  float t_begin;  // nor at or before
+} HitList;
+
+// By t; leaving before entering, so that solids that touch are not nested for an instant; then slot, instance, surface.
+static inline int hit_is_before(const HitRecord* a, __global const HitRecord* b) {
+  if (a->t != b->t) return a->t < b->t;
+  const uint a_leaves = a->surface & CAPLET_LEAVING, b_leaves = b->surface & CAPLET_LEAVING;
+  if (a_leaves != b_leaves) return a_leaves != 0;
+  if (a->slot != b->slot) return a->slot < b->slot;
+  if (a->instance != b->instance) return a->instance < b->instance;
+  return a->surface < b->surface;
+}
+
+static inline void list_add(HitList* list, float t, uint slot, uint instance, uint surface) {
+  if (!(t > list->t_begin && t < list->t_end)) return;
+  HitRecord hit;
+  hit.t = t;
+  hit.slot = slot;
+  hit.instance = instance;
+  hit.surface = surface;
+  uint place = list->count;
+  if (place == list->capacity) {
+    list->more = 1;
+    if (place == 0 || !hit_is_before(&hit, list->sorted + place - 1)) return;
+    place--;  // the last one makes room
+  } else {
+    list->count = place + 1;
+  }
+  for (; place > 0 && hit_is_before(&hit, list->sorted + place - 1); place--) list->sorted[place] = list->sorted[place - 1];
+  list->sorted[place] = hit;
+}
+
+// The crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
+static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray, __global const float* block, uint lane, uint slot,
+                                  uint instance) {
+  const Span span = shape_span(kind, ray, block, lane);
+  const real_mask filled = lanes_filled(block, lane);
+  const uint enter_bits = mask_bits(span.enter & filled), exit_bits = mask_bits(span.exit & filled);
+  if ((enter_bits | exit_bits) == 0) return;
+  float enter[CAPLET_REAL_WIDTH], exit[CAPLET_REAL_WIDTH];
+  int enter_surface[CAPLET_REAL_WIDTH], exit_surface[CAPLET_REAL_WIDTH];
+  real_store(span.t_enter, enter);
+  real_store(span.t_exit, exit);
+  mask_store(span.surface_enter, enter_surface);
+  mask_store(span.surface_exit, exit_surface);
+  for (uint bits = enter_bits | exit_bits; bits != 0; bits &= bits - 1) {
+    const uint i = lowest_bit(bits);
+    const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
+    if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
+    // A solid touched at one point is left just after it is entered, whatever rounding says.
+    const int solid = kind != shape_bilinear && kind != shape_partial_sphere && kind != shape_open_cylinder;
+    const int touched = solid && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
+    const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
+    if (leaves && ray->sees_leaving) list_add(list, t_exit, slot + i, instance, (uint)exit_surface[i] | CAPLET_LEAVING);
+  }
+}
+
+#ifndef CAPLET_BASIC_SHAPES
+static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global const float* block, uint slot, uint instance) {
+  for (uint lane = 0; lane < CAPLET_WIDTH; lane++) {
+    if (((__global const int*)block)[lane] < 0) continue;
+    CsgLine line;
+    if (!csg_start(ray, as_uint(block[8 + lane]), &line)) continue;
+    float t;
+    int side;
+    while (csg_next(ray, &line, &t, &side)) list_add(list, t, slot + lane, instance, (uint)side);
+  }
+}
+#endif
+
+// All crossings of `ray` with t in (t_min, t_max), in order: by t, leaving before entering, slot, instance, surface. Writes the nearest
+// `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. The order of traversal cannot show.
+// capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
+// itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
+static inline uint trace_all(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                             uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+  HitList list;
+  list.sorted = sorted;
+  list.capacity = capacity;
+  list.count = 0;
+  list.more = 0;
+  list.t_begin = fmax(ray.t_min, 0.0f);
+  list.t_end = ray.t_max;
+  const float t_min = list.t_begin;
+  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
+  if (!ray_is_valid(&ray) || !(t_min < ray.t_max)) return 0;
+
+  float t_best = fmin(ray.t_max, MAXFLOAT);
+  uint instance = CAPLET_NONE;
+  ulong stack[CAPLET_STACK_SIZE];
+  int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
+  SlabRay slab = slab_ray(world_o, world_d);
+  ShapeRay shape = shape_ray(world_o, world_d, t_min, leaves);
+  int current = (int)root;
+  for (;;) {
+    if (current >= 0) {
+      __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
+      if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
+    } else {
+      const uint kind = ((uint)current >> CAPLET_LEAF_ROW_BITS) & 15u, row = (uint)current & CAPLET_LEAF_ROW_MASK;
+      __global const float* block = leaves + (size_t)row * 8;
+      if (kind == shape_instance) {
+        instance = ((__global const uint*)block)[0];
+        __global const InstanceRecord* placed = instances + instance;
+        floor = top;
+        current = (int)placed->root;
+        if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
+#ifndef CAPLET_BASIC_SHAPES
+      } else if (kind == shape_csg) {
+        list_add_csg(&list, &shape, block, row * 8, instance);
+#endif
+      } else {
+        for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
+          list_add_spans(&list, kind, &shape, block, lane, row * 8 + lane, instance);
+      }
+      // Once it is known that some are left out, what lies behind the last one kept cannot matter.
+      if (list.more) {
+        if (capacity == 0) return 1;
+        t_best = fmin(t_best, sorted[capacity - 1].t);
+      }
+    }
+    while (!pop_entry(stack, &top, floor, t_best, &current)) {
+      if (instance == CAPLET_NONE) return list.more ? capacity + 1 : list.count;
+      instance = CAPLET_NONE;
+      floor = 0;
+      slab = slab_ray(world_o, world_d);
+      shape = shape_ray(world_o, world_d, t_min, leaves);
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "scene_probe.h"
+
+#include <map>
+
+#include "device/flatten.h"
+
+namespace caplet::test {
+
+namespace {
+
+const char* const kernel_text = R"(
+#include "trace/trace.cl"
+#include "shapes/surface.cl"
+
+typedef struct {
+  float t, u, v, error, p[3];
+  uint found;
+  float ng[3];
+  uint surface;
+  float ns[3];
+  uint leaving;
+  float dpdu[3];
+  uint any;
+  float dpdv[3];
+  uint instance;
+} SceneHit;
+
+__kernel void scene_trace(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                          __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
+                          __global const uint* surface_materials, __global const uint* mesh_indices,
+                          __global const float* mesh_normals, __global const float* mesh_uvs, __global const RayRecord* rays,
+                          __global SceneHit* hits, uint root, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  Globals g;
+  g.nodes = nodes;
+  g.leaves = leaves;
+  g.instances = instances;
+  g.geometries = geometries;
+  g.primitive_geometry = primitive_geometry;
+  g.surface_materials = surface_materials;
+  g.mesh_indices = mesh_indices;
+  g.mesh_normals = mesh_normals;
+  g.mesh_uvs = mesh_uvs;
+  const RayRecord ray = rays[i];
+  const HitRecord hit = trace_closest(nodes, leaves, instances, root, ray);
+  __global SceneHit* out = hits + i;
+  out->any = (uint)trace_any(nodes, leaves, instances, root, ray);
+  out->found = hit.slot != CAPLET_NONE;
+  if (hit.slot == CAPLET_NONE) return;
+  const Surface s = surface_at(&g, &ray, &hit);
+  out->t = hit.t;
+  out->u = s.uv.x;
+  out->v = s.uv.y;
+  out->error = s.error;
+  vstore3(s.p, 0, out->p);
+  vstore3(s.ng, 0, out->ng);
+  vstore3(s.ns, 0, out->ns);
+  vstore3(s.dpdu, 0, out->dpdu);
+  vstore3(s.dpdv, 0, out->dpdv);
+  out->surface = s.surface;
+  out->leaving = (uint)s.leaving;
+  out->instance = hit.instance;
+}
+)";
+
+const Device& device() {
+  static const Device chosen = Device::choose("");
+  return chosen;
+}
+
+template <class T>
+Buffer<T> upload(const std::vector<T>& values) {
+  return Buffer<T>(device(), std::span<const T>(values));
+}
+
+}  // namespace
+
+Shape shape_of(decltype(Shape::geometry) geometry, const glm::dmat4& world_from_object) {
+  Shape shape;
+  shape.geometry = std::move(geometry);
+  shape.world_from_object = world_from_object;
+  return shape;
+}
+
+FlatScene lower_shapes(std::vector<Shape> shapes) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.shapes = std::move(shapes);
+  return lower(scene);
+}
+
+std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
+  static std::map<int, Program> programs;
+  auto found = programs.find(width);
+  if (found == programs.end()) {
+    const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
+    found = programs.emplace(width, Program::from_source(device(), "scene probe", flatten_kernels(kernel_text), options)).first;
+  }
+  cl::Kernel kernel = found->second.kernel("scene_trace");
+  const auto nodes = upload(scene.nodes), leaves = upload(scene.leaves), normals = upload(scene.mesh_normals),
+             uvs = upload(scene.mesh_uvs);
+  const auto instances = upload(scene.instances);
+  const auto geometries = upload(scene.geometries);
+  const auto primitive_geometry = upload(scene.primitive_geometry), materials = upload(scene.surface_materials),
+             indices = upload(scene.mesh_indices);
+  const auto ray_buffer = upload(rays);
+  const Buffer<SceneHit> hits(device(), rays.size());
+  set_arguments(device(), kernel, nodes, leaves, instances, geometries, primitive_geometry, materials, indices, normals, uvs,
+                ray_buffer, hits, static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
+  launch(device(), kernel, rays.size(), 16);
+  return hits.read();
+}
+
+}  // namespace caplet::test
