@@ -82,10 +82,10 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
   *t = shift + capsule_end(ray, &c, -1.0f, &hit);
   const real_mask leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
   if (mask_bits(leaving) != 0) {
-    real_mask exit_hit = hit;
-    const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exit_hit);
+    // What is entered is left: where rounding lets the end's sphere disown the exit, it is where the ray passes nearest to it.
+    real_mask exits = hit;
+    const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
     *t = leaving ? t_exit : *t;
-    hit = leaving ? exit_hit : hit;
     *side = leaving ? int_of(CAPLET_LEAVING) : int_of(0);
   }
   return hit;
@@ -98,7 +98,7 @@ static inline Span capsule_span(const ShapeRay* ray, __global const float* block
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
   const real t_enter = shift + capsule_end(ray, &c, -1.0f, &enters);
   const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
-  return span_of(enters & exits, t_enter, t_exit);
+  return span_of(enters, t_enter, t_exit);
 }
 
 #endif
