@@ -284,24 +284,32 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
 
 // --- Margins ---
 
-// The least of f over [0, 1]: sampled, then refined around the best samples.
-double least_over(int samples, const std::function<double(double)>& f) {
-  std::vector<double> at;
-  for (int i = 0; i <= samples; ++i) at.push_back(f(double(i) / samples));
-  double least = *std::min_element(at.begin(), at.end());
-  const auto n = static_cast<std::size_t>(samples);
-  const double spread = *std::max_element(at.begin(), at.end()) - least, sampled = least;
-  for (std::size_t i = 0; i <= n; ++i) {
-    if ((i > 0 && at[i - 1] < at[i]) || (i < n && at[i + 1] < at[i]) || at[i] > sampled + 0.05 * spread) continue;
-    double best = double(i) / samples, value_there = at[i];
-    for (double width = 1.0 / samples; width > 1e-16; width *= 0.5)
-      for (const double s : {best - width, best + width}) {
-        if (s < 0 || s > 1) continue;
-        const double there = f(s);
-        if (there < value_there) value_there = there, best = s;
+// The least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows to hold nothing less than what is
+// known are passed over; the others are split, and split once more, and then searched by halving.
+double least_over(int samples, double steepness, const std::function<double(double)>& f) {
+  double least = HUGE_VAL;
+  const auto search = [&](const auto& self, double low, double high, int count, int level) -> void {
+    std::vector<double> at;
+    const double step = (high - low) / count;
+    for (int i = 0; i <= count; ++i) least = std::min(least, at.emplace_back(f(low + i * step)));
+    for (std::size_t i = 0; i + 1 < at.size(); ++i) {
+      if (0.5 * (at[i] + at[i + 1] - steepness * step) > least) continue;
+      const double begin = low + static_cast<double>(i) * step;
+      if (level > 0) {
+        self(self, begin, begin + step, 64, level - 1);
+        continue;
       }
-    least = std::min(least, value_there);
-  }
+      double best = at[i] < at[i + 1] ? begin : begin + step, value_there = std::min(at[i], at[i + 1]);
+      for (double width = 0.5 * step; width > 1e-16; width *= 0.5)
+        for (const double x : {best - width, best + width}) {
+          if (x < 0 || x > 1) continue;
+          const double there = f(x);
+          if (there < value_there) value_there = there, best = x;
+        }
+      least = std::min(least, value_there);
+    }
+  };
+  search(search, 0, 1, samples, 1);
   return least;
 }
 
@@ -316,7 +324,8 @@ double distance_line_to_curve(const Line& line, const Curve& curve) {
     const dvec3 a = curve.p - line.foot, b = curve.q - line.foot;
     return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit, b - glm::dot(b, line.unit) * line.unit);
   }
-  return least_over(256, [&](double s) { return distance_line_to_point(line, curve.at(s)); });
+  return least_over(256, curve.radius * std::abs(curve.to - curve.from),
+                    [&](double s) { return distance_line_to_point(line, curve.at(s)); });
 }
 
 // Distance between the line and the places where it would touch the patch: where the patch, seen along the line, folds.
@@ -332,8 +341,10 @@ double distance_to_fold(const Line& line, const Bilinear& patch) {
     if ((fa < 0 && fb > 0) || (fa > 0 && fb < 0)) ends.push_back(a + fa / (fa - fb) * (b - a));
   }
   double least = HUGE_VAL;
+  const double sides = std::max(glm::length(seen.p10 - seen.p00), glm::length(seen.p11 - seen.p01)) +
+                       std::max(glm::length(seen.p01 - seen.p00), glm::length(seen.p11 - seen.p10));
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    least = std::min(least, least_over(256, [&](double s) {
+    least = std::min(least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), [&](double s) {
                        const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
                        return glm::length(seen.at(uv.x, uv.y));
                      }));
@@ -341,7 +352,8 @@ double distance_to_fold(const Line& line, const Bilinear& patch) {
 }
 
 double least_along(const Primitive& primitive, const Line& line) {
-  return least_over(2048, [&](double s) { return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit); });
+  return least_over(2048, 2 * line.reach,
+                    [&](double s) { return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit); });
 }
 
 }  // namespace

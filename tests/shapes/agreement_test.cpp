@@ -225,7 +225,9 @@ TEST_P(Agreement, OfListsUnderAffineMaps) {
       // docs/numerics.md, "Instances": 4 eps of the terms of the origin, and as much of those of t d where the shape is.
       const double t = (glm::length(c.ray.origin - ball.center) + ball.radius) / glm::length(c.ray.direction);
       c.bound = surface_bound(*c.primitive, *c.witness, object_ray) + 4 * eps * (glm::length(terms) + t * glm::length(slopes));
-      check(c, listed[i], described(*c.primitive, cases.rays[i]), tally);
+      std::string where = described(*c.primitive, cases.rays[i]) + "\nobject from world:";
+      for (const float x : m) where += fmt::format(" {:a}", x);
+      check(c, listed[i], where, tally);
     });
   }
   report(GetParam().name, tally);

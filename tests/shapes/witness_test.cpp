@@ -107,6 +107,14 @@ TEST(Witness, TriangleAndDisk) {
   expect_crossings(disk, {{1, 1, 0}, {0, 0, 0.5}}, {2});
   expect_crossings(disk, {{1.5, 1.5, 0}, {0, 0, 0.5}}, {});
   EXPECT_NEAR(margin(disk, {{1, 0, 0}, {0, 0, 1}}), 1, 1e-9);
+  // Almost in the disk's plane and almost a tangent of its rim, 5.33e-6 from it at the crossing: two minima close to each other.
+  const Disk flat{{0x1.d5a414p-3, -0x1.0859dap+3, 0x1.f633e8p+3}, {0x1.46e11ep-2, -0x1.1177eap-2, 0x1.d18c5ep-1}, 0x1.855672p+2};
+  const Ray grazing{{-14.949357741319, 11.799509225158, 26.938185622453}, {19.115298806774, -15.422550404783, -11.264191443461}};
+  const auto crossed = crossings(flat, grazing);
+  ASSERT_EQ(crossed.size(), 1u);
+  const double inside = flat.radius - glm::length(grazing.origin + crossed[0].t * grazing.direction - flat.center);
+  EXPECT_NEAR(inside, 5.33e-6, 1e-8);
+  EXPECT_LE(margin(flat, grazing), inside);
 }
 
 TEST(Witness, OpenShapesSayWhetherTheRayGoesAlongTheNormal) {
