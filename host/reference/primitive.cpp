@@ -23,9 +23,10 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
 
 namespace {
 
-// Bisections of the ball parameter. The value has zero slope at its minimum, so an error of 2^-44 of the length there is one of
-// about 2^-88 of length^2 / radius in the value.
-constexpr int ball_bisections = 44;
+// The least value is where the slope is 0; it is flat there, so an error of 1e-13 of the length is one of 1e-26 length^2 /
+// radius.
+constexpr double ball_parameter_error = 1e-13;
+constexpr int most_ball_steps = 60;
 
 double value_of(const Sphere& s, const dvec3& x) { return glm::length(x - s.center) - s.radius; }
 
@@ -34,17 +35,24 @@ double value_of(const Capsule& c, const dvec3& x) {
   const double growth = c.radius1 - c.radius0;
   if (growth == 0) return distance_to_segment(x, c.p0, c.p1) - c.radius0;
   const auto at = [&](double s) { return glm::length(x - (c.p0 + s * axis)) - (c.radius0 + s * growth); };
-  // Slope of `at`, times the distance; it rises with s, since `at` is convex.
-  const auto rises = [&](double s) {
+  // Slope of `at`, times the distance; its sign is that of a rising function, since `at` is convex.
+  const auto slope = [&](double s) {
     const dvec3 to_center = c.p0 + s * axis - x;
-    return glm::dot(to_center, axis) > growth * glm::length(to_center);
+    return glm::dot(to_center, axis) - growth * glm::length(to_center);
   };
-  double low = 0, high = 1;
-  if (rises(low)) return at(low);
-  if (!rises(high)) return at(high);
-  for (int i = 0; i < ball_bisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (rises(middle) ? high : low) = middle;
+  double low = 0, high = 1, at_low = slope(low), at_high = slope(high);
+  if (at_low > 0) return at(low);
+  if (at_high <= 0) return at(high);
+  // Regula falsi in its Illinois form, with a bisection every third step.
+  for (int i = 0; i < most_ball_steps && high - low > ball_parameter_error; ++i) {
+    double s = low - at_low * (high - low) / (at_high - at_low);
+    if (i % 3 == 2 || !(s > low && s < high)) s = 0.5 * (low + high);
+    const double here = slope(s);
+    if (here > 0) {
+      high = s, at_high = here, at_low *= 0.5;
+    } else {
+      low = s, at_low = here, at_high *= 0.5;
+    }
   }
   return std::min(at(low), at(high));
 }
@@ -98,6 +106,15 @@ bool is_any(const Primitive& p) {
 }
 
 }  // namespace
+
+std::size_t kind_of(const Primitive& primitive) {
+  if (const auto* capsule = std::get_if<Capsule>(&primitive)) return capsule->radius0 == capsule->radius1 ? 1 : 2;
+  if (const auto* spool = std::get_if<Spool>(&primitive)) return spool->ends[0].radius == spool->ends[1].radius ? 5 : 6;
+  if (is_any<Sphere>(primitive)) return 0;
+  if (is_any<Triangle>(primitive)) return 3;
+  if (is_any<Disk>(primitive)) return 4;
+  return primitive.index() - Primitive(Box{}).index() + 7;  // in the order of Primitive
+}
 
 bool is_solid(const Primitive& primitive) {
   if (const auto* spool = std::get_if<Spool>(&primitive)) return !spool->ends[0].open && !spool->ends[1].open;

@@ -117,6 +117,14 @@ struct CsgPart {
 /// At least one part, all solids.
 Csg make_csg(Csg::Operation operation, std::span<const CsgPart> parts);
 
+/// The kinds that are told apart in reports, by name: capsules with two radii are tapered_capsules, spools are cylinders or cones
+/// by theirs.
+inline constexpr std::array kind_names = {
+    "sphere", "capsule",    "tapered_capsule", "triangle",      "disk",         "cylinder", "cone",
+    "box",    "polyhedron", "partial_sphere",  "open_cylinder", "partial_disk", "bilinear", "csg"};
+/// Index into kind_names.
+std::size_t kind_of(const Primitive& primitive);
+
 /// True for shapes with an inside.
 bool is_solid(const Primitive& primitive);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A loop over all primitives; a ray that passes a primitive's ball is not looked at closer.
+// A loop over all groups of primitives; a ray that passes a group's ball, or a primitive's, does not look closer.
 #include "reference/scene_witness.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -53,21 +55,41 @@ SceneHit hit_of(SceneHit identity, const Crossing& crossing, const std::vector<s
 }  // namespace
 
 SceneWitness::SceneWitness(const Scene& scene) {
-  for (std::uint32_t i = 0; i < scene.shapes.size(); ++i)
+  for (std::uint32_t i = 0; i < scene.shapes.size(); ++i) {
+    shape_begin_.push_back(placed_.size());
     add(scene.shapes[i], scene.shapes[i].world_from_object, {.instance = no_instance, .shape = i});
+  }
   for (std::uint32_t j = 0; j < scene.instances.size(); ++j) {
     const Instance& instance = scene.instances[j];
     const Object& object = scene.objects[instance.object];
-    for (std::uint32_t i = 0; i < object.shapes.size(); ++i)
+    instance_begin_.emplace_back();
+    for (std::uint32_t i = 0; i < object.shapes.size(); ++i) {
+      instance_begin_.back().push_back(placed_.size());
       add(object.shapes[i], instance.world_from_object * object.shapes[i].world_from_object,
           {.instance = j, .object = instance.object, .shape = i});
+    }
   }
+}
+
+SceneWitness::PlacedPrimitive SceneWitness::placed(std::size_t index) const {
+  const Placed& placed = placed_.at(index);
+  return {placed.primitive, placed.ball, object_from_world_[placed.space], placed.identity};
+}
+
+std::optional<std::size_t> SceneWitness::index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const {
+  if (instance != no_instance && instance >= instance_begin_.size()) return std::nullopt;
+  const std::vector<std::size_t>& begin = instance == no_instance ? shape_begin_ : instance_begin_[instance];
+  if (shape >= begin.size() || begin[shape] + primitive >= placed_.size()) return std::nullopt;
+  const SceneHit& found = placed_[begin[shape] + primitive].identity;
+  if (found.instance != instance || found.shape != shape || found.primitive != primitive) return std::nullopt;
+  return found.index;
 }
 
 void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
   object_from_world_.push_back(glm::inverse(world_from_shape));
   surface_materials_.push_back(materials_by_surface(shape));
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  const std::size_t first = placed_.size();
   std::uint32_t index = 0;
   for (const Primitive& primitive : primitives_of(shape)) {
     Placed placed{primitive, bounding_ball(primitive), identity, static_cast<std::uint32_t>(object_from_world_.size() - 1)};
@@ -80,36 +102,66 @@ void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, c
     placed_.push_back(placed);
     ++index;
   }
+  for (std::size_t i = first; i < placed_.size(); ++i) grouped_.push_back(static_cast<std::uint32_t>(i));
+  if (first < placed_.size())
+    group(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(placed_.size()), world_from_shape);
+}
+
+/// Halves the primitives of one shape, along the axis on which their centres are furthest apart, until 32 or fewer are left.
+void SceneWitness::group(std::uint32_t begin, std::uint32_t end, const glm::dmat4& world_from_shape) {
+  dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    low = glm::min(low, placed_[grouped_[i]].ball.center);
+    high = glm::max(high, placed_[grouped_[i]].ball.center);
+  }
+  const dvec3 size = high - low;
+  if (end - begin > 32) {
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(grouped_.begin() + begin, grouped_.begin() + middle, grouped_.begin() + end,
+                     [&](auto a, auto b) { return placed_[a].ball.center[axis] < placed_[b].ball.center[axis]; });
+    group(begin, middle, world_from_shape);
+    group(middle, end, world_from_shape);
+    return;
+  }
+  Ball ball{0.5 * (low + high), 0};
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const Ball& own = placed_[grouped_[i]].ball;
+    ball.radius = std::max(ball.radius, glm::length(own.center - ball.center) + own.radius);
+  }
+  // No direction is stretched by more than the square root of the sum of all entries' squares.
+  double squares = 0;
+  for (int c = 0; c < 3; ++c) squares += glm::dot(dvec3(world_from_shape[c]), dvec3(world_from_shape[c]));
+  groups_.push_back({{dvec3(world_from_shape * glm::dvec4(ball.center, 1)), std::sqrt(squares) * ball.radius}, begin, end});
 }
 
 /// Calls visit(placed, ray in its space) for every primitive that the ray may touch.
 template <class Visit>
-void SceneWitness::visit_touched(Ray ray, const Visit& visit) const {
+void SceneWitness::visit_touched(const Ray& ray, const Visit& visit) const {
   Ray local = ray;
   std::uint32_t space = 0xffffffffu;
-  for (const Placed& placed : placed_) {
-    if (placed.space != space) {
-      space = placed.space;
-      local.origin = dvec3(object_from_world_[space] * glm::dvec4(ray.origin, 1));
-      local.direction = dvec3(object_from_world_[space] * glm::dvec4(ray.direction, 0));
+  for (const Group& group : groups_) {
+    if (!may_touch(group.ball, ray)) continue;
+    for (std::uint32_t i = group.begin; i < group.end; ++i) {
+      const Placed& placed = placed_[grouped_[i]];
+      if (placed.space != space) {
+        space = placed.space;
+        local.origin = dvec3(object_from_world_[space] * glm::dvec4(ray.origin, 1));
+        local.direction = dvec3(object_from_world_[space] * glm::dvec4(ray.direction, 0));
+      }
+      if (may_touch(placed.ball, local)) visit(placed, local);
     }
-    if (may_touch(placed.ball, local)) visit(placed, local);
   }
 }
 
 std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
   std::optional<SceneHit> best;
-  visit_touched(ray, [&](const Placed& placed, Ray local) {
-    if (best) local.t_max = best->t;
-    if (placed.sees_entering && placed.sees_leaving) {
-      if (const auto crossing = reference::closest(placed.primitive, local))
-        best = hit_of(placed.identity, *crossing, surface_materials_[placed.space]);
-      return;
-    }
+  visit_touched(ray, [&](const Placed& placed, const Ray& local) {
     for (const Crossing& crossing : crossings(placed.primitive, local)) {
       if (!(crossing.t > local.t_min && crossing.t < local.t_max)) continue;
       if (!(crossing.leaving ? placed.sees_leaving : placed.sees_entering)) continue;
-      best = hit_of(placed.identity, crossing, surface_materials_[placed.space]);
+      if (!best || crossing.t < best->t || (crossing.t == best->t && placed.identity.index < best->index))
+        best = hit_of(placed.identity, crossing, surface_materials_[placed.space]);
       return;
     }
   });
@@ -117,15 +169,24 @@ std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
 }
 
 std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::size_t limit) const {
+  std::vector<std::uint32_t> near;
+  std::vector<SceneHit> out = all(ray, near);
+  out.resize(std::min(out.size(), limit));
+  return out;
+}
+
+std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::vector<std::uint32_t>& near) const {
   std::vector<SceneHit> out;
+  near.clear();
   visit_touched(ray, [&](const Placed& placed, const Ray& local) {
+    near.push_back(static_cast<std::uint32_t>(placed.identity.index));
     for (const Crossing& crossing : crossings(placed.primitive, local))
       if (crossing.t > ray.t_min && crossing.t < ray.t_max && (crossing.leaving ? placed.sees_leaving : placed.sees_entering))
         out.push_back(hit_of(placed.identity, crossing, surface_materials_[placed.space]));
   });
-  std::ranges::stable_sort(out,
-                           [](const SceneHit& a, const SceneHit& b) { return a.t != b.t ? a.t < b.t : a.leaving && !b.leaving; });
-  out.resize(std::min(out.size(), limit));
+  std::ranges::stable_sort(out, [](const SceneHit& a, const SceneHit& b) {
+    return a.t != b.t ? a.t < b.t : a.leaving != b.leaving ? a.leaving : a.index < b.index;
+  });
   return out;
 }
 

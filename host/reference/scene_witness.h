@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness of a whole scene: every ray against every primitive, without a tree. Primitives stay in their object space; rays go
-// there through matrices inverted in double, unnormalised, so that t is the same in all spaces.
+// The witness of a whole scene: every ray against every primitive, without a tree: primitives are only passed over in groups
+// whose common ball the ray misses. Primitives stay in their object space; rays go there through matrices inverted in double,
+// unnormalised, so that t is the same in all spaces.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +39,8 @@ class SceneWitness {
   /// Every crossing with t_min < t < t_max in order; at the same t those that leave come first, then the first in scene order. No
   /// more than `limit`.
   std::vector<SceneHit> all(const Ray& ray, std::size_t limit = std::numeric_limits<std::size_t>::max()) const;
+  /// The same, and the indices of all primitives whose balls the line goes through.
+  std::vector<SceneHit> all(const Ray& ray, std::vector<std::uint32_t>& near) const;
   /// Unit normal in the world at a point on (or within 1e-7 of its size from) the primitive of a hit: outward of solids, by
   /// winding or as given of open shapes, turned by ReverseOrientation. By differences of the implicit function over 1e-6 of the
   /// primitive's size: no meaning that close to an edge.
@@ -45,6 +48,17 @@ class SceneWitness {
   /// closest() for many rays, in parallel.
   std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
   std::size_t size() const { return placed_.size(); }
+
+  /// A primitive of the scene, instances expanded. References last as long as the witness.
+  struct PlacedPrimitive {
+    const Primitive& primitive;
+    const Ball& ball;  // object space
+    const glm::dmat4& object_from_world;
+    const SceneHit& identity;  // instance, object, shape, primitive, index
+  };
+  PlacedPrimitive placed(std::size_t index) const;
+  /// Its index by the numbers of SceneHit; none when there is no such primitive.
+  std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const;
 
  private:
   struct Placed {
@@ -54,10 +68,19 @@ class SceneWitness {
     std::uint32_t space;  // index into object_from_world_ and surface_materials_
     bool sees_entering = true, sees_leaving = true, reversed = false;
   };
+  struct Group {
+    Ball ball;                 // of its primitives' balls, world space
+    std::uint32_t begin, end;  // in grouped_
+  };
   template <class Visit>
-  void visit_touched(Ray ray, const Visit& visit) const;
+  void visit_touched(const Ray& ray, const Visit& visit) const;
   void add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity);
+  void group(std::uint32_t begin, std::uint32_t end, const glm::dmat4& world_from_shape);
   std::vector<Placed> placed_;
+  std::vector<std::uint32_t> grouped_;  // indices into placed_
+  std::vector<Group> groups_;
+  std::vector<std::size_t> shape_begin_;                  // first primitive of each shape of the world
+  std::vector<std::vector<std::size_t>> instance_begin_;  // and of each shape of each instance
   std::vector<glm::dmat4> object_from_world_;
   std::vector<std::vector<std::uint32_t>> surface_materials_;  // empty: the same on all
 };
