@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The program's door: subcommands in, exit codes out (0 done, 1 failed while working, 2 wrong input or usage).
+// The program's door: subcommands in, exit codes out (0 done, 1 failed while working, 2 wrong input or usage, 3 `verify`
+// found disagreement).
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <new>
@@ -11,7 +12,7 @@
 
 namespace {
 
-constexpr int exit_failed = 1, exit_wrong_input = 2;
+constexpr int exit_failed = 1, exit_wrong_input = 2, exit_disagreed = 3;
 
 /// One line: control characters of names and files would break it, or the terminal.
 void print_error(std::string message) {
@@ -42,6 +43,8 @@ int run(CLI::App& app, int argc, char** argv) {
   } catch (const caplet::InputError& error) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
+  } catch (const caplet::cli::Disagreed&) {
+    return exit_disagreed;
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
   } catch (const std::exception& error) {
@@ -59,10 +62,11 @@ int main(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Show this help and exit");
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong.\n"
+      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong, 3 verify found disagreement.\n"
       "`caplet COMMAND --help` explains a command.");
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_pick(app);
+  caplet::cli::add_verify(app);
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_bench(app);

@@ -45,6 +45,30 @@ double sign_of(const Csg& csg, std::size_t i) { return csg.operation == Csg::Ope
 
 }  // namespace
 
+namespace {
+
+Ball ball_around(Csg::Operation operation, const std::vector<CsgOperand>& operands) {
+  std::vector<Ball> balls;
+  for (const CsgOperand& operand : operands) {
+    const Ball inner = bounding_ball(operand.primitive);
+    const glm::dmat4 outward = glm::inverse(operand.operand_from_csg);
+    balls.push_back({apply(outward, inner.center), greatest_stretch(outward) * inner.radius});
+  }
+  if (operation == Csg::Operation::set_difference) return balls[0];
+  if (operation == Csg::Operation::set_intersection)
+    return *std::min_element(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) { return a.radius < b.radius; });
+  dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+  for (const Ball& ball : balls) {
+    low = glm::min(low, ball.center - ball.radius);
+    high = glm::max(high, ball.center + ball.radius);
+  }
+  Ball out{0.5 * (low + high), 0};
+  for (const Ball& ball : balls) out.radius = std::max(out.radius, glm::length(ball.center - out.center) + ball.radius);
+  return out;
+}
+
+}  // namespace
+
 Csg make_csg(Csg::Operation operation, std::span<const CsgPart> parts) {
   auto body = std::make_shared<CsgBody>();
   int surfaces = 0;
@@ -53,6 +77,9 @@ Csg make_csg(Csg::Operation operation, std::span<const CsgPart> parts) {
     body->operands.push_back({part.primitive, inverse, greatest_stretch(inverse), surfaces});
     surfaces += surface_count(part.primitive);
   }
+  const Ball ball = ball_around(operation, body->operands);
+  body->ball_center = ball.center;
+  body->ball_radius = ball.radius;
   return {operation, std::move(body)};
 }
 
@@ -94,24 +121,6 @@ double distance_from(const Csg& csg, const dvec3& x, int surface) {
   return HUGE_VAL;
 }
 
-Ball ball_of(const Csg& csg) {
-  std::vector<Ball> balls;
-  for (const CsgOperand& operand : csg.body->operands) {
-    const Ball inner = bounding_ball(operand.primitive);
-    const glm::dmat4 outward = glm::inverse(operand.operand_from_csg);
-    balls.push_back({apply(outward, inner.center), greatest_stretch(outward) * inner.radius});
-  }
-  if (csg.operation == Csg::Operation::set_difference) return balls[0];
-  if (csg.operation == Csg::Operation::set_intersection)
-    return *std::min_element(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) { return a.radius < b.radius; });
-  dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-  for (const Ball& ball : balls) {
-    low = glm::min(low, ball.center - ball.radius);
-    high = glm::max(high, ball.center + ball.radius);
-  }
-  Ball out{0.5 * (low + high), 0};
-  for (const Ball& ball : balls) out.radius = std::max(out.radius, glm::length(ball.center - out.center) + ball.radius);
-  return out;
-}
+Ball ball_of(const Csg& csg) { return {csg.body->ball_center, csg.body->ball_radius}; }
 
 }  // namespace caplet::reference

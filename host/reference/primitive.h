@@ -109,6 +109,8 @@ struct CsgOperand {
 };
 struct CsgBody {
   std::vector<CsgOperand> operands;
+  glm::dvec3 ball_center{0};  // of a ball that holds the shape
+  double ball_radius = 0;
 };
 struct CsgPart {
   Primitive primitive;

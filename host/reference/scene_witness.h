@@ -57,6 +57,7 @@ class SceneWitness {
     const SceneHit& identity;  // instance, object, shape, primitive, index
   };
   PlacedPrimitive placed(std::size_t index) const;
+  bool is_reversed(std::size_t index) const { return placed_.at(index).reversed; }  // by ReverseOrientation
   /// Its index by the numbers of SceneHit; none when there is no such primitive.
   std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const;
 

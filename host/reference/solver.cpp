@@ -52,9 +52,9 @@ Line line_near(const Primitive& primitive, const Ray& ray) {
 
 // Halves the bracket around the least value until it is <= `enough`, surely above it (the Lipschitz bound), or cannot be
 // narrowed. Returns where, and the value there.
-std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough) {
+std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough, double low, double high) {
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
-  double low = -line.reach, middle = 0, high = line.reach, at_middle = f(0);
+  double middle = 0.5 * (low + high), at_middle = f(middle);
   while (at_middle > enough) {
     if (at_middle - std::max(high - middle, middle - low) > enough && enough > -HUGE_VAL) break;
     const double left = 0.5 * (low + middle), right = 0.5 * (middle + high);
@@ -74,23 +74,51 @@ std::pair<double, double> descend(const Primitive& primitive, const Line& line, 
   return {middle, at_middle};
 }
 
-// Where the value changes sign between `outside` (> 0) and `inside` (<= 0).
+// The least value along the line.
+double least_on(const Primitive& primitive, const Line& line) {
+  return descend(primitive, line, -HUGE_VAL, -line.reach, line.reach).second;
+}
+
+// Where the value changes sign between `outside` (> 0) and `inside` (<= 0), to 2^-52 of the reach: bisection, helped by the
+// Illinois form of regula falsi in two steps of three.
 double bisect(const Primitive& primitive, const Line& line, double outside, double inside) {
-  for (;;) {
-    const double middle = 0.5 * (outside + inside);
-    if (middle == outside || middle == inside) return inside;
-    (value(primitive, line.foot + middle * line.unit) > 0 ? outside : inside) = middle;
+  const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
+  double at_outside = f(outside), at_inside = f(inside);
+  for (int i = 1; std::abs(outside - inside) > 0x1p-52 * line.reach; ++i) {
+    double s = inside - at_inside * (outside - inside) / (at_outside - at_inside);
+    const bool between = (s > inside && s < outside) || (s < inside && s > outside);
+    if (i % 3 == 0 || !between) s = 0.5 * (outside + inside);
+    if (s == outside || s == inside) break;
+    const double here = f(s);
+    if (here > 0) {
+      outside = s, at_outside = here, at_inside *= 0.5;
+    } else {
+      inside = s, at_inside = here, at_outside *= 0.5;
+    }
   }
+  return inside;
 }
 
 std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray) {
   const Line line = line_near(primitive, ray);
   if (line.miss_distance > 0) return {};
-  const auto [inside, least] = descend(primitive, line, 0);
+  // Within its value of a point outside there is no crossing (the Lipschitz bound): both ends come closer by that first.
+  double low = -line.reach, high = line.reach;
+  const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
+  for (int i = 0; i < 4; ++i) {
+    const double at_low = f(low), at_high = f(high);
+    if (at_low > 0) low += at_low * (1 - 0x1p-40);
+    if (at_high > 0) high -= at_high * (1 - 0x1p-40);
+    if (low > high) return {};
+  }
+  const auto [inside, least] = descend(primitive, line, 0, low, high);
   if (least > 0) return {};
   std::vector<Crossing> out;
   for (const bool leaving : {false, true}) {
-    const double s = bisect(primitive, line, leaving ? line.reach : -line.reach, inside);
+    double end = leaving ? high : low;
+    // Rounding may have taken an end to the surface.
+    if (!(f(end) > 0)) end = leaving ? line.reach : -line.reach;
+    const double s = bisect(primitive, line, end, inside);
     const SurfaceAt at = surface_at(primitive, line.foot + s * line.unit);
     out.push_back({line.t_foot + s / line.speed, leaving, at.surface, at.margin});
   }
@@ -284,16 +312,19 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
 
 // --- Margins ---
 
+constexpr double no_limit = -HUGE_VAL;
+
 // The least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows to hold nothing less than what is
-// known are passed over; the others are split, and split once more, and then searched by halving.
-double least_over(int samples, double steepness, const std::function<double(double)>& f) {
+// known are passed over; the others are split, and split once more, and then searched by halving. With a limit, it is enough to
+// know whether the least is above it.
+double least_over(int samples, double steepness, double limit, const std::function<double(double)>& f) {
   double least = HUGE_VAL;
   const auto search = [&](const auto& self, double low, double high, int count, int level) -> void {
     std::vector<double> at;
     const double step = (high - low) / count;
     for (int i = 0; i <= count; ++i) least = std::min(least, at.emplace_back(f(low + i * step)));
-    for (std::size_t i = 0; i + 1 < at.size(); ++i) {
-      if (0.5 * (at[i] + at[i + 1] - steepness * step) > least) continue;
+    for (std::size_t i = 0; i + 1 < at.size() && least > limit; ++i) {
+      if (0.5 * (at[i] + at[i + 1] - steepness * step) > std::min(least, limit >= 0 ? limit : HUGE_VAL)) continue;
       const double begin = low + static_cast<double>(i) * step;
       if (level > 0) {
         self(self, begin, begin + step, 64, level - 1);
@@ -318,18 +349,18 @@ double distance_line_to_point(const Line& line, const dvec3& p) {
   return glm::length(w - glm::dot(w, line.unit) * line.unit);
 }
 
-double distance_line_to_curve(const Line& line, const Curve& curve) {
+double distance_line_to_curve(const Line& line, const Curve& curve, double limit) {
   if (curve.kind == Curve::Kind::segment) {
     // Seen along the line, the segment is one in the plane and the line its origin.
     const dvec3 a = curve.p - line.foot, b = curve.q - line.foot;
     return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit, b - glm::dot(b, line.unit) * line.unit);
   }
-  return least_over(256, curve.radius * std::abs(curve.to - curve.from),
+  return least_over(256, curve.radius * std::abs(curve.to - curve.from), limit,
                     [&](double s) { return distance_line_to_point(line, curve.at(s)); });
 }
 
 // Distance between the line and the places where it would touch the patch: where the patch, seen along the line, folds.
-double distance_to_fold(const Line& line, const Bilinear& patch) {
+double distance_to_fold(const Line& line, const Bilinear& patch, double limit) {
   const Seen seen = seen_along(line, patch);
   // The zero line of an affine function, from where it enters the unit square to where it leaves.
   std::vector<dvec2> ends;
@@ -344,7 +375,7 @@ double distance_to_fold(const Line& line, const Bilinear& patch) {
   const double sides = std::max(glm::length(seen.p10 - seen.p00), glm::length(seen.p11 - seen.p01)) +
                        std::max(glm::length(seen.p01 - seen.p00), glm::length(seen.p11 - seen.p10));
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    least = std::min(least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), [&](double s) {
+    least = std::min(least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), limit, [&](double s) {
                        const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
                        return glm::length(seen.at(uv.x, uv.y));
                      }));
@@ -352,7 +383,7 @@ double distance_to_fold(const Line& line, const Bilinear& patch) {
 }
 
 double least_along(const Primitive& primitive, const Line& line) {
-  return least_over(2048, 2 * line.reach,
+  return least_over(2048, 2 * line.reach, no_limit,
                     [&](double s) { return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit); });
 }
 
@@ -374,19 +405,35 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
   return std::nullopt;
 }
 
+namespace {
+
+// Of open surfaces: the distance to where the number of crossings changes; with a limit, right only in whether it is above.
+double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
+  const Line line = line_near(primitive, ray);
+  double distance = HUGE_VAL;
+  for (const Curve& curve : boundary(primitive)) distance = std::min(distance, distance_line_to_curve(line, curve, limit));
+  if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
+    distance = std::min(distance, distance_to_fold(line, *patch, limit));
+  } else if (const Primitive carrier = carrier_of(primitive);
+             carrier.index() != primitive.index() || std::holds_alternative<Spool>(primitive)) {
+    distance = std::min(distance, std::abs(least_on(carrier, line_near(carrier, ray))));
+  }
+  return distance;
+}
+
+}  // namespace
+
 double margin(const Primitive& primitive, const Ray& ray) {
   const Line line = line_near(primitive, ray);
   if (std::holds_alternative<Csg>(primitive)) return -least_along(primitive, line);
-  if (is_solid(primitive)) return -descend(primitive, line, -HUGE_VAL).second;
-  double distance = HUGE_VAL;
-  for (const Curve& curve : boundary(primitive)) distance = std::min(distance, distance_line_to_curve(line, curve));
-  if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
-    distance = std::min(distance, distance_to_fold(line, *patch));
-  } else if (const Primitive carrier = carrier_of(primitive);
-             carrier.index() != primitive.index() || std::holds_alternative<Spool>(primitive)) {
-    distance = std::min(distance, std::abs(descend(carrier, line_near(carrier, ray), -HUGE_VAL).second));
-  }
+  if (is_solid(primitive)) return -least_on(primitive, line);
+  const double distance = change_distance(primitive, ray, no_limit);
   return crossings(primitive, ray).empty() ? -distance : distance;
+}
+
+bool comes_within(const Primitive& primitive, const Ray& ray, double tolerance) {
+  return !(is_solid(primitive) ? std::abs(margin(primitive, ray)) > tolerance
+                               : change_distance(primitive, ray, tolerance) > tolerance);
 }
 
 Verdict referee(const Primitive& primitive, const Ray& ray, double tolerance) {

@@ -42,6 +42,9 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray);
 /// between the line and the boundary curves, and to tangency.
 double margin(const Primitive& primitive, const Ray& ray);
 
+/// Whether margin() is within the tolerance of 0; faster than that for open surfaces.
+bool comes_within(const Primitive& primitive, const Ray& ray, double tolerance);
+
 enum class Verdict { hit, miss, tangent };
 
 /// Says by dense sampling of value() along the line, which assumes nothing of its shape, whether it enters the solid deeper than

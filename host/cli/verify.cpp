@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet verify`: does this device compute what the host reference says?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "base/atomic_file.h"
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "cli/commands.h"
+#include "cli/heatmap.h"
+#include "cli/options.h"
+#include "cli/verify_report.h"
+#include "film/image.h"
+#include "import/import.h"
+#include "verify/cases.h"
+#include "verify/torture.h"
+
+namespace caplet::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, device, heatmap, failures, replay, size;
+  std::uint64_t rays = 1'000'000, seed = 0;
+  bool all_devices = false, json = false, quiet = false;
+};
+
+std::vector<Device> devices_of(const Options& o) {
+  std::vector<Device> out;
+  if (!o.all_devices) {
+    out.push_back(Device::choose(o.device));
+  } else {
+    for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index)));
+    if (out.empty()) out.push_back(Device::choose(""));  // says what is missing
+  }
+  for (const Device& device : out) self_test(device);
+  return out;
+}
+
+std::string scene_label(const verify::SceneName& name) {
+  return name.file.empty() ? fmt::format("torture set, seed {}", name.seed) : name.file;
+}
+
+/// Asks every case again. True when all agree now.
+bool replay(const Options& o) {
+  const std::vector<verify::Case> cases = verify::load_cases(o.replay);
+  const std::vector<Device> devices = devices_of(o);
+  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>> by_scene;
+  for (const verify::Case& one : cases) by_scene[{one.scene.file, one.scene.seed, one.scene.round}].push_back(&one);
+  std::map<const verify::Case*, std::string> wrong;
+  for (const auto& [key, members] : by_scene) {
+    const verify::SceneName& name = members.front()->scene;
+    const Scene scene =
+        name.file.empty() ? verify::torture_scene(name.seed, name.round) : import_scene(name.file, FileImageReader());
+    std::vector<RayRecord> rays;
+    for (const verify::Case* one : members) rays.push_back(one->ray);
+    verify::SceneCheck check(scene, devices);
+    std::mutex mutex;
+    check.check(rays, [&](const verify::SceneCheck::Checked& ray) {
+      std::string text;
+      for (std::size_t d = 0; d < devices.size(); ++d)
+        for (const verify::Disagreement& found : ray.outcomes[d].disagreements)
+          text += fmt::format("  {}: {}: {}\n", devices[d].info().name,
+                              verify::fault_names[static_cast<std::size_t>(found.fault)], found.text);
+      const std::lock_guard lock(mutex);
+      if (!text.empty()) wrong[members[ray.ray]] = text;
+    });
+  }
+  for (const verify::Case& one : cases) {
+    const auto found = wrong.find(&one);
+    fmt::print("{}: {}\n{}", one.file.string(), found == wrong.end() ? "agrees" : "DISAGREES",
+               found == wrong.end() ? "" : found->second);
+  }
+  fmt::print("{} of {} cases agree\n", cases.size() - wrong.size(), cases.size());
+  return wrong.empty();
+}
+
+void run_verify(const Options& o) {
+  log::set_quiet(o.quiet);
+  const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
+  if (o.all_devices && !o.device.empty()) refuse("--device", "does not go with --all-devices");
+  if (!o.replay.empty()) {
+    if (!o.scene.empty()) refuse("--replay", "takes the scene from the cases");
+    if (!o.heatmap.empty()) refuse("--heatmap", "does not go with --replay");
+    if (!o.failures.empty()) refuse("--save-failures", "does not go with --replay");
+    if (o.json) refuse("--json", "does not go with --replay");
+    if (!replay(o)) throw Disagreed{};
+    return;
+  }
+  if (!o.heatmap.empty()) {
+    if (!o.heatmap.ends_with(".exr")) refuse("--heatmap", "writes EXR: the name must end in .exr");
+    check_writable(o.heatmap, "--heatmap");
+  }
+  if (!o.size.empty() && o.heatmap.empty()) refuse("--size", "goes with --heatmap");
+  std::optional<Scene> scene;
+  if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader());
+  const std::vector<Device> devices = devices_of(o);
+  install_interrupt_handlers();
+
+  ProgressReporter progress(ProgressReporter::style_for_stderr(o.quiet));
+  const auto start = std::chrono::steady_clock::now();
+  verify::Options options;
+  options.rays = o.rays;
+  options.seed = o.seed;
+  options.progress = [&](std::uint64_t done) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    progress.update(static_cast<double>(done) / static_cast<double>(o.rays), 0,
+                    fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds));
+  };
+  const verify::Report report = verify::verify(scene ? &*scene : nullptr, o.scene, devices, options);
+  const std::string label = scene_label({o.scene, o.seed, 0});
+  fmt::print("{}", o.json ? json_text(report, label, options) : plain_text(report, label));
+
+  std::size_t failures = 0;
+  if (!o.failures.empty()) {
+    std::vector<verify::Failure> all;
+    for (const verify::DeviceReport& device : report.devices)
+      all.insert(all.end(), device.failures.begin(), device.failures.end());
+    failures = all.size();
+    if (failures > 0) {
+      verify::save_cases(o.failures, all);
+      log::info("{} cases in {}: see caplet verify --replay {}", failures, o.failures, o.failures);
+    }
+  }
+  if (!o.heatmap.empty() && !report.interrupted) {
+    Scene shown = scene ? *scene : verify::torture_scene(o.seed, 0);
+    Overrides overrides;
+    if (!o.size.empty()) overrides.size = parse_size(o.size);
+    apply(overrides, shown);
+    write_heatmap(o.heatmap, shown, verify::heatmap(shown, devices));
+    log::info("wrote {}", o.heatmap);
+  }
+  if (report.disagreements() > 0) throw Disagreed{};
+  if (report.interrupted) throw RunError("interrupted before all rays were asked");
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");
+  command->add_option("SCENE", o->scene, "Scene file; none: a built-in torture set of all shapes");
+  command->add_option("--rays", o->rays, "How many rays")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_option("--seed", o->seed, "Other rays, and another torture set")->capture_default_str()->type_name("S");
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+      ->type_name("D");
+  command->add_flag("--all-devices", o->all_devices, "Every device there is, and one against the other");
+  command->add_flag("--json", o->json, "Print a JSON object for machines");
+  command->add_option("--heatmap", o->heatmap, "Also write a picture of how far off each pixel is, in units of the bounds")
+      ->type_name("OUT.exr");
+  command->add_option("--size", o->size, "Size of that picture, as in `render`")->type_name("WxH");
+  command->add_option("--save-failures", o->failures, "Folder for rays that disagree, one file each (at most 100 a device)")
+      ->type_name("DIR");
+  command->add_option("--replay", o->replay, "Ask saved rays again: one file, or a folder of them")->type_name("FILE|DIR");
+  command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  command->callback([o] { run_verify(*o); });
+}
+
+}  // namespace caplet::cli

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Crossings are compared primitive by primitive: a primitive displaced by no more than its bound explains a difference or it does
+// not, whatever lies before or behind it.
+#include "verify/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+namespace caplet::verify {
+
+namespace {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+using reference::SceneHit;
+
+constexpr double eps = 0x1p-24;
+
+dvec3 to_dvec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+double ulp_of(double x) {
+  const float at = std::abs(static_cast<float>(x));
+  return static_cast<double>(std::nextafter(at, HUGE_VALF)) - static_cast<double>(at);
+}
+
+/// Shapes whose sides are told apart by a normal alone, which ReverseOrientation turns.
+bool is_sheet(const reference::Primitive& primitive) {
+  return !reference::is_solid(primitive) && !std::holds_alternative<reference::Spool>(primitive);
+}
+
+bool begins_at(const LocalRay& local) { return std::abs(local.value(0)) <= local.bound; }
+
+/// Csg shapes take walls and gaps thinner than the bounds of both sides as closed.
+bool has_thin_wall(const LocalRay& local) {
+  const auto crossings = reference::crossings(*local.primitive, local.ray);
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    double deepest = 0;
+    for (int k = 1; k < 64; ++k)
+      deepest = std::max(deepest, std::abs(local.value(crossings[i].t + (crossings[i + 1].t - crossings[i].t) * k / 64)));
+    if (deepest <= 2 * local.bound) return true;
+  }
+  return false;
+}
+
+/// Whether both answers are right: the ray begins at the surface, the line touches it or passes a rim, all within the bound; of
+/// csg shapes, so with one of their solids.
+bool is_grazing(const LocalRay& local) {
+  if (begins_at(local)) return true;
+  const auto* csg = std::get_if<reference::Csg>(local.primitive);
+  if (!csg) return reference::comes_within(*local.primitive, local.ray, local.bound);
+  for (const reference::CsgOperand& operand : csg->body->operands) {
+    const glm::dmat4& m = operand.operand_from_csg;
+    const reference::Ray ray{dvec3(m * glm::dvec4(local.ray.origin, 1)), dvec3(m * glm::dvec4(local.ray.direction, 0)), 0,
+                             HUGE_VAL};
+    if (is_grazing({&operand.primitive, ray, local.bound * operand.stretch})) return true;
+  }
+  return has_thin_wall(local);
+}
+
+/// How far the ray goes from the surface between two parameters of the same crossing, in bounds.
+double apart(const LocalRay& local, double t, double other) {
+  return std::max(std::abs(local.value(t)), std::abs(local.value(0.5 * (t + other)))) / local.bound;
+}
+
+/// The least and greatest of `f` at x and `reach` to both sides along each axis.
+template <class T, class F>
+std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
+  T low = f(x), high = low;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-reach, reach}) {
+      dvec3 moved = x;
+      moved[axis] += side;
+      const T here = f(moved);
+      low = glm::min(low, here);
+      high = glm::max(high, here);
+    }
+  return {low, high};
+}
+
+}  // namespace
+
+struct Comparison::Pair {
+  std::size_t primitive;
+  std::vector<const SceneHit*> expected;
+  std::vector<const PickRecord*> found;
+};
+
+Comparison::Comparison(const Scene& scene, const reference::SceneWitness& witness)
+    : scene_(scene), witness_(witness), bounds_(witness) {}
+
+Expected Comparison::expected(const RayRecord& r) const {
+  Expected out;
+  out.ray = {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max};
+  out.hits = witness_.all(out.ray, out.near);
+  return out;
+}
+
+/// no_primitive where the scene has no such thing.
+std::size_t Comparison::primitive_of(const PickRecord& pick) const {
+  const std::size_t in_world = scene_.shapes.size();
+  std::optional<std::size_t> index;
+  if (pick.object < in_world) {
+    if (pick.shape == pick.object) index = witness_.index_of(reference::no_instance, pick.shape, pick.primitive);
+  } else if (pick.shape >= in_world) {
+    // Every object numbers its shapes on from those of the world (lower/identity.h).
+    index = witness_.index_of(static_cast<std::uint32_t>(pick.object - in_world),
+                              static_cast<std::uint32_t>(pick.shape - in_world), pick.primitive);
+  }
+  return index.value_or(no_primitive);
+}
+
+/// For messages: "capsule 7 of shape 2 of instance 3: ".
+std::string Comparison::name_of(std::size_t primitive) const {
+  const auto placed = witness_.placed(primitive);
+  const SceneHit& id = placed.identity;
+  std::string out =
+      fmt::format("{} {} of shape {}", reference::kind_names[reference::kind_of(placed.primitive)], id.primitive, id.shape);
+  if (id.instance != reference::no_instance) out += fmt::format(" of instance {}", id.instance);
+  return out + ": ";
+}
+
+Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const {
+  const auto placed = witness_.placed(hit.index);
+  const reference::Primitive& primitive = placed.primitive;
+  const double t = pick.t;
+  Match out{hit.index, {}};
+  const auto set = [&](Quantity q, double off, double allowed, double ulp) {
+    // NaN is as far off as can be.
+    out.deviations[static_cast<std::size_t>(q)] =
+        std::isfinite(off) ? Deviation{off / allowed, off / ulp} : Deviation{HUGE_VAL, HUGE_VAL};
+  };
+  set(Quantity::t, apart(local, t, hit.t), 1, 1);
+  out.deviations[0].in_ulps = std::abs(t - hit.t) / ulp_of(hit.t);
+
+  const dvec3 point = to_dvec3(pick.point), x(placed.object_from_world * glm::dvec4(point, 1));
+  // Within this of x lies a point of the surface, and the normal is that of any point as close.
+  const double error = static_cast<double>(pick.error) + bounds_.rounding(hit.index);
+  const double reach = error * bounds_.stretch(hit.index);
+  const auto normal_there = [&](const dvec3& there) { return reference::normal_at(primitive, there, reach); };
+  const dmat3 normal_matrix = glm::transpose(dmat3(placed.object_from_world));
+  const dvec3 normal = normal_there(x), turned = normal_matrix * normal;
+  // The gradient of the value in the world is the transposed matrix's image of its gradient here.
+  const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+  set(Quantity::point, std::abs(reference::value(primitive, x)) / glm::length(turned), error, ulp_of(largest));
+
+  const auto world_normal = [&](const dvec3& there) { return glm::normalize(normal_matrix * normal_there(there)); };
+  const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
+  const dvec3 own = to_dvec3(pick.normal), unit = turned / glm::length(turned);
+  // The device's arithmetic: a unit vector by a square root and quotients (16 eps), through a matrix and back to unit length.
+  const double rounding = (16 + 8 * bounds_.condition(hit.index)) * eps;
+  const double allowed = glm::length(high - low) + bounds_.tilt(hit.index) + rounding;
+  double off = std::min(glm::length(own - unit), glm::length(own + unit));
+  // It has to point against the ray.
+  off = std::max(off, glm::dot(own, ray.direction) / glm::length(ray.direction));
+  set(Quantity::normal, off, allowed, 0x1p-23);
+  return out;
+}
+
+void Comparison::compare_primitive(const Expected& expected, const Pair& pair, Outcome& out) const {
+  const LocalRay local = bounds_.local(pair.primitive, expected.ray);
+  std::vector<Match> matches;
+  std::optional<Disagreement> wrong;
+  const auto disagree = [&](Fault fault, std::string text) {
+    if (!wrong) wrong = {fault, pair.primitive, name_of(pair.primitive) + text};
+  };
+  if (pair.expected.size() != pair.found.size()) {
+    std::string text = "crossings at";
+    for (const PickRecord* pick : pair.found) text += fmt::format(" {}", pick->t);
+    text += pair.found.empty() ? " no t; the witness says" : "; the witness says";
+    for (const SceneHit* hit : pair.expected) text += fmt::format(" {}", hit->t);
+    disagree(Fault::hit, text + (pair.expected.empty() ? " none" : ""));
+  }
+  const bool turned = is_sheet(*local.primitive) && witness_.is_reversed(pair.primitive);
+  for (std::size_t k = 0; !wrong && k < pair.found.size(); ++k) {
+    const PickRecord& pick = *pair.found[k];
+    const SceneHit& hit = *pair.expected[k];
+    const double t = pick.t;
+    if ((pick.leaving != 0) != (hit.leaving != turned))
+      disagree(Fault::side,
+               fmt::format("the crossing at {} is {}, the witness says otherwise", t, pick.leaving ? "leaving" : "entering"));
+    if (pick.surface != hit.surface) {
+      const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
+                                                           static_cast<int>(pick.surface));
+      if (!(away <= 2 * local.bound))
+        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says surface {}", pick.surface,
+                                             t, away, local.bound, hit.surface));
+    } else if (pick.material != hit.material) {
+      disagree(Fault::material, fmt::format("material {} at {}, the witness says {}", pick.material, t, hit.material));
+    }
+    const Match& match = matches.emplace_back(measure(local, hit, pick, expected.ray));
+    constexpr std::array faults = {Fault::t, Fault::point, Fault::normal, Fault::uv};
+    for (std::size_t q = 0; q < quantity_names.size(); ++q)
+      if (!(match.deviations[q].in_bounds <= 1))
+        disagree(faults[q], fmt::format("{} at t {} (the witness says {}) is off by {:.3g} of what is allowed", quantity_names[q],
+                                        pick.t, hit.t, match.deviations[q].in_bounds));
+  }
+  if (!wrong) {
+    out.matches.insert(out.matches.end(), matches.begin(), matches.end());
+  } else if (wrong->fault != Fault::material && (std::ranges::count(out.grazed, pair.primitive) > 0 || is_grazing(local))) {
+    out.grazed.push_back(pair.primitive);
+  } else {
+    wrong->text += fmt::format("; margin {:.3g}, bound {:.3g}", reference::margin(*local.primitive, local.ray), local.bound);
+    out.disagreements.push_back(std::move(*wrong));
+  }
+}
+
+/// The nearest crossing lies where its primitive has one, and what the witness has before it is not further away than the bounds.
+void Comparison::compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const {
+  const bool hit = nearest.object != CAPLET_NONE;
+  const std::size_t own = hit ? primitive_of(nearest) : no_primitive;
+  const double t = hit ? static_cast<double>(nearest.t) : HUGE_VAL;
+  if (hit && own == no_primitive) {
+    out.disagreements.push_back({Fault::id, no_primitive,
+                                 fmt::format("the nearest hit is on object {} shape {} primitive {}: there is none",
+                                             nearest.object, nearest.shape, nearest.primitive)});
+    return;
+  }
+  const auto excuse = [&](std::size_t primitive) {
+    const bool grazing = is_grazing(bounds_.local(primitive, expected.ray));
+    if (grazing) out.grazed.push_back(primitive);
+    return grazing;
+  };
+  if (hit) {
+    const LocalRay local = bounds_.local(own, expected.ray);
+    double least = HUGE_VAL;
+    for (const SceneHit& other : expected.hits)
+      if (other.index == own) least = std::min(least, apart(local, t, other.t));
+    if (!(t > 0) || !(least <= 1)) {
+      if (!excuse(own)) {
+        out.disagreements.push_back(
+            {Fault::hit, own,
+             name_of(own) + fmt::format("the nearest hit is at {}, where the witness has no crossing of it", t)});
+        return;
+      }
+    }
+  }
+  for (const SceneHit& other : expected.hits) {
+    if (!(other.t < t)) break;
+    if (other.index == own && hit && apart(bounds_.local(own, expected.ray), t, other.t) <= 1) continue;
+    if (hit && apart(bounds_.local(other.index, expected.ray), t, other.t) <= 1) continue;
+    if (excuse(other.index)) continue;
+    const std::string text = hit ? fmt::format("the nearest hit is at {}", t) : std::string("the ray misses");
+    out.disagreements.push_back({hit ? Fault::order : Fault::hit, other.index,
+                                 name_of(other.index) + text + fmt::format("; the witness has a crossing of it at {}", other.t)});
+    return;
+  }
+}
+
+Outcome Comparison::compare(const Expected& expected, const Found& found) const {
+  Outcome out;
+  compare_nearest(expected, found.nearest, out);
+  std::vector<Pair> pairs;
+  const auto pair_of = [&](std::size_t primitive) -> Pair& {
+    const auto it = std::ranges::find(pairs, primitive, &Pair::primitive);
+    return it != pairs.end() ? *it : pairs.emplace_back(Pair{primitive, {}, {}});
+  };
+  for (const SceneHit& hit : expected.hits) pair_of(hit.index).expected.push_back(&hit);
+  double last = 0;
+  for (const PickRecord& pick : found.list) {
+    const double t = pick.t;
+    if (!(t > 0 && t >= last && t < HUGE_VAL))
+      out.disagreements.push_back({Fault::order, no_primitive, fmt::format("a crossing at {} comes after one at {}", t, last)});
+    last = t;
+    const std::size_t primitive = primitive_of(pick);
+    if (primitive == no_primitive)
+      out.disagreements.push_back({Fault::id, no_primitive,
+                                   fmt::format("a crossing at {} is on object {} shape {} primitive {}: there is none", t,
+                                               pick.object, pick.shape, pick.primitive)});
+    else
+      pair_of(primitive).found.push_back(&pick);
+  }
+  for (const Pair& pair : pairs) compare_primitive(expected, pair, out);
+  std::ranges::sort(out.grazed);
+  out.grazed.erase(std::unique(out.grazed.begin(), out.grazed.end()), out.grazed.end());
+  return out;
+}
+
+}  // namespace caplet::verify

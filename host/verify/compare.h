@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// One ray on the device and by the witness: where they disagree, and how far apart they are where they agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "reference/scene_witness.h"
+#include "scene/scene.h"
+#include "shared/records.h"
+#include "verify/bounds.h"
+
+namespace caplet::verify {
+
+/// What is measured of a crossing.
+enum class Quantity {
+  t,       // how far the ray goes from the surface between both parameters
+  point,   // distance of the reported point from the surface
+  normal,  // length of the difference of unit vectors
+  uv,      // greater of both differences
+};
+inline constexpr std::array quantity_names = {"t", "point", "normal", "uv"};
+
+struct Deviation {
+  double in_bounds = 0;  // in units of what is allowed: more than 1 is a disagreement
+  double in_ulps = 0;    // in units in the last place (of t; of the point's largest coordinate; of 1)
+};
+
+/// A crossing that both have.
+struct Match {
+  std::size_t primitive = 0;  // witness index
+  std::array<Deviation, quantity_names.size()> deviations;
+};
+
+/// What a disagreement is about.
+enum class Fault { hit, id, surface, order, side, material, t, point, normal, uv };
+inline constexpr std::array fault_names = {"hit", "id", "surface", "order", "side", "material", "t", "point", "normal", "uv"};
+
+struct Disagreement {
+  Fault fault = Fault::hit;
+  std::size_t primitive = 0;  // witness index; no_primitive: of none
+  std::string text;
+};
+inline constexpr std::size_t no_primitive = ~std::size_t{0};
+
+/// What the witness says of a ray; the same for all devices.
+struct Expected {
+  reference::Ray ray;
+  std::vector<reference::SceneHit> hits;  // in order
+  std::vector<std::uint32_t> near;        // primitives whose balls the line goes through
+};
+
+/// What a device says of it.
+struct Found {
+  PickRecord nearest;
+  std::span<const PickRecord> list;  // all crossings
+};
+
+struct Outcome {
+  std::vector<Match> matches;
+  std::vector<Disagreement> disagreements;
+  std::vector<std::size_t> grazed;  // primitives where both answers are right: the line touches within the bound, or begins there
+};
+
+class Comparison {
+ public:
+  /// Both last as long as this.
+  Comparison(const Scene& scene, const reference::SceneWitness& witness);
+
+  Expected expected(const RayRecord& ray) const;
+  Outcome compare(const Expected& expected, const Found& found) const;
+  const Bounds& bounds() const { return bounds_; }
+
+ private:
+  struct Pair;  // crossings of one primitive
+  std::size_t primitive_of(const PickRecord& pick) const;
+  std::string name_of(std::size_t primitive) const;
+  void compare_primitive(const Expected& expected, const Pair& pair, Outcome& out) const;
+  void compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const;
+  Match measure(const LocalRay& local, const reference::SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const;
+
+  const Scene& scene_;
+  const reference::SceneWitness& witness_;
+  Bounds bounds_;
+};
+
+}  // namespace caplet::verify

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Devices and the witness, asked the same: millions of rays through traversal and hit lists, compared one by one.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "render/query.h"
+#include "scene/scene.h"
+#include "verify/compare.h"
+#include "verify/statistics.h"
+
+namespace caplet::verify {
+
+/// A scene on one or more devices and with the witness.
+class SceneCheck {
+ public:
+  /// The scene and the devices last as long as this. Throws RunError, InputError.
+  SceneCheck(const Scene& scene, const std::vector<Device>& devices);
+
+  /// What every device found for a ray, beside what is expected. `found` and `outcomes` have an entry a device.
+  struct Checked {
+    std::size_t ray;
+    const Expected& expected;
+    std::span<const Found> found;
+    std::span<Outcome> outcomes;
+  };
+  /// Calls visit for every ray, from many threads at once. Throws RunError.
+  void check(std::span<const RayRecord> rays, const std::function<void(const Checked&)>& visit);
+
+  const reference::SceneWitness& witness() const { return witness_; }
+  /// Seconds in the devices' queries so far, an entry a device.
+  const std::vector<double>& device_seconds() const { return device_seconds_; }
+
+ private:
+  reference::SceneWitness witness_;
+  Comparison comparison_;
+  std::vector<std::unique_ptr<Query>> queries_;
+  std::vector<double> device_seconds_;
+};
+
+/// Which scene a case is of: a file, or torture_scene(seed, round).
+struct SceneName {
+  std::string file;  // empty: a torture scene
+  std::uint64_t seed = 0, round = 0;
+};
+
+/// A ray that a device and the witness disagree on.
+struct Failure {
+  SceneName scene;
+  RayRecord ray{};
+  std::string family, device, driver;
+  std::vector<Disagreement> disagreements;
+  PickRecord nearest{};
+  std::vector<PickRecord> list;
+  std::vector<reference::SceneHit> expected;
+};
+
+struct DeviceReport {
+  DeviceInfo info;
+  Statistics statistics;
+  double seconds = 0;             // of its queries
+  std::vector<Failure> failures;  // the first of them
+};
+
+/// Nearest hits of two devices beside each other. Both are right or wrong by the witness; this says how alike they are.
+struct Difference {
+  std::size_t first = 0, second = 0;  // indices into Report::devices
+  std::uint64_t same = 0;             // to the bit
+  std::uint64_t other_t = 0;          // on the same surface, at another t
+  std::uint64_t other_place = 0;      // on another primitive or surface, or one of them misses
+  double worst_ulps = 0;              // of t, where the surface is the same
+};
+
+struct Report {
+  std::vector<DeviceReport> devices;
+  std::vector<Difference> differences;  // of every two devices
+  double seconds = 0;
+  bool interrupted = false;
+  std::uint64_t disagreements() const;  // of all devices
+};
+
+struct Options {
+  std::uint64_t rays = 1'000'000;
+  std::uint64_t seed = 0;
+  std::size_t kept_failures = 100;  // a device
+  std::function<void(std::uint64_t rays_done)> progress;
+};
+
+/// `scene`: what to verify, and its file; none: torture scenes, a new one every 250,000 rays. Rays are those of RaySource. Ends
+/// early when interrupt_requested().
+Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices, const Options& options);
+
+/// One pixel's ray through its middle.
+struct HeatPixel {
+  bool hit = false, grazed = false, disagrees = false;
+  std::array<float, quantity_names.size()> in_bounds{};  // of the nearest crossing that both have
+};
+/// The window of the scene's film in scan order, on the first device.
+std::vector<HeatPixel> heatmap(const Scene& scene, const std::vector<Device>& devices);
+
+}  // namespace caplet::verify
