@@ -152,13 +152,16 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
   set(Quantity::point, std::abs(reference::value(primitive, x)) / glm::length(turned), error, ulp_of(largest));
 
-  const auto world_normal = [&](const dvec3& there) { return glm::normalize(normal_matrix * normal_there(there)); };
-  const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
   const dvec3 own = to_dvec3(pick.normal), unit = turned / glm::length(turned);
   // The device's arithmetic: a unit vector by a square root and quotients (16 eps), through a matrix and back to unit length.
-  const double rounding = (16 + 8 * bounds_.condition(hit.index)) * eps;
-  const double allowed = glm::length(high - low) + bounds_.tilt(hit.index) + rounding;
+  double allowed = bounds_.tilt(hit.index) + (16 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
+  if (!(off <= allowed)) {
+    // The surface is curved, or has an edge there: as much as its normal changes within the point's error.
+    const auto world_normal = [&](const dvec3& there) { return glm::normalize(normal_matrix * normal_there(there)); };
+    const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
+    allowed += glm::length(high - low);
+  }
   // It has to point against the ray.
   off = std::max(off, glm::dot(own, ray.direction) / glm::length(ray.direction));
   set(Quantity::normal, off, allowed, 0x1p-23);

@@ -62,8 +62,11 @@ static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real
     off = nearer ? off1 : off;
   }
   *depth = (b->z + u * b->uz) + v * (b->vz + u * b->wz);
-  const real jacobian = (b->ux + v * b->wx) * ly - (b->uy + v * b->wy) * lx;
-  return (off <= 0x1p-40f) & ((turn > 0.0f ? jacobian : -jacobian) >= -0x1p-20f);
+  const real mx = b->ux + v * b->wx, my = b->uy + v * b->wy;
+  const real jacobian = mx * ly - my * lx;
+  // Both lines are off by some eps, as much as the patch is large: short ones turn by more.
+  const real slack = 0x1p-22f * (fabs(mx) + fabs(my) + fabs(lx) + fabs(ly));
+  return (off <= 0x1p-40f) & ((turn > 0.0f ? jacobian : -jacobian) >= -slack);
 }
 
 static inline Span bilinear_span(const ShapeRay* ray, __global const float* block, uint lane) {
@@ -93,14 +96,20 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   const real scale = real_power_of_two_below_inverse(extent);
   x00 *= scale, y00 *= scale, x10 *= scale, y10 *= scale;
   x01 *= scale, y01 *= scale, x11 *= scale, y11 *= scale;
-  // The lines of constant u are made the longer ones, so that the error of their distance from the ray is smaller.
+  // Of both families of lines the one whose roots are known better is sought: f0, F and f1 are off by eps of their size, and that
+  // over the length of the lines is an error of distance. Where the patch crosses over itself, seen along the ray, the lines of
+  // one family are short and many while those of the other are long and few.
   const real along_u = fabs(x10 - x00) + fabs(y10 - y00) + fabs(x11 - x01) + fabs(y11 - y01);
   const real along_v = fabs(x01 - x00) + fabs(y01 - y00) + fabs(x11 - x10) + fabs(y11 - y10);
-  const real_mask swap = along_u > along_v;
+  const real near_u = edge_function(x00, y01, y00, x01), far_u = edge_function(x10, y11, y10, x11);
+  const real near_v = edge_function(x00, y10, y00, x10), far_v = edge_function(x01, y11, y01, x11);
+  const real across = edge_function(x00, y11, y00, x11), other = edge_function(x10, y01, y10, x01);
+  const real_mask swap = (fabs(near_u) + fabs(far_u) + fabs(across + other)) * along_u >
+                         (fabs(near_v) + fabs(far_v) + fabs(across - other)) * along_v;
   const real ax = swap ? x01 : x10, ay = swap ? y01 : y10, az = swap ? z01 : z10;  // u = 1, v = 0
   const real bx = swap ? x10 : x01, by = swap ? y10 : y01, bz = swap ? z10 : z01;  // u = 0, v = 1
-  const real f0 = edge_function(x00, by, y00, bx), f1 = edge_function(ax, y11, ay, x11);
-  const real f = edge_function(x00, y11, y00, x11) + edge_function(ax, by, ay, bx);
+  const real f0 = swap ? near_v : near_u, f1 = swap ? far_v : far_u;
+  const real f = across + (swap ? -other : other);
   const real disc = edge_function(f, f, 4.0f * f0, f1);
   const real_mask meets = near & (disc >= 0.0f);
   if (mask_bits(meets) == 0) return span;
