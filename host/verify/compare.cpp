@@ -39,13 +39,27 @@ bool is_sheet(const reference::Primitive& primitive) {
 
 bool begins_at(const LocalRay& local) { return std::abs(local.value(0)) <= local.bound; }
 
-/// Csg shapes take walls and gaps thinner than the bounds of both sides as closed.
-bool has_thin_wall(const LocalRay& local) {
-  const auto crossings = reference::crossings(*local.primitive, local.ray);
-  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+/// t of all crossings of the solids of a csg shape.
+void collect_crossings(const reference::Csg& csg, const reference::Ray& ray, std::vector<double>& out) {
+  for (const reference::CsgOperand& operand : csg.body->operands) {
+    const glm::dmat4& m = operand.operand_from_csg;
+    const reference::Ray local{dvec3(m * glm::dvec4(ray.origin, 1)), dvec3(m * glm::dvec4(ray.direction, 0)), 0, HUGE_VAL};
+    if (const auto* nested = std::get_if<reference::Csg>(&operand.primitive))
+      collect_crossings(*nested, local, out);
+    else
+      for (const reference::Crossing& crossing : reference::crossings(operand.primitive, local)) out.push_back(crossing.t);
+  }
+}
+
+/// Csg shapes take walls and gaps thinner than the bounds of both sides as closed, and may see one where solids just touch.
+bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
+  std::vector<double> events;
+  collect_crossings(csg, local.ray, events);
+  std::ranges::sort(events);
+  for (std::size_t i = 0; i + 1 < events.size(); ++i) {
     double deepest = 0;
-    for (int k = 1; k < 64; ++k)
-      deepest = std::max(deepest, std::abs(local.value(crossings[i].t + (crossings[i + 1].t - crossings[i].t) * k / 64)));
+    for (int k = 0; k <= 16; ++k)
+      deepest = std::max(deepest, std::abs(local.value(events[i] + (events[i + 1] - events[i]) * k / 16)));
     if (deepest <= 2 * local.bound) return true;
   }
   return false;
@@ -63,7 +77,7 @@ bool is_grazing(const LocalRay& local) {
                              HUGE_VAL};
     if (is_grazing({&operand.primitive, ray, local.bound * operand.stretch})) return true;
   }
-  return has_thin_wall(local);
+  return has_thin_wall(*csg, local);
 }
 
 /// How far the ray goes from the surface between two parameters of the same crossing, in bounds.
@@ -156,7 +170,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   // The device's arithmetic: a unit vector by a square root and quotients (16 eps), through a matrix and back to unit length.
   double allowed = bounds_.tilt(hit.index) + (16 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
-  if (!(off <= allowed)) {
+  if (!(off <= 0.25 * allowed)) {
     // The surface is curved, or has an edge there: as much as its normal changes within the point's error.
     const auto world_normal = [&](const dvec3& there) { return glm::normalize(normal_matrix * normal_there(there)); };
     const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
