@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "film/image.h"
 #include "lower/camera.h"
@@ -17,11 +18,14 @@ using Color = std::array<float, 3>;
 constexpr Color nothing = {0.02f, 0.02f, 0.02f}, wrong = {1, 0, 0};
 constexpr std::array<Color, 5> ramp = {{{0, 0, 0}, {0, 0.05f, 0.4f}, {0.05f, 0.5f, 0.4f}, {0.9f, 0.7f, 0.1f}, {1, 1, 1}}};
 
+constexpr float decades = 3;
+
 Color color_of(const verify::HeatPixel& pixel) {
   if (pixel.disagrees) return wrong;
   if (!pixel.hit) return nothing;
   const float worst = *std::ranges::max_element(pixel.in_bounds);
-  const float at = std::clamp(worst, 0.f, 1.f) * static_cast<float>(ramp.size() - 1);
+  const float share = std::clamp(1 + std::log10(worst) / decades, 0.f, 1.f);
+  const float at = share * static_cast<float>(ramp.size() - 1);
   const auto low = std::min(static_cast<std::size_t>(at), ramp.size() - 2);
   const float part = at - static_cast<float>(low);
   Color out{};

@@ -100,6 +100,8 @@ void run_verify(const Options& o) {
     check_writable(o.heatmap, "--heatmap");
   }
   if (!o.size.empty() && o.heatmap.empty()) refuse("--size", "goes with --heatmap");
+  Overrides overrides;
+  if (!o.size.empty()) overrides.size = parse_size(o.size);
   std::optional<Scene> scene;
   if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader());
   const std::vector<Device> devices = devices_of(o);
@@ -132,8 +134,6 @@ void run_verify(const Options& o) {
   }
   if (!o.heatmap.empty() && !report.interrupted) {
     Scene shown = scene ? *scene : verify::torture_scene(o.seed, 0);
-    Overrides overrides;
-    if (!o.size.empty()) overrides.size = parse_size(o.size);
     apply(overrides, shown);
     write_heatmap(o.heatmap, shown, verify::heatmap(shown, devices));
     log::info("wrote {}", o.heatmap);

@@ -44,6 +44,7 @@ struct Solid {
 struct Operand {
   FlatPrimitive flat, grown;
   std::uint32_t surface;  // with CAPLET_CSG_SUBTRACTED
+  std::uint32_t uv_space;
   bool placed;
   Matrix csg_from_object{1};
   double error;  // in csg space
@@ -221,6 +222,7 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   // space adds 5 eps of its terms (matrix, products, sums), 8 here.
   const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
   out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
+  out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
   out.grown = grown_by(out.flat, error, leaves);
   out.error = error * scale;
   out.surface = solid.surface_begin | (solid.subtracted ? CAPLET_CSG_SUBTRACTED : 0u);
@@ -273,6 +275,7 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
   for (std::size_t lane = 0; lane < lanes_per_group; ++lane) {
     // Lanes without an operand repeat the first.
     const Operand& operand = operands[group.operands[lane < group.operands.size() ? lane : 0]];
+    leaves[block + lane] = bits(operand.uv_space);
     for (std::size_t j = 0; j + 1 < rows; ++j) {
       leaves[block + 8 * (j + 1) + lane] = operand.flat.data[j];
       leaves[block + 8 * (j + 1) + lanes_per_group + lane] = operand.grown.data[j];

@@ -39,6 +39,27 @@ struct Part {
   EncodedTree tree;
 };
 
+std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) { return mesh.triangles; }
+std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) { return mesh.patches; }
+
+/// The same mesh, each corner of each face a vertex of its own, with the uvs that a mesh without any has. A face that is turned
+/// over keeps them.
+template <class Mesh>
+Mesh with_uvs(Mesh mesh) {
+  Mesh out;
+  for (auto& face : faces_of(mesh)) {
+    // (0 0) (1 0) (1 1), or (0 0) (1 0) (0 1) (1 1)
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      out.positions.push_back(mesh.positions[face[k]]);
+      out.normals.push_back(mesh.normals[face[k]]);
+      out.uvs.emplace_back(k % 2 == 1 || k + 1 == face.size(), k >= 2);
+      face[k] = narrow<std::uint32_t>(out.positions.size() - 1);
+    }
+  }
+  faces_of(out) = std::move(faces_of(mesh));
+  return out;
+}
+
 void write_matrix(float* rows, const Matrix& m) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
@@ -148,6 +169,7 @@ class GeometryLowering {
     record.surface_begin = add_surfaces(shape);
     record.light_offset = CAPLET_NONE;
     record.normal_begin = record.uv_begin = CAPLET_NONE;
+    record.uv_space = append_uv_space(shape.geometry, m, out_.leaves);
     if (shape.emission) {
       record.light_offset = narrow<uint>(part.emitter_count);
       if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
@@ -268,18 +290,32 @@ class GeometryLowering {
     }
   }
 
+  /// Takes back what add_vertex_data has just added.
+  void drop_vertex_data(GeometryRecord& record) {
+    if (record.normal_begin != CAPLET_NONE) out_.mesh_normals.resize(record.normal_begin);
+    if (record.uv_begin != CAPLET_NONE) out_.mesh_uvs.resize(record.uv_begin);
+    record.normal_begin = record.uv_begin = CAPLET_NONE;
+  }
+
   void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     std::vector<glm::vec3> moved;
     moved.reserve(mesh.positions.size());
     for (const glm::vec3& p : mesh.positions) moved.emplace_back(apply_point(m, dvec3(p)));
+    const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+    const auto turned = [&](const std::array<std::uint32_t, 3>& triangle) {
+      const dvec3 a(moved[triangle[0]]), b(moved[triangle[1]]), c(moved[triangle[2]]);
+      return against_normals(record, glm::cross(b - a, c - a), triangle, flipped);
+    };
+    if (mesh.uvs.empty() && std::ranges::any_of(mesh.triangles, turned)) {
+      drop_vertex_data(record);
+      return append(with_uvs(mesh), m, record, part);
+    }
     const uint geometry = add_geometry(record, shape_triangle);
     part.primitives.reserve(part.primitives.size() + mesh.triangles.size());
-    const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
     for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
-      const dvec3 a(moved[triangle[0]]), b(moved[triangle[1]]), c(moved[triangle[2]]);
-      if (against_normals(record, glm::cross(b - a, c - a), triangle, flipped)) std::swap(triangle[1], triangle[2]);
+      if (turned(triangle)) std::swap(triangle[1], triangle[2]);
       FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
       for (std::size_t k = 0; k < 3; ++k) {
         out_.mesh_indices.push_back(triangle[k]);
@@ -302,17 +338,25 @@ class GeometryLowering {
   void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
-    const uint geometry = add_geometry(record, shape_bilinear);
     const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+    const auto corner = [&](const std::array<std::uint32_t, 4>& patch, std::size_t k) {
+      return apply_point(m, dvec3(mesh.positions[patch[k]]));
+    };
+    const auto turned = [&](const std::array<std::uint32_t, 4>& patch) {
+      return against_normals(record, glm::cross(corner(patch, 3) - corner(patch, 0), corner(patch, 2) - corner(patch, 1)), patch,
+                             flipped);
+    };
+    if (mesh.uvs.empty() && std::ranges::any_of(mesh.patches, turned)) {
+      drop_vertex_data(record);
+      return append(with_uvs(mesh), m, record, part);
+    }
+    const uint geometry = add_geometry(record, shape_bilinear);
     for (std::array<std::uint32_t, 4> patch : mesh.patches) {
-      const auto corner = [&](std::size_t k) { return apply_point(m, dvec3(mesh.positions[patch[k]])); };
-      // Turned over, u and v change places (which shows in patches without uvs).
-      if (against_normals(record, glm::cross(corner(3) - corner(0), corner(2) - corner(1)), patch, flipped))
-        std::swap(patch[1], patch[2]);
+      if (turned(patch)) std::swap(patch[1], patch[2]);
       FlatPrimitive& p = add_primitive(part, shape_bilinear, geometry);
       for (std::size_t k = 0; k < 4; ++k) {
         out_.mesh_indices.push_back(patch[k]);
-        put(p, static_cast<int>(3 * k), corner(k));
+        put(p, static_cast<int>(3 * k), corner(patch, k));
       }
     }
   }

@@ -4,6 +4,7 @@
 // Bilinear patches: the point nearest to x by a search over the rulings of either family, each a segment.
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -64,6 +65,23 @@ Nearest nearest_of(const Bilinear& b, const dvec3& x) {
 }  // namespace
 
 double value_of(const Bilinear& b, const dvec3& x) { return nearest_of(b, x).distance; }
+
+dvec2 parameters_of(const Bilinear& b, const dvec3& x) {
+  dvec2 uv = nearest_of(b, x).uv;
+  // Where the distance has its minimum the search knows the parameters to the root of its precision; two steps of Gauss and
+  // Newton bring the rest.
+  const dvec3 twist = b.p11 - b.p01 - b.p10 + b.p00;
+  for (int i = 0; i < 2; ++i) {
+    const dvec3 du = b.p10 - b.p00 + uv.y * twist, dv = b.p01 - b.p00 + uv.x * twist;
+    const dvec3 left = x - (b.p00 + uv.x * du + uv.y * (b.p01 - b.p00));
+    const double uu = glm::dot(du, du), vv = glm::dot(dv, dv), mixed = glm::dot(du, dv);
+    const double determinant = uu * vv - mixed * mixed;
+    if (!(determinant > 1e-12 * uu * vv)) break;
+    const double a = glm::dot(left, du), c = glm::dot(left, dv);
+    uv = glm::clamp(uv + dvec2(a * vv - c * mixed, c * uu - a * mixed) / determinant, 0.0, 1.0);
+  }
+  return uv;
+}
 
 dvec3 normal_of(const Bilinear& b, const dvec3& x) {
   const dvec2 uv = nearest_of(b, x).uv;

@@ -16,6 +16,8 @@ double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if al
 SurfaceAt surface_of(const Spool& spool, const glm::dvec3& x);
 double distance_from(const Spool& spool, const glm::dvec3& x, int surface);
 std::vector<Curve> boundary_of(const Spool& spool);
+// Where the side of normal n (one of side_normals) touches an end: along and across the axis.
+glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
 glm::dvec3 any_perpendicular(const glm::dvec3& unit);
 
 // planes.cpp
@@ -39,6 +41,7 @@ std::vector<Curve> boundary_of(const PartialDisk& disk);
 
 // bilinear.cpp
 double value_of(const Bilinear& patch, const glm::dvec3& x);
+glm::dvec2 parameters_of(const Bilinear& patch, const glm::dvec3& x);  // of the point nearest to x
 glm::dvec3 normal_of(const Bilinear& patch, const glm::dvec3& x);
 
 // csg.cpp

@@ -15,6 +15,7 @@
 #include <glm/vec4.hpp>
 
 #include "reference/from_scene.h"
+#include "reference/uv.h"
 
 namespace caplet::reference {
 
@@ -40,6 +41,21 @@ std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
     if (own.empty()) own.assign(surface_count(*operand), operand->material);
     out.insert(out.end(), own.begin(), own.end());
   }
+  return out;
+}
+
+/// Of the corners of each triangle (three are used) or patch.
+std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
+  std::vector<std::array<glm::dvec2, 4>> out;
+  const auto add = [&](const auto& faces, const std::vector<glm::vec2>& uvs) {
+    if (uvs.empty()) return;
+    for (const auto& face : faces) {
+      out.emplace_back();
+      for (std::size_t k = 0; k < face.size(); ++k) out.back()[k] = uvs[face[k]];
+    }
+  };
+  if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) add(mesh->triangles, mesh->uvs);
+  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) add(mesh->patches, mesh->uvs);
   return out;
 }
 
@@ -76,6 +92,12 @@ SceneWitness::PlacedPrimitive SceneWitness::placed(std::size_t index) const {
   return {placed.primitive, placed.ball, object_from_world_[placed.space], placed.identity};
 }
 
+std::uint32_t SceneWitness::material(std::size_t index, std::uint32_t surface) const {
+  const Placed& placed = placed_.at(index);
+  const std::vector<std::uint32_t>& materials = surface_materials_[placed.space];
+  return surface < materials.size() ? materials[surface] : placed.identity.material;
+}
+
 std::optional<std::size_t> SceneWitness::index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const {
   if (instance != no_instance && instance >= instance_begin_.size()) return std::nullopt;
   const std::vector<std::size_t>& begin = instance == no_instance ? shape_begin_ : instance_begin_[instance];
@@ -88,6 +110,7 @@ std::optional<std::size_t> SceneWitness::index_of(std::uint32_t instance, std::u
 void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
   object_from_world_.push_back(glm::inverse(world_from_shape));
   surface_materials_.push_back(materials_by_surface(shape));
+  corner_uvs_.push_back(corner_uvs(shape));
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   const std::size_t first = placed_.size();
   std::uint32_t index = 0;
@@ -196,6 +219,17 @@ dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
   const dvec3 local = normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
   const dvec3 out = glm::normalize(glm::transpose(glm::dmat3(m)) * local);
   return placed.reversed ? -out : out;
+}
+
+glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point) const {
+  const Placed& placed = placed_.at(hit.index);
+  const dvec3 own(object_from_world_[placed.space] * glm::dvec4(point, 1));
+  const glm::dvec2 at = uv_at(placed.primitive, own, static_cast<int>(hit.surface));
+  if (corner_uvs_[placed.space].empty()) return at;
+  const auto& corners = corner_uvs_[placed.space][placed.identity.primitive];
+  if (std::holds_alternative<Triangle>(placed.primitive))
+    return (1 - at.x) * corners[0] + (at.x - at.y) * corners[1] + at.y * corners[2];
+  return (1 - at.y) * ((1 - at.x) * corners[0] + at.x * corners[1]) + at.y * ((1 - at.x) * corners[2] + at.x * corners[3]);
 }
 
 std::vector<std::optional<SceneHit>> SceneWitness::closest(std::span<const Ray> rays) const {

@@ -6,6 +6,7 @@
 // unnormalised, so that t is the same in all spaces.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <optional>
@@ -45,6 +46,9 @@ class SceneWitness {
   /// winding or as given of open shapes, turned by ReverseOrientation. By differences of the implicit function over 1e-6 of the
   /// primitive's size: no meaning that close to an edge.
   glm::dvec3 normal(const SceneHit& hit, const glm::dvec3& point) const;
+  /// (u, v) at a point of the world on (or next to) the surface of a hit: uv_at of the point in the primitive's own space,
+  /// interpolated in the uvs of meshes that have some.
+  glm::dvec2 uv(const SceneHit& hit, const glm::dvec3& point) const;
   /// closest() for many rays, in parallel.
   std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
   std::size_t size() const { return placed_.size(); }
@@ -57,6 +61,8 @@ class SceneWitness {
     const SceneHit& identity;  // instance, object, shape, primitive, index
   };
   PlacedPrimitive placed(std::size_t index) const;
+  /// Of a surface of a primitive, index into Scene::materials.
+  std::uint32_t material(std::size_t index, std::uint32_t surface) const;
   bool is_reversed(std::size_t index) const { return placed_.at(index).reversed; }  // by ReverseOrientation
   /// Its index by the numbers of SceneHit; none when there is no such primitive.
   std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const;
@@ -83,7 +89,8 @@ class SceneWitness {
   std::vector<std::size_t> shape_begin_;                  // first primitive of each shape of the world
   std::vector<std::vector<std::size_t>> instance_begin_;  // and of each shape of each instance
   std::vector<glm::dmat4> object_from_world_;
-  std::vector<std::vector<std::uint32_t>> surface_materials_;  // empty: the same on all
+  std::vector<std::vector<std::uint32_t>> surface_materials_;       // empty: the same on all
+  std::vector<std::vector<std::array<glm::dvec2, 4>>> corner_uvs_;  // by space and primitive; empty: the mesh has none
 };
 
 }  // namespace caplet::reference

@@ -60,17 +60,16 @@ Values values_at(const Spool& s, const Profile& x) {
   return out;
 }
 
-// Where the side's plane touches an end.
-dvec2 contact(const Spool& s, std::size_t end, const dvec2& n) {
-  const dvec2 center{end == 0 ? 0 : s.length, 0};
-  return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
-}
-
 double distance2(const dvec2& x, const dvec2& a, const dvec2& b) {
   return distance_to_segment(dvec3(x, 0), dvec3(a, 0), dvec3(b, 0));
 }
 
 }  // namespace
+
+dvec2 side_contact(const Spool& s, std::size_t end, const dvec2& n) {
+  const dvec2 center{end == 0 ? 0 : s.length, 0};
+  return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
+}
 
 dvec3 any_perpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
@@ -118,7 +117,7 @@ double value_of(const Spool& s, const dvec3& x) {
   double least = HUGE_VAL;
   for (int i = 0; i < s.side_count; ++i) {
     const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
-    least = std::min(least, distance2(p, contact(s, 0, n), contact(s, 1, n)));
+    least = std::min(least, distance2(p, side_contact(s, 0, n), side_contact(s, 1, n)));
   }
   for (std::size_t i = 0; i < 2; ++i) {
     if (s.ends[i].open) continue;
@@ -147,7 +146,7 @@ SurfaceAt surface_of(const Spool& s, const dvec3& x) {
   for (int i = 0; i < s.side_count; ++i)
     for (std::size_t end = 0; end < 2; ++end)
       out.margin = std::min(out.margin, glm::length(dvec2(profile.along, profile.across) -
-                                                    contact(s, end, s.side_normals[static_cast<std::size_t>(i)])));
+                                                    side_contact(s, end, s.side_normals[static_cast<std::size_t>(i)])));
   return out;
 }
 
@@ -158,7 +157,7 @@ double distance_from(const Spool& s, const dvec3& x, int surface) {
   if (surface == 0) {
     for (int i = 0; i < s.side_count; ++i) {
       const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
-      least = std::min(least, std::abs(glm::dot(n, p - contact(s, 0, n))));
+      least = std::min(least, std::abs(glm::dot(n, p - side_contact(s, 0, n))));
     }
     return least;
   }
@@ -173,7 +172,7 @@ std::vector<Curve> boundary_of(const Spool& s) {
   const dvec3 u = any_perpendicular(s.axis), v = glm::cross(s.axis, u);
   for (std::size_t end = 0; end < 2; ++end)
     for (int i = 0; i < s.side_count && s.ends[end].open; ++i) {
-      const dvec2 rim = contact(s, end, s.side_normals[static_cast<std::size_t>(i)]);
+      const dvec2 rim = side_contact(s, end, s.side_normals[static_cast<std::size_t>(i)]);
       out.push_back({Curve::Kind::arc, s.p0 + rim.x * s.axis, u, v, rim.y, 0, full_turn});
     }
   return out;

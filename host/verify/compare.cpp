@@ -85,19 +85,38 @@ double apart(const LocalRay& local, double t, double other) {
   return std::max(std::abs(local.value(t)), std::abs(local.value(0.5 * (t + other)))) / local.bound;
 }
 
-/// The least and greatest of `f` at x and `reach` to both sides along each axis.
+/// The least and greatest of `f` at x and the corners of an octahedron that holds the ball of radius `reach` around it.
 template <class T, class F>
 std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   T low = f(x), high = low;
   for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-reach, reach}) {
+    for (const double side : {-1.7320508075688772, 1.7320508075688772}) {
       dvec3 moved = x;
-      moved[axis] += side;
+      moved[axis] += side * reach;
       const T here = f(moved);
       low = glm::min(low, here);
       high = glm::max(high, here);
     }
   return {low, high};
+}
+
+/// The solid that a surface is of: of csg shapes the operand.
+struct Solid {
+  const reference::Primitive* primitive;
+  glm::dmat4 object_from_world;
+  double stretch;  // from the primitive's space to the solid's
+};
+Solid solid_of(const reference::SceneWitness::PlacedPrimitive& placed, std::uint32_t surface) {
+  Solid out{&placed.primitive, placed.object_from_world, 1};
+  int number = static_cast<int>(surface);
+  while (const auto* csg = std::get_if<reference::Csg>(out.primitive)) {
+    const auto& operands = csg->body->operands;
+    const auto after = std::ranges::find_if(operands, [&](const auto& operand) { return operand.surface_begin > number; });
+    const reference::CsgOperand& operand = *std::prev(after);
+    number -= operand.surface_begin;
+    out = {&operand.primitive, operand.operand_from_csg * out.object_from_world, out.stretch * operand.stretch};
+  }
+  return out;
 }
 
 }  // namespace
@@ -143,8 +162,8 @@ std::string Comparison::name_of(std::size_t primitive) const {
 }
 
 Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const {
-  const auto placed = witness_.placed(hit.index);
-  const reference::Primitive& primitive = placed.primitive;
+  const Solid solid = solid_of(witness_.placed(hit.index), pick.surface);
+  const reference::Primitive& primitive = *solid.primitive;
   const double t = pick.t;
   Match out{hit.index, {}};
   const auto set = [&](Quantity q, double off, double allowed, double ulp) {
@@ -155,12 +174,13 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::t, apart(local, t, hit.t), 1, 1);
   out.deviations[0].in_ulps = std::abs(t - hit.t) / ulp_of(hit.t);
 
-  const dvec3 point = to_dvec3(pick.point), x(placed.object_from_world * glm::dvec4(point, 1));
+  const dvec3 point = to_dvec3(pick.point), x(solid.object_from_world * glm::dvec4(point, 1));
   // Within this of x lies a point of the surface, and the normal is that of any point as close.
   const double error = static_cast<double>(pick.error) + bounds_.rounding(hit.index);
-  const double reach = error * bounds_.stretch(hit.index);
+  const double reach = error * bounds_.stretch(hit.index) * solid.stretch;
   const auto normal_there = [&](const dvec3& there) { return reference::normal_at(primitive, there, reach); };
-  const dmat3 normal_matrix = glm::transpose(dmat3(placed.object_from_world));
+  const dmat3 normal_matrix = glm::transpose(dmat3(solid.object_from_world));
+  const glm::dmat4 world_from_object = glm::inverse(solid.object_from_world);
   const dvec3 normal = normal_there(x), turned = normal_matrix * normal;
   // The gradient of the value in the world is the transposed matrix's image of its gradient here.
   const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
@@ -179,54 +199,86 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   // It has to point against the ray.
   off = std::max(off, glm::dot(own, ray.direction) / glm::length(ray.direction));
   set(Quantity::normal, off, allowed, 0x1p-23);
+
+  const auto uv_there = [&](const dvec3& there) {
+    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)));
+  };
+  const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
+  const auto apart_by = [](const dvec2& a, const dvec2& b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };
+  // Half a dozen operations on numbers of the size of a uv, an arc tangent (6 ulp) among them; the frame that angles begin at,
+  // with a quotient that makes the rounding of an axis (4 eps) up to ten times larger, and 1 / 2 pi of that.
+  double allowed_uv = 64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index);
+  if (!(apart_by(own_uv, uv) <= 0.25 * allowed_uv)) {
+    const auto [least, most] = range_around<dvec2>(x, reach, uv_there);
+    // Around poles, centres and seams u may be anything in its turn.
+    allowed_uv += most.x - least.x > 0.24 ? std::max(1.0, most.x - least.x) : apart_by(least, most);
+  }
+  set(Quantity::uv, apart_by(own_uv, uv), allowed_uv, 0x1p-23);
   return out;
 }
 
 void Comparison::compare_primitive(const Expected& expected, const Pair& pair, Outcome& out) const {
   const LocalRay local = bounds_.local(pair.primitive, expected.ray);
-  std::vector<Match> matches;
-  std::optional<Disagreement> wrong;
-  const auto disagree = [&](Fault fault, std::string text) {
-    if (!wrong) wrong = {fault, pair.primitive, name_of(pair.primitive) + text};
+  const bool sheet = is_sheet(*local.primitive), turned = sheet && witness_.is_reversed(pair.primitive);
+  const auto disagree = [&](Fault fault, const std::string& text) {
+    out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
+
+  // Which crossings there are may be for rounding to say; what is said of each may not.
+  std::string different;
+  Fault fault = Fault::hit;
   if (pair.expected.size() != pair.found.size()) {
-    std::string text = "crossings at";
-    for (const PickRecord* pick : pair.found) text += fmt::format(" {}", pick->t);
-    text += pair.found.empty() ? " no t; the witness says" : "; the witness says";
-    for (const SceneHit* hit : pair.expected) text += fmt::format(" {}", hit->t);
-    disagree(Fault::hit, text + (pair.expected.empty() ? " none" : ""));
+    different = "crossings at";
+    for (const PickRecord* pick : pair.found) different += fmt::format(" {}", pick->t);
+    different += pair.found.empty() ? " no t; the witness says" : "; the witness says";
+    for (const SceneHit* hit : pair.expected) different += fmt::format(" {}", hit->t);
+    if (pair.expected.empty()) different += " none";
   }
-  const bool turned = is_sheet(*local.primitive) && witness_.is_reversed(pair.primitive);
-  for (std::size_t k = 0; !wrong && k < pair.found.size(); ++k) {
+  for (std::size_t k = 0; different.empty() && k < pair.found.size(); ++k) {
+    const double t = pair.found[k]->t, by_witness = pair.expected[k]->t, off = apart(local, t, by_witness);
+    if (!(off <= 1)) {
+      fault = Fault::t;
+      different =
+          fmt::format("the crossing at {}, at {} by the witness, is off by {:.3g} of what is allowed", t, by_witness, off);
+    } else if ((pair.found[k]->leaving != 0) != (pair.expected[k]->leaving != turned)) {
+      fault = Fault::side;
+      different = fmt::format("the crossing at {} is {}, the witness says otherwise", t,
+                              pair.found[k]->leaving != 0 ? "leaving" : "entering");
+    }
+  }
+  const bool matched = different.empty();
+  if (!matched) {
+    if (std::ranges::count(out.grazed, pair.primitive) == 0 && !is_grazing(local)) {
+      disagree(fault, fmt::format("{}; margin {:.3g}, bound {:.3g}", different, reference::margin(*local.primitive, local.ray),
+                                  local.bound));
+      return;
+    }
+    out.grazed.push_back(pair.primitive);
+  }
+
+  for (std::size_t k = 0; k < pair.found.size(); ++k) {
     const PickRecord& pick = *pair.found[k];
-    const SceneHit& hit = *pair.expected[k];
     const double t = pick.t;
-    if ((pick.leaving != 0) != (hit.leaving != turned))
-      disagree(Fault::side,
-               fmt::format("the crossing at {} is {}, the witness says otherwise", t, pick.leaving ? "leaving" : "entering"));
-    if (pick.surface != hit.surface) {
+    SceneHit hit = matched ? *pair.expected[k] : witness_.placed(pair.primitive).identity;
+    if (!matched) hit.t = t;
+    if (!matched || pick.surface != hit.surface) {
       const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
                                                            static_cast<int>(pick.surface));
-      if (!(away <= 2 * local.bound))
-        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says surface {}", pick.surface,
-                                             t, away, local.bound, hit.surface));
-    } else if (pick.material != hit.material) {
-      disagree(Fault::material, fmt::format("material {} at {}, the witness says {}", pick.material, t, hit.material));
+      // Seen edge-on, sheets are met beside themselves.
+      if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
+        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says {}", pick.surface, t, away,
+                                             local.bound, matched ? std::to_string(hit.surface) : "otherwise"));
     }
-    const Match& match = matches.emplace_back(measure(local, hit, pick, expected.ray));
+    if (const std::uint32_t material = witness_.material(pair.primitive, pick.surface); pick.material != material)
+      disagree(Fault::material,
+               fmt::format("material {} of surface {} at {}, the witness says {}", pick.material, pick.surface, t, material));
+    Match& match = out.matches.emplace_back(measure(local, hit, pick, expected.ray));
+    if (!matched && sheet) match.deviations[0] = {};
     constexpr std::array faults = {Fault::t, Fault::point, Fault::normal, Fault::uv};
     for (std::size_t q = 0; q < quantity_names.size(); ++q)
       if (!(match.deviations[q].in_bounds <= 1))
-        disagree(faults[q], fmt::format("{} at t {} (the witness says {}) is off by {:.3g} of what is allowed", quantity_names[q],
-                                        pick.t, hit.t, match.deviations[q].in_bounds));
-  }
-  if (!wrong) {
-    out.matches.insert(out.matches.end(), matches.begin(), matches.end());
-  } else if (wrong->fault != Fault::material && (std::ranges::count(out.grazed, pair.primitive) > 0 || is_grazing(local))) {
-    out.grazed.push_back(pair.primitive);
-  } else {
-    wrong->text += fmt::format("; margin {:.3g}, bound {:.3g}", reference::margin(*local.primitive, local.ray), local.bound);
-    out.disagreements.push_back(std::move(*wrong));
+        disagree(faults[q], fmt::format("{} at t {} is off by {:.3g} of what is allowed", quantity_names[q], t,
+                                        match.deviations[q].in_bounds));
   }
 }
 

@@ -92,7 +92,7 @@ struct Options {
   std::uint64_t rays = 1'000'000;
   std::uint64_t seed = 0;
   std::size_t kept_failures = 100;  // a device
-  std::function<void(std::uint64_t rays_done)> progress;
+  std::function<void(std::uint64_t rays_done)> progress = {};
 };
 
 /// `scene`: what to verify, and its file; none: torture scenes, a new one every 250,000 rays. Rays are those of RaySource. Ends

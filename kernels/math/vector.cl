@@ -34,10 +34,10 @@ static inline float3 transform_transposed(__global const float* m, float3 v) {
                   m[2] * v.x + m[6] * v.y + m[10] * v.z);
 }
 
-// Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit length.
-static inline Frame frame_from_normal(float3 n) {
+// Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit length. sign: 1 or -1, and sign + n.z is not near 0.
+// s is where the rotation that takes +z (-z) to n by the least angle takes +x.
+static inline Frame frame_from_pole(float3 n, float sign) {
   Frame f;
-  const float sign = n.z >= 0.0f ? 1.0f : -1.0f;
   const float a = -1.0f / (sign + n.z);
   const float b = n.x * n.y * a;
   f.s = (float3)(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
@@ -45,6 +45,7 @@ static inline Frame frame_from_normal(float3 n) {
   f.n = n;
   return f;
 }
+static inline Frame frame_from_normal(float3 n) { return frame_from_pole(n, n.z >= 0.0f ? 1.0f : -1.0f); }
 // The frame with normal n whose s lies along dpdu as far as it can.
 static inline Frame frame_from_tangent(float3 n, float3 dpdu) {
   const float3 s = dpdu - n * dot(n, dpdu);

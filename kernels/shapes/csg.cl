@@ -11,7 +11,7 @@
 //   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED where it is taken away
 //   program: postfix, one number each: an operand, or CAPLET_CSG_UNION, _INTERSECTION, _DIFFERENCE
 // A group is a leaf block of up to four operands of one kind in one space: lanes 0..3 hold them, lanes 4..7 the same solids grown
-// by their error bound. csg space is the space of the tree moved by -c: coordinates are as small as the shape.
+// by their error bound. Row 0 holds the offset of each operand's uv_space (GeometryRecord). csg space is the space of the tree moved by -c: coordinates are as small as the shape.
 //
 // A computed crossing is off its operand's surface by no more than the bound b. The solid is convex, so from where the ray enters the
 // grown solid (t - s) to as far beyond the crossing (t + s) it is within b of the surface. Crossings of different operands that have an

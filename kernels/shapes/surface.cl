@@ -49,7 +49,9 @@ static inline Surface surface_at(const Globals* g, const RayRecord* ray, const H
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
-  const SurfaceQuery query = {g, &geometry, primitive, surface, g->leaves + hit->slot + 8u, o + hit->t * d, backward};
+  const SurfaceQuery query = {
+      g,        &geometry, primitive, surface, g->leaves + hit->slot + 8u, o + hit->t * d,
+      backward, geometry.uv_space != CAPLET_NONE ? g->leaves + geometry.uv_space : 0};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;

@@ -9,22 +9,22 @@
 
 #include "shapes/surface_sphere.cl"
 
-// r0 > 0 or r1 > 0. `fallback`: unit normal used where x leaves it undefined.
-static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, float r1, float3 x, float3 fallback) {
+// r0 > 0 or r1 > 0.
+static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0, float3 p1, float r0, float r1) {
   const float3 axis = p1 - p0;
-  const float3 unit_axis = unit_or(axis, (float3)(0.0f, 0.0f, 1.0f));
+  const float3 unit_axis = unit_or(axis, own_z(query->space));
   const float axis_length = dot(axis, unit_axis);
   const float taper = r0 - r1;
   if (!(axis_length > fabs(taper))) {
     // One sphere holds the other (or the ends are equal).
-    return taper >= 0.0f ? sphere_point(p0, r0, unit_axis, x, fallback) : sphere_point(p1, r1, unit_axis, x, fallback);
+    return taper >= 0.0f ? sphere_point(query, p0, r0, unit_axis) : sphere_point(query, p1, r1, unit_axis);
   }
   // Normals of the tangent cone make a constant angle with the axis: sine `k` of its complement.
   const float k = taper / axis_length;
   const float c = sqrt((1.0f - k) * (1.0f + k));
 
   // Cylinder coordinates of x; the second subtraction makes `radial` perpendicular to the axis to rounding of its own length.
-  const float3 v = x - p0;
+  const float3 x = query->x, v = x - p0;
   const float z = dot(v, unit_axis);
   float3 radial = v - z * unit_axis;
   radial -= dot(radial, unit_axis) * unit_axis;
@@ -54,17 +54,18 @@ static inline LocalSurface round_cone_point(float3 p0, float3 p1, float r0, floa
   }
   out.ns = out.ng;
   out.p = q + radius * out.ng;
-  out.uv.x = turn_around(unit_axis, unit_radial);
+  const Frame turn = turn_frame(query->space, unit_axis);
+  out.uv.x = turn_around(&turn, unit_radial);
   const float profile = r0 * angle0 + side + r1 * (CAPLET_PI - angle0);
   out.uv.y = fmin(fmax(arc / profile, 0.0f), 1.0f);
   out.dpdv = profile * unit_or(unit_axis - dot(unit_axis, out.ng) * out.ng, (float3)(0.0f));
-  out.dpdu = 2.0f * CAPLET_PI * radius * cross(unit_axis, out.ng);
+  out.dpdu = along_turn(&turn, radius * out.ng);
   out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
   return out;
 }
 
 static inline LocalSurface surface_capsule(const SurfaceQuery* q) {
-  return round_cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48], q->x, q->fallback);
+  return round_cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48]);
 }
 
 #endif

@@ -80,8 +80,9 @@ static inline float cone_side_position(const ConeProfile* s, float y, float rho,
   return position;
 }
 
-static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, float cap0, float cap1, uint surface, float3 x,
-                                      float3 fallback) {
+static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, float3 p1, float r0, float r1, float cap0, float cap1) {
+  const uint surface = query->surface;
+  const float3 x = query->x;
   const int round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
   ConeProfile s = cone_profile(p0, p1, r0, r1, round0, round1);
   const float3 m = s.unit_axis;
@@ -101,7 +102,8 @@ static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, 
 
   LocalSurface out;
   float3 base = center;  // of the sum that makes the point
-  out.uv.x = turn_around(m, unit_radial);
+  const Frame turn = turn_frame(query->space, m);
+  out.uv.x = turn_around(&turn, unit_radial);
   if (surface == 0u) {
     const float rho = dot(radial, unit_radial);
     float away;
@@ -122,14 +124,14 @@ static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, 
     const float3 spoke = (1.0f - position) * spoke0 + position * spoke1;
     out.p = q + spoke;
     out.uv.y = position;
-    out.dpdu = 2.0f * CAPLET_PI * ((1.0f - position) * s.rho0 + position * s.rho1) * cross(m, unit_radial);
+    out.dpdu = along_turn(&turn, ((1.0f - position) * s.rho0 + position * s.rho1) * unit_radial);
     out.dpdv = (s.y1 - s.y0) * m + (s.rho1 - s.rho0) * unit_radial;
     base = q;
   } else if (first ? round0 : round1) {
     const int whole = s.pierced || s.one_ball;
     const float3 rim = s.k * m + s.c * unit_radial;
     const float3 outward = first ? -m : m;
-    out.ng = unit_or(from, whole ? fallback : outward);
+    out.ng = unit_or(from, whole ? query->fallback : outward);
     // What rounding takes past the circle belongs to it.
     if (!whole && (first ? dot(out.ng, m) > s.k : dot(out.ng, m) < s.k)) out.ng = rim;
     out.p = center + radius * out.ng;
@@ -137,7 +139,7 @@ static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, 
     const float begin = first || whole ? 0.0f : acos(-s.k), end = first && !whole ? acos(-s.k) : CAPLET_PI;
     const float angle = angle_between(-m, out.ng);
     out.uv.y = fmin(fmax((angle - begin) / (end - begin), 0.0f), 1.0f);
-    out.dpdu = 2.0f * CAPLET_PI * radius * cross(m, out.ng);
+    out.dpdu = along_turn(&turn, radius * out.ng);
     out.dpdv = (end - begin) * radius * unit_or(m - dot(m, out.ng) * out.ng, (float3)(0.0f));
   } else {
     out.ng = first ? -m : m;
@@ -147,7 +149,7 @@ static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, 
     out.p = center + spoke;
     const float part = radius > 0.0f ? distance / radius : 0.0f;
     out.uv.y = first ? part : 1.0f - part;
-    out.dpdu = 2.0f * CAPLET_PI * cross(m, spoke);
+    out.dpdu = along_turn(&turn, spoke);
     out.dpdv = distance > 0.0f ? (first ? radius : -radius) * unit_radial : (float3)(0.0f);
   }
   // L: what the span functions' roundings at either end grow with when a ray starts here.
@@ -157,8 +159,7 @@ static inline LocalSurface cone_point(float3 p0, float3 p1, float r0, float r1, 
 }
 
 static inline LocalSurface surface_cone(const SurfaceQuery* q) {
-  return cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56], q->data[64], q->data[72], q->surface, q->x,
-                    q->fallback);
+  return cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56], q->data[64], q->data[72]);
 }
 
 #endif

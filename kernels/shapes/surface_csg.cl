@@ -41,6 +41,9 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   own->surface = q->surface - begin;
   own->data = leaves + row[1] + 8u + (found - row[3]);
   own->x = q->x - operand->center;
+  // Row 0, which in a leaf holds the primitive's id.
+  const uint space = as_uint(own->data[-8]);
+  own->space = space != CAPLET_NONE ? leaves + space : 0;
   own->fallback = operand->subtracted ? -q->fallback : q->fallback;
   if (operand->placed) {
     own->x = transform_point(operand->transform, own->x);

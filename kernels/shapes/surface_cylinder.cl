@@ -8,8 +8,7 @@
 #include "shapes/surface_cone.cl"
 
 static inline LocalSurface surface_cylinder(const SurfaceQuery* q) {
-  return cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48], q->data[56], q->data[64], q->surface, q->x,
-                    q->fallback);
+  return cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48], q->data[56], q->data[64]);
 }
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Disk: centre, unit normal, radius. uv as pbrt's disk: u = angle / 2 pi, v = 1 - distance from the centre / radius.
+// Disk: centre, unit normal, radius. uv as pbrt's disk, of its own space: u = angle from +x / 2 pi, v = 1 - distance from the
+// centre / radius.
 #ifndef CAPLET_SHAPES_SURFACE_DISK_CL
 #define CAPLET_SHAPES_SURFACE_DISK_CL
 
@@ -10,6 +11,7 @@
 static inline LocalSurface surface_disk(const SurfaceQuery* q) {
   const float3 center = data3(q->data, 0), normal = data3(q->data, 3);
   const float radius = q->data[48];
+  const Frame turn = turn_frame(q->space, normal);
   LocalSurface s;
   const float3 v = q->x - center;
   const float3 in_plane = v - dot(v, normal) * normal;
@@ -19,9 +21,9 @@ static inline LocalSurface surface_disk(const SurfaceQuery* q) {
   const float3 spoke = distance < radius ? flat_spoke : unit_or(flat_spoke, (float3)(0.0f)) * radius;
   s.ng = s.ns = normal;
   s.p = center + spoke;
-  s.uv = (float2)(distance > 0.0f ? turn_around(normal, spoke / distance) : 0.0f,
+  s.uv = (float2)(distance > 0.0f ? turn_around(&turn, spoke / distance) : 0.0f,
                   radius > 0.0f ? fmax(0.0f, 1.0f - distance / radius) : 0.0f);
-  s.dpdu = 2.0f * CAPLET_PI * cross(normal, spoke);
+  s.dpdu = along_turn(&turn, spoke);
   s.dpdv = -radius * unit_or(spoke, (float3)(0.0f));
   s.error = CAPLET_EPS * (12.0f * radius + 4.0f * norm1(s.p));
   return s;

@@ -26,6 +26,8 @@ typedef struct {
   __global const float* data;  // datum j at [8 * j]
   float3 x;
   float3 fallback;  // unit normal where x leaves it undefined
+  // A rotation or reflection (3x4 row-major, no translation) that the shape is stored under, where its uv tells it from none; or 0.
+  __global const float* space;
 } SurfaceQuery;
 
 static inline float3 data3(__global const float* data, int j) { return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]); }
@@ -44,11 +46,32 @@ static inline float3 unit_or(float3 v, float3 otherwise) {
 // Some unit vector perpendicular to the unit vector n.
 static inline float3 perpendicular(float3 n) { return frame_from_normal(n).s; }
 
-// Angle of `n` around `axis` (both unit), over a full turn: in [0, 1), zero along frame_from_normal(axis).s.
-static inline float turn_around(float3 axis, float3 n) {
-  const Frame f = frame_from_normal(axis);
-  const float turn = atan2(dot(n, f.t), dot(n, f.s)) * (0.5f * CAPLET_INV_PI);
+// Angles around `axis` (unit) run from s to t: in the shape's own space s is where +x goes when +z, or -z for axes below -0.9, is
+// turned onto the axis the short way. The frame jumps there and not at the axes that people write.
+static inline Frame turn_frame(__global const float* space, float3 axis) {
+  const float3 n = space ? unit_or(transform_transposed(space, axis), axis) : axis;
+  Frame f = frame_from_pole(n, n.z >= -0.9f ? 1.0f : -1.0f);
+  if (space) {
+    f.s = transform_vector(space, f.s);
+    f.t = transform_vector(space, f.t);
+    f.n = axis;
+  }
+  return f;
+}
+// The z axis of the shape's own space.
+static inline float3 own_z(__global const float* space) {
+  return space ? (float3)(space[2], space[6], space[10]) : (float3)(0.0f, 0.0f, 1.0f);
+}
+
+// Angle of `n` around the frame's n (both unit), over a full turn: in [0, 1).
+static inline float turn_around(const Frame* f, float3 n) {
+  const float turn = atan2(dot(n, f->t), dot(n, f->s)) * (0.5f * CAPLET_INV_PI);
   return turn < 0.0f ? fmin(turn + 1.0f, 0x1.fffffep-1f) : turn;
+}
+
+// Derivative by that turn of a point at v from somewhere on the axis. Reflections turn the other way.
+static inline float3 along_turn(const Frame* f, float3 v) {
+  return (dot(cross(f->s, f->t), f->n) < 0.0f ? -2.0f : 2.0f) * CAPLET_PI * cross(f->n, v);
 }
 
 // Angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Surfaces of polyhedra: the planes in their order. uv: across the plane's normal, (1/2 1/2) at the foot of the perpendicular
-// from the centre, 0 and 1 a bounding radius to either side; u along frame_from_normal(n).s, v along its t.
+// Surfaces of polyhedra: the planes in their order. uv is affine over each plane: its coefficients lie behind the planes.
 #ifndef CAPLET_SHAPES_SURFACE_POLYHEDRON_CL
 #define CAPLET_SHAPES_SURFACE_POLYHEDRON_CL
 
@@ -41,15 +40,17 @@ static inline LocalSurface surface_polyhedron(const SurfaceQuery* q) {
   __global const float* head = q->g->leaves + as_uint(q->data[0]);
   __global const float* planes = head + 8;
   const float3 center = load3(head), normal = load3(planes + 4u * q->surface);
-  const float3 v = polyhedron_face_point(planes, as_uint(head[3]), q->surface, q->x - center);
-  const float width = 2.0f * head[4];
-  const Frame frame = frame_from_normal(normal);
+  const uint count = as_uint(head[3]);
+  const float3 v = polyhedron_face_point(planes, count, q->surface, q->x - center);
+  const float8 along = vload8(q->surface, planes + (4u * count + 7u) / 8u * 8u);
+  // In the plane, u is constant along cross(U, n) and v along cross(V, n).
+  const float3 n = unit_or(normal, q->fallback), across_u = cross(along.s012, n), across_v = cross(along.s456, n);
   LocalSurface s;
-  s.ng = s.ns = unit_or(normal, q->fallback);
+  s.ng = s.ns = n;
   s.p = center + v;
-  s.dpdu = width * frame.s;
-  s.dpdv = width * frame.t;
-  s.uv = clamp(0.5f + (float2)(dot(v, frame.s), dot(v, frame.t)) / width, 0.0f, 1.0f);
+  s.dpdu = across_v / dot(along.s012, across_v);
+  s.dpdv = across_u / dot(along.s456, across_u);
+  s.uv = clamp((float2)(dot(v, along.s012) + along.s3, dot(v, along.s456) + along.s7), 0.0f, 1.0f);
   s.error = CAPLET_EPS * (32.0f * norm1(v) + 4.0f * norm1(s.p));
   return s;
 }

@@ -8,7 +8,7 @@
 #include "shapes/surface_capsule.cl"
 
 static inline LocalSurface surface_tapered_capsule(const SurfaceQuery* q) {
-  return round_cone_point(data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56], q->x, q->fallback);
+  return round_cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56]);
 }
 
 #endif

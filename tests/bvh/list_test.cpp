@@ -82,7 +82,8 @@ struct ListScene {
       GeometryRecord geometry{};
       geometry.shape = p.shape;
       geometry.primitive_begin = p.id;
-      geometry.light_offset = geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = CAPLET_NONE;
+      geometry.light_offset = geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = geometry.uv_space =
+          CAPLET_NONE;
       geometry.index_begin = 3 * p.id;
       flat.geometries.push_back(geometry);
       flat.primitive_geometry.push_back(p.id);

@@ -263,7 +263,7 @@ Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>
     geometry.primitive_begin = i;
     geometry.light_offset = placed.placed ? 3 : i % 2 == 0 ? CAPLET_NONE : i;
     geometry.index_begin = 4 * i;
-    geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = CAPLET_NONE;
+    geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = geometry.uv_space = CAPLET_NONE;
     geometries_.push_back(geometry);
     primitive_geometry_.push_back(i);
     for (std::uint32_t k = 0; k < 4; ++k) mesh_indices_.push_back(4 * i + k);

@@ -20,6 +20,7 @@
 #include <random>
 
 #include "list_tracer.h"
+#include "random_scene.h"
 #include "reference/from_scene.h"
 #include "reference/scene_witness.h"
 #include "shared/kinds.h"
@@ -42,100 +43,6 @@ const ListTracer& tracer(int width = 8) {
 int scale_of_test() {
   const char* text = std::getenv("CAPLET_TEST_SCALE");
   return text ? std::clamp(std::atoi(text), 1, 1000) : 1;
-}
-
-class SceneMaker {
- public:
-  explicit SceneMaker(std::uint32_t seed) : random_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
-  dvec3 direction() {
-    const double z = uniform(-1, 1), phi = uniform(0, full_turn), r = std::sqrt(1 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
-  }
-  /// Turned; half of them stretched along each axis, some of those mirrored; moved.
-  dmat4 placement(double reach) {
-    dmat4 m = glm::translate(dmat4(1), reach * uniform(0, 1) * direction());
-    if (below(4) != 0) m = glm::rotate(m, uniform(0, full_turn), direction());
-    if (below(2) == 0) m = glm::scale(m, dvec3(uniform(0.3, 3), uniform(0.3, 3), uniform(0.3, 3) * (below(3) == 0 ? -1 : 1)));
-    return m;
-  }
-  Shape shape(int kind) {
-    Shape out;
-    out.geometry = geometry(kind);
-    out.world_from_object = placement(4);
-    out.material = static_cast<std::uint32_t>(below(20));
-    if (below(2) == 0 && !std::holds_alternative<CsgShape>(out.geometry))
-      for (std::size_t i = 0; i < surface_count(out); ++i) out.materials.push_back(static_cast<std::uint32_t>(below(20)));
-    out.one_sided = below(4) == 0;
-    out.reverse_orientation = below(4) == 0;
-    return out;
-  }
-  static constexpr int kinds = 13;
-
- private:
-  Cap cap() { return below(2) == 0 ? Cap::flat : below(2) == 0 ? Cap::round : Cap::open; }
-  decltype(Shape::geometry) geometry(int kind) {
-    const double r = uniform(0.2, 1);
-    const glm::vec3 a(direction()), b(direction()), c(direction());
-    const auto f = static_cast<float>(r);
-    switch (kind) {
-      case 0:
-        return SphereShape{r};
-      case 1:
-        return CapsulesShape{{a, b}, {b, c}, {0.3f * f, 0.2f * f}, {0.3f * f, 0.4f * f}, {}};
-      case 2:
-        return TriangleMeshShape{{a, b, c, -a}, {{0, 1, 2}, {1, 2, 3}}, {}, {}};
-      case 3:
-        return DiskShape{uniform(-1, 1), r, 0, full_turn};
-      case 4:
-        return DiskShape{uniform(-1, 1), r, 0.3 * r, uniform(1, 6)};
-      case 5:
-        return CylinderShape{direction(), dvec3(0), 0.5 * r, {cap(), cap()}};
-      case 6:
-        return ConeShape{direction(), dvec3(0), {r, below(3) == 0 ? 0 : 0.4 * r}, {cap(), cap()}};
-      case 7:
-        return BoxShape{-r * dvec3(1, 0.5, 0.3), r * dvec3(0.2, 0.4, 0.6)};
-      case 8:
-        return PolyhedronShape{{dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
-                               {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, 1}}};
-      case 9:
-        return PartialSphereShape{r, -0.6 * r, 0.8 * r, uniform(2, 6)};
-      case 10:
-        return OpenCylinderShape{0.5 * r, -r, 0.7 * r, uniform(2, 6)};
-      case 11:
-        return BilinearMeshShape{{a, b, c, glm::vec3(direction())}, {{0, 1, 2, 3}}, {}, {}};
-      default: {
-        CsgShape csg;
-        csg.operation = static_cast<CsgShape::Operation>(below(3));
-        for (const int operand : {0, 7, 8}) {
-          auto one = std::make_shared<Shape>();
-          one->geometry = geometry(operand);
-          one->world_from_object = glm::translate(dmat4(1), 0.3 * r * direction());
-          one->material = static_cast<std::uint32_t>(below(20));
-          csg.operands.push_back(one);
-        }
-        return csg;
-      }
-    }
-  }
-  std::mt19937 random_;
-};
-
-/// Every kind twice or more, in the world and in objects, some of those placed twice.
-Scene random_scene(std::uint32_t seed) {
-  SceneMaker make(seed);
-  Scene scene;
-  for (int i = 0; i < 20; ++i) scene.materials.push_back({DiffuseMaterial{}, fmt::format("{}", i), {}});
-  for (int i = 0; i < SceneMaker::kinds; ++i) scene.shapes.push_back(make.shape(i));
-  for (int i = 0; i < 5; ++i) {
-    Object object;
-    object.name = fmt::format("object {}", i);
-    for (int k = 0; k < 3; ++k) object.shapes.push_back(make.shape((3 * i + k) % SceneMaker::kinds));
-    scene.objects.push_back(object);
-    for (int k = make.below(2); k < 2; ++k) scene.instances.push_back({static_cast<std::uint32_t>(i), make.placement(4), {}});
-  }
-  return scene;
 }
 
 std::vector<RayRecord> random_rays(std::uint32_t seed, int count) {
