@@ -19,12 +19,10 @@ struct Invocation {
 
 void add_render(CLI::App& app, const Invocation& invocation);
 void add_devices(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_verify(CLI::App& app);
-
-/// Thrown by `verify` once it has said what disagrees: exit code 3.
-struct Disagreed {};
 
 }  // namespace caplet::cli

@@ -7,33 +7,37 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/device_json.h"
 #include "device/device.h"
 
 namespace caplet::cli {
+
+nlohmann::ordered_json device_json(const DeviceInfo& device) {
+  return {{"index", device.index},
+          {"name", device.name},
+          {"type", device.type},
+          {"vendor", device.vendor},
+          {"driver", device.driver},
+          {"version", device.version},
+          {"platform", device.platform},
+          {"compute_units", device.compute_units},
+          {"global_bytes", device.global_bytes},
+          {"max_allocation_bytes", device.max_allocation_bytes}};
+}
 
 namespace {
 
 void print_json(const std::vector<DeviceInfo>& devices) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const DeviceInfo& device : devices)
-    out.push_back({{"index", device.index},
-                   {"name", device.name},
-                   {"type", device.type},
-                   {"vendor", device.vendor},
-                   {"driver", device.driver},
-                   {"version", device.version},
-                   {"platform", device.platform},
-                   {"compute_units", device.compute_units},
-                   {"global_bytes", device.global_bytes},
-                   {"max_allocation_bytes", device.max_allocation_bytes}});
+  for (const DeviceInfo& device : devices) out.push_back(device_json(device));
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void print_table(const std::vector<DeviceInfo>& devices) {
-  if (devices.empty()) fmt::print(stderr, "caplet: no OpenCL device (on Debian: apt-get install pocl-opencl-icd)\n");
+  if (devices.empty())
+    fmt::print(stderr, "caplet: no OpenCL device (on Debian: apt-get install pocl-opencl-icd; `caplet doctor` tells more)\n");
   for (const DeviceInfo& device : devices)
     fmt::print("{}  {}  {}  ({}, {} compute units, {:.1f} GiB, {})\n", device.index, device.type, device.name, device.platform,
                device.compute_units, static_cast<double>(device.global_bytes) / (1 << 30), device.driver);

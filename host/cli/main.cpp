@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr int exit_failed = 1, exit_wrong_input = 2, exit_disagreed = 3;
+constexpr int exit_failed = 1, exit_wrong_input = 2;
 
 /// One line: control characters of names and files would break it, or the terminal.
 void print_error(std::string message) {
@@ -38,13 +38,13 @@ int run(CLI::App& app, int argc, char** argv) {
     return 0;
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
+  } catch (const CLI::RuntimeError& end) {  // a command's own exit code, all being said
+    return end.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return print_usage_error(app, error);
   } catch (const caplet::InputError& error) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
-  } catch (const caplet::cli::Disagreed&) {
-    return exit_disagreed;
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
   } catch (const std::exception& error) {
@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
   caplet::cli::add_verify(app);
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
+  caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);
   return run(app, argc, argv);
 }

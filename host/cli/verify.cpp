@@ -27,6 +27,8 @@ namespace caplet::cli {
 
 namespace {
 
+constexpr int exit_disagreed = 3;
+
 struct Options {
   std::string scene, device, heatmap, failures, replay, size;
   std::uint64_t rays = 1'000'000, seed = 0;
@@ -92,7 +94,7 @@ void run_verify(const Options& o) {
     if (!o.heatmap.empty()) refuse("--heatmap", "does not go with --replay");
     if (!o.failures.empty()) refuse("--save-failures", "does not go with --replay");
     if (o.json) refuse("--json", "does not go with --replay");
-    if (!replay(o)) throw Disagreed{};
+    if (!replay(o)) throw CLI::RuntimeError(exit_disagreed);
     return;
   }
   if (!o.heatmap.empty()) {
@@ -138,7 +140,7 @@ void run_verify(const Options& o) {
     write_heatmap(o.heatmap, shown, verify::heatmap(shown, devices));
     log::info("wrote {}", o.heatmap);
   }
-  if (report.disagreements() > 0) throw Disagreed{};
+  if (report.disagreements() > 0) throw CLI::RuntimeError(exit_disagreed);
   if (report.interrupted) throw RunError("interrupted before all rays were asked");
 }
 

@@ -4,6 +4,7 @@
 
 #include "device/accounting.h"
 #include "device/cl_error.h"
+#include "device/describe.h"
 #include "device/device.h"
 #include "device/select.h"
 
@@ -23,20 +24,6 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
-DeviceInfo describe(const cl::Device& device, const std::string& platform) {
-  DeviceInfo info;
-  info.name = device.getInfo<CL_DEVICE_NAME>();
-  info.vendor = device.getInfo<CL_DEVICE_VENDOR>();
-  info.driver = device.getInfo<CL_DRIVER_VERSION>();
-  info.version = device.getInfo<CL_DEVICE_VERSION>();
-  info.platform = platform;
-  info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
-  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
-  info.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-  info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
-  return info;
-}
-
 /// A platform or device that cannot be asked is left out: it could not be used either.
 std::vector<Found> find_devices() {
   std::vector<Found> found;
@@ -50,9 +37,9 @@ std::vector<Found> find_devices() {
     try {
       std::vector<cl::Device> devices;
       platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-      const std::string platform_name = platform.getInfo<CL_PLATFORM_NAME>() + " " + platform.getInfo<CL_PLATFORM_VERSION>();
+      const std::string named = platform_name(platform);
       for (const cl::Device& device : devices) {
-        found.push_back({describe(device, platform_name), device});
+        found.push_back({describe(device, named), device});
         found.back().info.index = static_cast<int>(found.size()) - 1;
       }
     } catch (const cl::Error&) {
@@ -63,6 +50,24 @@ std::vector<Found> find_devices() {
 }
 
 }  // namespace
+
+std::string platform_name(const cl::Platform& platform) {
+  return platform.getInfo<CL_PLATFORM_NAME>() + " " + platform.getInfo<CL_PLATFORM_VERSION>();
+}
+
+DeviceInfo describe(const cl::Device& device, const std::string& platform) {
+  DeviceInfo info;
+  info.name = device.getInfo<CL_DEVICE_NAME>();
+  info.vendor = device.getInfo<CL_DEVICE_VENDOR>();
+  info.driver = device.getInfo<CL_DRIVER_VERSION>();
+  info.version = device.getInfo<CL_DEVICE_VERSION>();
+  info.platform = platform;
+  info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  return info;
+}
 
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> out;

@@ -26,6 +26,8 @@ constexpr std::size_t gpu_batch_paths = std::size_t{1} << 20;
 // A tree of fewer nodes (224 bytes each) and their leaves stays in a processor's cache however rays are ordered.
 constexpr std::uint64_t sorting_pays_from_nodes = 1024;
 
+std::size_t default_batch_paths(bool cpu) { return cpu ? cpu_batch_paths : gpu_batch_paths; }
+
 /// Morton bits per axis so that a bin holds a few rays on average.
 uint sort_bits_for(std::size_t rays) {
   const double bits = (std::log2(static_cast<double>(std::max<std::size_t>(rays, 1))) - 3 - 2) / 3;
@@ -36,7 +38,7 @@ class Wavefront {
  public:
   Wavefront(const FlatScene& scene, const Device& device, const RenderOptions& options) : params_(scene.params) {
     pixels_ = std::size_t{params_.crop_width} * params_.crop_height;
-    const std::size_t wanted = options.batch_paths ? options.batch_paths : device.is_cpu() ? cpu_batch_paths : gpu_batch_paths;
+    const std::size_t wanted = options.batch_paths ? options.batch_paths : default_batch_paths(device.is_cpu());
     const std::size_t all = pixels_ * static_cast<std::size_t>(options.samples_per_pixel);
     batch_paths_ = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(all, 1));
     StateSize size;
@@ -151,6 +153,14 @@ RenderResult render(const FlatScene& scene, const Device& device, const RenderOp
   result.peak_device_bytes = device.bytes_peak();
   if (wavefront.not_finite > 0) log::warn("{} samples were not finite and count as black", wavefront.not_finite);
   return result;
+}
+
+std::uint64_t batch_bytes(bool cpu) {
+  std::uint64_t path = 0;
+#define PATH_STATE(name, type, count) path += sizeof(type) * (count);
+#include "shared/path_state.def"
+#undef PATH_STATE
+  return path * default_batch_paths(cpu);
 }
 
 }  // namespace caplet

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet doctor`: what is there, what is wrong, what to do.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/device_json.h"
+#include "device/doctor/diagnosis.h"
+#include "render/render.h"
+
+namespace caplet::cli {
+
+namespace {
+
+/// One line: drivers' messages may have several.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
+void print_line(const doctor::Finding& finding) {
+  fmt::print("{:<6} {}: {}\n", doctor::name_of(finding.state), one_line(finding.about), one_line(finding.what));
+  if (!finding.fix.empty()) fmt::print("       fix: {}\n", one_line(finding.fix));
+  std::fflush(stdout);  // a self-test takes a while, and children must not print what waits
+}
+
+void print_json(const doctor::Diagnosis& diagnosis) {
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array(), platforms = findings, devices = findings;
+  for (const doctor::Finding& finding : diagnosis.findings)
+    findings.push_back(
+        {{"state", doctor::name_of(finding.state)}, {"about", finding.about}, {"what", finding.what}, {"fix", finding.fix}});
+  for (const doctor::PlatformFacts& platform : diagnosis.platforms) {
+    platforms.push_back({{"name", platform.name},
+                         {"vendor", platform.vendor},
+                         {"version", platform.version},
+                         {"devices", platform.devices.size()}});
+    for (const doctor::DeviceFacts& device : platform.devices) devices.push_back(device_json(device.info));
+  }
+  const nlohmann::ordered_json out{{"findings", findings}, {"platforms", platforms}, {"devices", devices}};
+  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app) {
+  struct Chosen {
+    doctor::Options options;
+    bool json = false;
+  };
+  const auto chosen = std::make_shared<Chosen>();
+  CLI::App* command =
+      app.add_subcommand("doctor", "Look for what keeps OpenCL from working here: drivers, permissions, memory, caches, devices");
+  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu or part of its name");
+  command
+      ->add_option("--timeout", chosen->options.seconds,
+                   "Most seconds a driver may take to answer; four times that for a self-test")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->add_flag("--json", chosen->json, "Print a JSON object for machines");
+  command->footer("Exit codes: 0 nothing is wrong, 1 something is, 2 the usage is.");
+  command->callback([chosen] {
+    chosen->options.least_bytes = batch_bytes;
+    const bool json = chosen->json;
+    const doctor::Diagnosis diagnosis =
+        doctor::diagnose(doctor::this_machine(), chosen->options, [json](const doctor::Finding& finding) {
+          if (!json) print_line(finding);
+        });
+    if (json) print_json(diagnosis);
+    std::fflush(stdout);
+    if (diagnosis.anything_wrong()) throw CLI::RuntimeError(1);
+  });
+}
+
+}  // namespace caplet::cli
