@@ -42,7 +42,7 @@ void print_json(const std::string& name, double ours, double peer, const std::st
 
 struct Bench {
   caplet::test::DeviceTracer& tracer;
-  const caplet::bench::Peer* peer;  // null: Embree has no such shape
+  const caplet::test::Peer* peer;  // null: Embree has no such shape
   const std::vector<float>& leaves;
   double seconds;
   bool by_shape = false;  // ids of the peer are not primitive ids
@@ -83,7 +83,7 @@ struct Bench {
 void run_shapes(const std::string& kind, std::size_t count, const caplet::Device& device, double seconds, int size, int width) {
   std::vector<caplet::FlatPrimitive> same;
   const caplet::FlatScene scene = caplet::lower(caplet::bench::walk_scene(kind, count, same));
-  std::optional<caplet::bench::Peer> peer;
+  std::optional<caplet::test::Peer> peer;
   if (!same.empty()) peer.emplace(same);
   caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
   tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.params.root);
@@ -129,7 +129,7 @@ int run(int argc, char** argv) {
   const auto start = Clock::now();
   const caplet::EncodedTree tree = caplet::encode_tree(primitives, nodes, leaves);
   const double build = seconds_since(start);
-  const caplet::bench::Peer peer(primitives);
+  const caplet::test::Peer peer(primitives);
   print_json(kind + " build", build, peer.build_seconds(), "s",
              fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth, tree.sah));
   const double n = static_cast<double>(count);

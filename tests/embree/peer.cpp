@@ -9,17 +9,40 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "shared/kinds.h"
+namespace caplet::test {
+namespace {
 
-namespace caplet::bench {
+/// One for the program: scenes are cheap, devices are not.
+RTCDevice device() {
+  static const struct Owner {
+    RTCDevice handle = rtcNewDevice(nullptr);
+    ~Owner() { rtcReleaseDevice(handle); }
+  } owner;
+  return owner.handle;
+}
 
-Peer::Peer(std::span<const FlatPrimitive> primitives) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+RTCGeometryType type_of(int shape) {
+  switch (shape) {
+    case shape_triangle:
+      return RTC_GEOMETRY_TYPE_TRIANGLE;
+    case shape_sphere:
+      return RTC_GEOMETRY_TYPE_SPHERE_POINT;
+    case shape_disk:
+      return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
+    case shape_capsule:
+    case shape_tapered_capsule:
+      return RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE;
+    default:
+      throw std::runtime_error("Embree has no such shape");
+  }
+}
+
+}  // namespace
+
+Peer::Peer(std::span<const FlatPrimitive> primitives, RTCSceneFlags flags) : scene_(rtcNewScene(device())) {
   const auto shape = static_cast<int>(primitives[0].shape);
   const std::size_t count = primitives.size();
-  const RTCGeometry geometry = rtcNewGeometry(device_, shape == shape_triangle ? RTC_GEOMETRY_TYPE_TRIANGLE
-                                                       : shape == shape_sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT
-                                                       : shape == shape_disk   ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT
-                                                                               : RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  const RTCGeometry geometry = rtcNewGeometry(device(), type_of(shape));
   const auto floats = [&](RTCBufferType type, RTCFormat format, std::size_t components, std::size_t items) {
     return static_cast<float*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, components * sizeof(float), items));
   };
@@ -52,21 +75,43 @@ Peer::Peer(std::span<const FlatPrimitive> primitives) : device_(rtcNewDevice(nul
       indices[i] = static_cast<unsigned>(2 * i);
     }
   }
+  build(geometry, flags);
+}
+
+Peer::Peer(const RoundCurves& curves, RTCSceneFlags flags) : scene_(rtcNewScene(device())) {
+  const RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  float* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), curves.vertices.size()));
+  for (const auto& vertex : curves.vertices) vertices = std::copy(vertex.begin(), vertex.end(), vertices);
+  unsigned* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), curves.first.size()));
+  std::copy(curves.first.begin(), curves.first.end(), indices);
+  build(geometry, flags);
+}
+
+void Peer::build(RTCGeometry geometry, RTCSceneFlags flags) {
+  rtcSetSceneFlags(scene_, flags);
   const auto start = std::chrono::steady_clock::now();
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene_);
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
+  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE) throw std::runtime_error("Embree could not build the scene");
 }
 
-Peer::~Peer() {
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
+Peer::~Peer() { rtcReleaseScene(scene_); }
+
+std::string Peer::version() {
+  const auto property = [](RTCDeviceProperty name) { return std::to_string(rtcGetDeviceProperty(device(), name)); };
+  return property(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." + property(RTC_DEVICE_PROPERTY_VERSION_MINOR) + "." +
+         property(RTC_DEVICE_PROPERTY_VERSION_PATCH) + ", back faces culled: of triangles " +
+         property(RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED) + ", of curves " +
+         property(RTC_DEVICE_PROPERTY_BACKFACE_CULLING_CURVES_ENABLED);
 }
 
-std::size_t Peer::trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const {
+template <class Store>
+void Peer::trace_with(std::span<const RayRecord> rays, const Store& store) const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -84,10 +129,20 @@ std::size_t Peer::trace(std::span<const RayRecord> rays, std::span<std::uint32_t
       hit.ray.mask = ~0u;
       hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(scene_, &context, &hit);
-      ids[i] = hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? CAPLET_NONE : hit.hit.primID;
+      store(i, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PeerHit{} : PeerHit{hit.hit.primID, hit.ray.tfar});
     }
   });
+}
+
+std::vector<PeerHit> Peer::closest(std::span<const RayRecord> rays) const {
+  std::vector<PeerHit> out(rays.size());
+  trace_with(rays, [&](std::size_t i, const PeerHit& hit) { out[i] = hit; });
+  return out;
+}
+
+std::size_t Peer::trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const {
+  trace_with(rays, [&](std::size_t i, const PeerHit& hit) { ids[i] = hit.id; });
   return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [](std::uint32_t id) { return id != CAPLET_NONE; }));
 }
 
-}  // namespace caplet::bench
+}  // namespace caplet::test
