@@ -127,15 +127,21 @@ bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
   return r;
 }
 
-void check_limits(std::uint64_t rows, std::uint64_t node_count) {
+}  // namespace
+
+std::uint64_t least_rows(std::span<const std::uint64_t> counts) {
+  CHECK_EQ_(counts.size(), std::size_t(shape_count));
+  std::uint64_t rows = 0;
+  for (std::size_t s = 0; s < counts.size(); s++) rows += (counts[s] + 7) / 8 * rows_of[s];
+  return rows;
+}
+
+void check_tree_limits(std::uint64_t rows, std::uint64_t nodes) {
   if (rows > max_rows)
     throw InputError(fmt::format("the scene needs {} rows of primitives, the layout holds {}: about {} million capsules", rows,
                                  max_rows, max_rows / 8 * 6 / 1000000));
-  if (node_count > max_nodes)
-    throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", node_count, max_nodes));
+  if (nodes > max_nodes) throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
 }
-
-}  // namespace
 
 void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
   const ExactBox box = exact_box(p);
@@ -151,9 +157,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
     CHECK_LT_(p.shape, std::uint32_t(shape_count));
     counts[p.shape]++;
   }
-  std::uint64_t least = row_base;
-  for (std::size_t s = 0; s < shape_count; s++) least += (counts[s] + 7) / 8 * rows_of[s];
-  check_limits(least, node_base + 1);
+  check_tree_limits(row_base + least_rows(counts), node_base + 1);
 
   std::vector<bvh::Reference> references(primitives.size());
   tbb::parallel_for(std::size_t(0), primitives.size(),
@@ -167,7 +171,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
     row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows));
     rows += rows_of[tree.leaves[i].group];
   }
-  check_limits(rows, node_base + tree.nodes.size());
+  check_tree_limits(rows, node_base + tree.nodes.size());
 
   EncodedTree out;
   out.root = narrow<std::uint32_t>(node_base);

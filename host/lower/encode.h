@@ -30,6 +30,12 @@ struct EncodedTree {
 /// The exact box of a primitive in its tree's space: min, then max.
 void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
 
+/// Rows of leaf blocks that so many primitives of each kind (shapes.def) take at the very least.
+std::uint64_t least_rows(std::span<const std::uint64_t> counts);
+/// Throws InputError when there are more rows of leaf blocks or nodes than references have bits for: 2^27 rows, some 100 million
+/// capsules, and 2^31 nodes.
+void check_tree_limits(std::uint64_t rows, std::uint64_t nodes);
+
 /// Builds the tree over `primitives` (at least one) and appends nodes and leaf blocks. Boxes are conservative: they hold every
 /// point the shape kernels may report, their rounding included. Throws InputError when rows or nodes exceed the layout, before
 /// allocating.

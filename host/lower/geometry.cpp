@@ -84,6 +84,7 @@ class GeometryLowering {
   GeometryLowering(const Scene& scene, SpectrumTable& spectra, FlatScene& out) : scene_(scene), spectra_(spectra), out_(out) {}
 
   std::vector<Emitter> run() {
+    check_counts();
     std::vector<Part> world = lower_shapes(scene_.shapes, 0);
     std::vector<std::vector<Part>> objects;
     auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
@@ -129,6 +130,20 @@ class GeometryLowering {
     double area_scale;
     Matrix world_from_part;
   };
+
+  /// Before anything is made of them: what can be too many are the primitives of capsules and meshes.
+  void check_counts() const {
+    std::array<std::uint64_t, shape_count> counts{};
+    const auto add = [&](const Shape& shape) {
+      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) counts[shape_sphere] += capsules->p0.size();
+      if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) counts[shape_triangle] += mesh->triangles.size();
+      if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) counts[shape_bilinear] += mesh->patches.size();
+    };
+    for (const Shape& shape : scene_.shapes) add(shape);
+    for (const Object& object : scene_.objects)
+      for (const Shape& shape : object.shapes) add(shape);
+    check_tree_limits(least_rows(counts), 0);
+  }
 
   /// One part for what is baked into the shapes' common space, then one for each transform that cannot be.
   std::vector<Part> lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {

@@ -3,13 +3,17 @@
 //
 // The flat arrays: slots lead back to the data given, boxes hold the primitives with room to spare, limits are errors.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
 
 #include "base/error.h"
 #include "lower/encode.h"
+#include "lower/lower.h"
+#include "scene/scene.h"
 #include "shared/kinds.h"
 
 namespace caplet {
@@ -102,6 +106,33 @@ TEST(Encode, BoxesHoldWhatTheKernelsMayReport) {
       }
     }
   }
+}
+
+TEST(Encode, LimitsOfTheLayout) {
+  constexpr std::uint64_t most_rows = std::uint64_t(1) << 27, most_nodes = std::uint64_t(1) << 31;
+  EXPECT_NO_THROW(check_tree_limits(most_rows, most_nodes));
+  EXPECT_THROW(check_tree_limits(most_rows + 1, 0), InputError);
+  EXPECT_THROW(check_tree_limits(0, most_nodes + 1), InputError);
+  // A hundred million capsules fit, eight to a leaf of nine rows.
+  std::array<std::uint64_t, shape_count> counts{};
+  counts[shape_capsule] = 100'000'000;
+  EXPECT_LT(least_rows(counts), most_rows);
+  counts[shape_capsule] = std::uint64_t(-8) / 16;  // nothing overflows
+  EXPECT_THROW(check_tree_limits(least_rows(counts), 0), InputError);
+}
+
+// Nothing is made of them: 110 million triangles as FlatPrimitives would be 6 GB.
+TEST(Encode, TooManyPrimitivesAreRefusedBeforeMemoryIsAllocated) {
+  Scene scene;
+  scene.materials.push_back({DiffuseMaterial{}, "", {}});
+  TriangleMeshShape mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {}};
+  mesh.triangles.resize(110'000'000, {0, 1, 2});
+  scene.shapes.emplace_back().geometry = std::move(mesh);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_THROW(lower(scene), InputError);
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 100'000);  // KiB
 }
 
 }  // namespace
