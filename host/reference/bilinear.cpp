@@ -29,27 +29,50 @@ Nearest nearest_on_ruling(const Bilinear& b, double u, const dvec3& x) {
   return {glm::length(x - (a + v * ruling)), {u, v}};
 }
 
+/// The least of what rulings between two u have, by golden sections, where it is the only minimum.
+Nearest least_between(const Bilinear& b, double low, double high, const dvec3& x) {
+  constexpr double golden = 0.6180339887498949;
+  double left = high - golden * (high - low), right = low + golden * (high - low);
+  double at_left = nearest_on_ruling(b, left, x).distance, at_right = nearest_on_ruling(b, right, x).distance;
+  while (high - low > 1e-16 && low < left && left < right && right < high) {
+    if (at_left <= at_right) {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - golden * (high - low);
+      at_left = nearest_on_ruling(b, left, x).distance;
+    } else {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + golden * (high - low);
+      at_right = nearest_on_ruling(b, right, x).distance;
+    }
+  }
+  Nearest best;
+  for (const double u : {low, high, 0.5 * (low + high)})
+    if (const Nearest found = nearest_on_ruling(b, u, x); found.distance < best.distance) best = found;
+  return best;
+}
+
 Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   // The squared distance to the ruling's line is a rational function of u of low degree: it has few minima. Where the ruling's
-  // ends clamp, two may lie close together: 256 samples, and the other family, part them.
-  constexpr int samples = 256;
-  double at[samples + 1];
-  for (int i = 0; i <= samples; ++i) at[i] = nearest_on_ruling(b, double(i) / samples, x).distance;
+  // ends clamp, two may lie close together: 256 samples, and the other family, part them. No ruling moves faster than its ends,
+  // so most of 16 coarse cells are seen to hold nothing less and are not sampled.
+  constexpr int coarse = 16, fine = 16;
+  const double speed = std::max(glm::length(b.p10 - b.p00), glm::length(b.p11 - b.p01));
+  double at[coarse + 1], least = HUGE_VAL;
+  for (int i = 0; i <= coarse; ++i) least = std::min(least, at[i] = nearest_on_ruling(b, double(i) / coarse, x).distance);
   Nearest best;
-  constexpr double golden = 0.6180339887498949;
-  for (int i = 0; i <= samples; ++i) {
-    if ((i > 0 && at[i - 1] < at[i]) || (i < samples && at[i + 1] < at[i])) continue;
-    double low = std::max(0.0, (i - 1.0) / samples), high = std::min(1.0, (i + 1.0) / samples);
-    while (high - low > 1e-16) {
-      const double left = high - golden * (high - low), right = low + golden * (high - low);
-      if (left <= low || right >= high) break;
-      if (nearest_on_ruling(b, left, x).distance <= nearest_on_ruling(b, right, x).distance)
-        high = right;
-      else
-        low = left;
-    }
-    for (const double u : {low, high, 0.5 * (low + high)}) {
-      const Nearest found = nearest_on_ruling(b, u, x);
+  for (int i = 0; i < coarse; ++i) {
+    if (0.5 * (at[i] + at[i + 1] - speed / coarse) > std::min(least, best.distance)) continue;
+    double within[fine + 1];
+    for (int k = 0; k <= fine; ++k) within[k] = nearest_on_ruling(b, (i + double(k) / fine) / coarse, x).distance;
+    for (int k = 0; k <= fine; ++k) {
+      if ((k > 0 && within[k - 1] < within[k]) || (k < fine && within[k + 1] < within[k])) continue;
+      if (within[k] - speed / (coarse * fine) > best.distance) continue;
+      const Nearest found =
+          least_between(b, std::max(0.0, (i + (k - 1.0) / fine) / coarse), std::min(1.0, (i + (k + 1.0) / fine) / coarse), x);
       if (found.distance < best.distance) best = found;
     }
   }
