@@ -52,6 +52,13 @@ class Validator {
     if (said_.insert(where.to_string() + message).second) diagnostics_.error(where, message);
   }
 
+  static bool moderate(const glm::dmat4& m) {
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row)
+        if (!(std::abs(m[column][row]) <= largest_length)) return false;
+    return true;
+  }
+
   void transform(const glm::dmat4& m, const SourceLocation& where) {
     for (int i = 0; i < 4; ++i)
       if (!finite(m[i])) return error(where, "the transform is not finite");
@@ -60,6 +67,8 @@ class Validator {
     const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
     if (!(std::abs(glm::determinant(a)) > 1e-12 * product) || !std::isfinite(product))
       error(where, "the transform is singular (it flattens the shape)");
+    else if (said_.empty() && !moderate(glm::inverse(m)))
+      error(where, "the inverse of the transform has entries beyond 1e18, where 32-bit floats end");
   }
 
   void spectrum(const Spectrum& s, const SourceLocation& where, const char* what) {
@@ -235,7 +244,10 @@ class Validator {
         placed.extend(glm::dvec3(instance.world_from_object * glm::dvec4(corner & 1 ? box.max.x : box.min.x,
                                                                          corner & 2 ? box.max.y : box.min.y,
                                                                          corner & 4 ? box.max.z : box.min.z, 1)));
-      if (!within_reach(placed)) error(instance.where, too_far);
+      if (!within_reach(placed))
+        error(instance.where, too_far);
+      else if (!moderate(instance.world_from_object))
+        error(instance.where, too_large);
     }
   }
 
@@ -273,10 +285,13 @@ class Validator {
         diagnostics_.warning(s.where, "the csg is empty and draws nothing: its operands leave no solid");
     } else if (!within_reach(bounds)) {
       error(s.where, too_far);
+    } else if (!moderate(s.world_from_object)) {
+      error(s.where, too_large);
     }
   }
 
   static constexpr const char* too_far = "the shape reaches further than 1e18 from the origin, where 32-bit floats end";
+  static constexpr const char* too_large = "the transform has entries beyond 1e18, where 32-bit floats end";
   static bool within_reach(const Bounds& bounds) {
     for (int k = 0; k < 3; ++k)
       if (!(bounds.min[k] >= -largest_length && bounds.max[k] <= largest_length)) return false;
@@ -312,9 +327,13 @@ class Validator {
   void camera(const SourceLocation& file) {
     const Camera& c = scene_.camera;
     transform(c.world_from_camera, file);
+    if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
     if (!(c.fov > 0 && c.fov < 3.14159265358979)) error(file, "the camera's field of view must be above 0 and below 180 degrees");
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius))) error(file, "the camera's lens radius must be from 0 up");
-    if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance))) error(file, "the camera's focal distance must be positive");
+    if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))
+      error(file, "the camera's focal distance must be positive");
+    else if (!(c.lens_radius <= largest_length && c.lens_radius <= largest_length * c.focal_distance))
+      error(file, "the camera's lens radius must be at most 1e18, and 1e18 times its focal distance, where 32-bit floats end");
   }
 
   void film(const SourceLocation& file) {

@@ -43,32 +43,33 @@ static inline int light_sample(const Globals* g, float3 p, float4 lambda, float 
   float chance;
   __global const LightRecord* light = g->lights + light_select(g, u_select, &chance);
   if (!(chance > 0.0f)) return 0;
-  __global const float* data = g->light_data + light->data;
   s->infinite = 0;
   s->delta = 1;
   s->pdf = chance;
   float weight = 1.0f;
+  const uint data = light->data;
   switch (light->kind) {
     case light_area: {
       AreaSample point;
       if (!area_sample(g, light, p, u, &point)) return 0;
       const float3 away = point.p - p;
-      s->wi = away / sqrt(dot(away, away));
+      s->wi = unit_or(away, (float3)(0.0f));
+      if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
       s->target = offset_origin(point.p, point.n, point.error, -s->wi);
       s->delta = 0;
       s->pdf = chance * point.pdf;
       break;
     }
     case light_point:
-      weight = point_sample(data, p, &s->wi);
-      s->target = load3(data);
+      weight = point_sample(g->light_data + data, p, &s->wi);
+      s->target = load3(g->light_data + data);
       break;
     case light_spot:
-      weight = spot_sample(data, p, &s->wi);
-      s->target = load3(data);
+      weight = spot_sample(g->light_data + data, p, &s->wi);
+      s->target = load3(g->light_data + data);
       break;
     case light_distant:
-      weight = distant_sample(data, &s->wi);
+      weight = distant_sample(g->light_data + data, &s->wi);
       s->target = p + s->wi;
       s->infinite = 1;
       break;

@@ -17,7 +17,7 @@ static inline RayRecord camera_ray(const Globals* g, float2 raster, float2 u_len
   float3 origin = (float3)(0.0f);
   if (camera->lens_radius > 0.0f) {
     const float2 lens = camera->lens_radius * sample_disk(u_lens);
-    origin = (float3)(lens, 0.0f);
+    origin = (float3)(lens.x, lens.y, 0.0f);
     // What lies at the focal distance stays where it is; dividing by that distance keeps the numbers near 1.
     direction -= origin / camera->focal_distance;
   }

@@ -89,7 +89,7 @@ static inline float2 sample_disk(float2 u) {
 }
 static inline float3 sample_cosine_hemisphere(float2 u) {
   const float2 d = sample_disk(u);
-  return (float3)(d, sqrt(fmax(0.0f, 1.0f - dot(d, d))));
+  return (float3)(d.x, d.y, sqrt(fmax(0.0f, 1.0f - dot(d, d))));
 }
 
 #endif

@@ -18,7 +18,7 @@ static inline float2 bilinear_parameters(float3 p00, float3 p10, float3 p01, flo
   float2 q01 = (float2)(dot(p01 - x, frame.s), dot(p01 - x, frame.t)),
          q11 = (float2)(dot(p11 - x, frame.s), dot(p11 - x, frame.t));
   const float extent =
-      fmax(fmax(max3(fabs((float3)(q00, q10.x))), max3(fabs((float3)(q10.y, q01)))), fmax(fabs(q11.x), fabs(q11.y)));
+      fmax(fmax(max3(fabs((float3)(q00.x, q00.y, q10.x))), max3(fabs((float3)(q10.y, q01.x, q01.y)))), fmax(fabs(q11.x), fabs(q11.y)));
   if (!(extent > 0.0f && extent < INFINITY)) return (float2)(0.0f);
   q00 /= extent, q10 /= extent, q01 /= extent, q11 /= extent;
   const float2 along_u = fabs(q10 - q00) + fabs(q11 - q01), along_v = fabs(q01 - q00) + fabs(q11 - q10);
@@ -88,9 +88,7 @@ static inline LocalSurface surface_bilinear(const SurfaceQuery* q) {
     s.uv = weight.x * uv00 + weight.y * uv10 + weight.z * uv01 + weight.w * uv11;
     const float2 along_u = (1.0f - v) * (uv10 - uv00) + v * (uv11 - uv01),
                  along_v = (1.0f - u) * (uv01 - uv00) + u * (uv11 - uv10);
-    const float determinant = difference_of_products(along_u.x, along_v.y, along_u.y, along_v.x);
-    s.dpdu = determinant != 0.0f ? (along_v.y * dpdu - along_u.y * dpdv) / determinant : (float3)(0.0f);
-    s.dpdv = determinant != 0.0f ? (along_u.x * dpdv - along_v.x * dpdu) / determinant : (float3)(0.0f);
+    derivatives_by_uv(along_u, along_v, dpdu, dpdv, &s);
   }
   return s;
 }

@@ -15,8 +15,8 @@ static inline LocalSurface surface_open_cylinder(const SurfaceQuery* q) {
   float phi;
   const float2 spoke = spoke_within_turn(q->x.x, q->x.y, phi_max, &phi);
   const float z = fmin(fmax(q->x.z, low), high);
-  s.p = (float3)(r * spoke, z);
-  s.ng = s.ns = (float3)(spoke, 0.0f);
+  s.p = (float3)(r * spoke.x, r * spoke.y, z);
+  s.ng = s.ns = (float3)(spoke.x, spoke.y, 0.0f);
   s.uv = (float2)(share_of(phi, phi_max), share_of(z - low, high - low));
   s.dpdu = phi_max * (float3)(-s.p.y, s.p.x, 0.0f);
   s.dpdv = (float3)(0.0f, 0.0f, high - low);

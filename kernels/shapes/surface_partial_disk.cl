@@ -15,11 +15,11 @@ static inline LocalSurface surface_partial_disk(const SurfaceQuery* q) {
   float phi;
   const float2 spoke = spoke_within_turn(q->x.x, q->x.y, phi_max, &phi);
   const float rho = fmin(fmax(length(q->x.xy), inner), r);
-  s.p = (float3)(rho * spoke, height);
+  s.p = (float3)(rho * spoke.x, rho * spoke.y, height);
   s.ng = s.ns = (float3)(0.0f, 0.0f, 1.0f);
   s.uv = (float2)(share_of(phi, phi_max), share_of(r - rho, r - inner));
   s.dpdu = phi_max * (float3)(-s.p.y, s.p.x, 0.0f);
-  s.dpdv = (float3)((inner - r) * spoke, 0.0f);
+  s.dpdv = (float3)((inner - r) * spoke.x, (inner - r) * spoke.y, 0.0f);
   s.error = CAPLET_EPS * (12.0f * r + 4.0f * norm1(s.p));
   return s;
 }

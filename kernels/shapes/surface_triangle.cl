@@ -19,6 +19,14 @@ static inline float3 robust_cross(float3 a, float3 b) {
                   difference_of_products(a.x, b.y, a.y, b.x));
 }
 
+// dpdu and dpdv from the derivatives of uv and of the point by two other parameters; zero where uv leaves them undefined or beyond a float.
+static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float3 p_b, LocalSurface* s) {
+  const float determinant = difference_of_products(uv_a.x, uv_b.y, uv_a.y, uv_b.x);
+  s->dpdu = (uv_b.y * p_a - uv_a.y * p_b) / determinant;
+  s->dpdv = (uv_a.x * p_b - uv_b.x * p_a) / determinant;
+  if (!(norm1(s->dpdu) + norm1(s->dpdv) < INFINITY)) s->dpdu = s->dpdv = (float3)(0.0f);
+}
+
 static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
   const Globals* g = q->g;
   const GeometryRecord* geometry = q->geometry;
@@ -55,12 +63,9 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
   if (geometry->uv_begin != CAPLET_NONE) {
     __global const float* uvs = g->mesh_uvs + geometry->uv_begin;
     const float2 uv0 = vload2(g->mesh_indices[corner], uvs);
-    const float2 d1 = vload2(g->mesh_indices[corner + 1u], uvs) - uv0;
-    const float2 d2 = vload2(g->mesh_indices[corner + 2u], uvs) - uv0;
-    s.uv = uv0 + b1 * d1 + b2 * d2;
-    const float determinant = difference_of_products(d1.x, d2.y, d1.y, d2.x);
-    s.dpdu = determinant != 0.0f ? (d2.y * e1 - d1.y * e2) / determinant : (float3)(0.0f);
-    s.dpdv = determinant != 0.0f ? (d1.x * e2 - d2.x * e1) / determinant : (float3)(0.0f);
+    const float2 uv1 = vload2(g->mesh_indices[corner + 1u], uvs), uv2 = vload2(g->mesh_indices[corner + 2u], uvs);
+    s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
+    derivatives_by_uv(uv1 - uv0, uv2 - uv0, e1, e2, &s);
   } else {
     s.uv = (float2)(1.0f - b0, b2);
     s.dpdu = e1;

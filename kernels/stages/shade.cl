@@ -22,9 +22,9 @@ static inline void store_first_hit(const Globals* g, uint path, const Surface* s
   // The albedo's colour under the illuminant: scale-free, so that a white surface has albedo 1 1 1.
   const float4 white = sigmoid_illuminant(g, (float4)(0.0f, 0.0f, 0.0f, 2.0f), wavelengths);
   const float3 rgb = rgb_from_xyz(xyz_from_spectrum(g, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs));
-  vstore4((float4)(rgb, depth), path, g->path_albedo);
-  vstore4((float4)(normal, as_float(object)), path, g->path_normal);
-  vstore4((float4)(s->p, as_float(primitive)), path, g->path_position);
+  vstore4((float4)(rgb.x, rgb.y, rgb.z, depth), path, g->path_albedo);
+  vstore4((float4)(normal.x, normal.y, normal.z, as_float(object)), path, g->path_normal);
+  vstore4((float4)(s->p.x, s->p.y, s->p.z, as_float(primitive)), path, g->path_position);
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
@@ -105,7 +105,7 @@ static void stage_item(const Globals* g, uint item) {
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
-    throughput.yzw = (float3)(0.0f);
+    throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
     vstore4(pdfs, path, g->path_wavelength_pdfs);
   }
   scatter.x = sample.pdf;

@@ -119,7 +119,7 @@ static inline uint trace_all(__global const float* nodes, __global const float* 
   list.t_end = ray.t_max;
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
-  if (!ray_is_valid(&ray) || !(t_min < ray.t_max)) return 0;
+  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < ray.t_max)) return 0;
 
   float t_best = fmin(ray.t_max, MAXFLOAT);
   uint instance = CAPLET_NONE;

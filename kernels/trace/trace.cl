@@ -86,11 +86,10 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
 // Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
 static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
 
-// Zero, infinite and NaN rays and empty intervals miss.
-static inline int ray_is_valid(const RayRecord* ray) {
-  const float dd = ray->dx * ray->dx + ray->dy * ray->dy + ray->dz * ray->dz;
-  const float oo = fabs(ray->ox) + fabs(ray->oy) + fabs(ray->oz);
-  return dd > 0.0f && dd < INFINITY && oo < INFINITY && ray->t_min < ray->t_max;
+// Zero, infinite and NaN rays would find their way to children that are not there.
+static inline int line_is_valid(float3 o, float3 d) {
+  const float dd = dot(d, d), oo = fabs(o.x) + fabs(o.y) + fabs(o.z);
+  return dd > 0.0f && dd < INFINITY && oo < INFINITY;
 }
 
 // The child of a node that the ray enters first goes to `next`, its others in the way on the stack, nearest on top. 0: none is met.
@@ -163,7 +162,7 @@ static inline int pop_entry(const ulong* stack, int* top, int floor, float t_bes
   return 0;
 }
 
-// The ray in the space of an instance: it goes along unnormalised, so t stays what it is. 0: nothing is left of its direction.
+// The ray in the space of an instance: it goes along unnormalised, so t stays what it is. 0: nothing is left of it within floats.
 static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o, float3 world_d, float t_min,
                                   __global const float* leaves, SlabRay* slab, ShapeRay* shape) {
   const float3 o = transform_point(placed->object_from_world, world_o);
@@ -172,7 +171,7 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
   *shape = shape_ray(o, d, t_min, leaves);
   if (placed->flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
   if (placed->flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
-  return dot(d, d) > 0.0f;
+  return line_is_valid(o, d);
 }
 
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: the smaller slot wins, then the smaller instance, so
@@ -185,7 +184,7 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
   hit.instance = CAPLET_NONE;
   hit.surface = 0;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
-  if (!ray_is_valid(&ray)) return hit;
+  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max)) return hit;
   const float t_min = fmax(ray.t_min, 0.0f);
   float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
   if (!(t_min < t_best)) return hit;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -24,9 +25,11 @@
 
 namespace caplet::test {
 
-/// Aborts when something does not hold, which libFuzzer reports with the input.
-inline void require(bool condition) {
-  if (!condition) std::abort();
+/// Names its place and aborts when something does not hold, which libFuzzer reports with the input.
+inline void require(bool condition, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (condition) return;
+  std::fprintf(stderr, "%s:%d: this does not hold\n", file, line);
+  std::abort();
 }
 
 /// Runs a target on one input; InputError is the only way in which it may refuse it.
