@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <regex>
 
 #include "base/check.h"
 #include "shared/records.h"
@@ -51,6 +52,26 @@ Expectation expectation(const std::vector<RecordLayout>& layouts) {
   return out;
 }
 
+/// Where the text that devices compile, which CAPLET_KERNELS may have changed, first names another record or field than the host:
+/// fields of one size that changed places have the same offsets. Empty where they agree.
+std::string other_name(const std::vector<RecordLayout>& layouts) {
+  std::vector<std::string> wanted;
+  for (const RecordLayout& record : layouts) {
+    wanted.push_back(record.name);
+    for (const FieldLayout& field : record.fields) wanted.push_back(record.name + "." + field.name);
+  }
+  const std::string text = kernel_source("shared/records.def");
+  static const std::regex entry(R"(^(?:RECORD_BEGIN\((\w+)\)|(?:FIELD|ARRAY)\(\w+, *(\w+)))", std::regex::multiline);
+  std::string record;
+  std::size_t i = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), entry); at != std::sregex_iterator() && i < wanted.size(); ++at, ++i) {
+    if ((*at)[1].matched) record = (*at)[1];
+    const std::string name = (*at)[1].matched ? record : record + "." + (*at)[2].str();
+    if (name != wanted[i]) return fmt::format("the device has {} where the host has {}", name, wanted[i]);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<RecordLayout> host_layout() {
@@ -90,6 +111,7 @@ std::vector<std::string> compare_layout(const Device& device, const std::vector<
   const std::vector<cl_uint> seen = out.read();
 
   std::vector<std::string> mismatches;
+  if (const std::string other = other_name(expected); !other.empty()) mismatches.push_back(other);
   if (seen[0] != wanted.values.size() + 1)
     mismatches.push_back(fmt::format("the device lists {} sizes and offsets, the host {}", seen[0] - 1, wanted.values.size()));
   const std::size_t comparable = std::min<std::size_t>(seen[0] - 1, wanted.values.size());

@@ -10,8 +10,9 @@
 #include "shapes/shapes.cl"
 #include "shared/records.h"
 
-// A visited node leaves at most seven of its children on the stack, in both levels of trees; the host checks the depth.
-#define CAPLET_STACK_SIZE (2 * 7 * CAPLET_TREE_DEPTH_MAX)
+// A visited node leaves at most seven of its children on the stack, in both levels of trees, and has all eight there while it orders
+// them; the host checks the depth.
+#define CAPLET_STACK_SIZE (2 * 7 * CAPLET_TREE_DEPTH_MAX + 1)
 
 // The ray as slab tests want it. Plane p of axis x is crossed at p * near_ix - near_ox, or with far_: the true parameter is
 // between the two. With eps = 2^-24, 1/d is off by 5 eps (OpenCL allows 2.5 ulp), the products and the difference by eps each,

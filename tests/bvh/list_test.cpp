@@ -342,6 +342,21 @@ TEST_P(HitLists, OverlappingAndEqualSolids) {
               {{1, false, low}, {1, false, high}, {2, false, 1}, {3, true, low}, {3, true, high}, {4, true, 1}}, GetParam());
 }
 
+TEST_P(HitLists, WhatIsTouchedIsEnteredBeforeItIsLeft) {
+  // At one point, to the bit: entered there and left at the next float.
+  const FlatPrimitive capsule{shape_capsule, 0, {-1, 0, 0, 1, 0, 0, 1}};
+  for (const FlatPrimitive& solid : {solid_sphere({0, 0, 0}, 1), capsule}) {
+    const ListScene scene({solid});
+    const std::vector<RayRecord> rays = {list_ray({0, 1, -2}, {0, 0, 1})};
+    const auto hits = tracer(GetParam()).trace(scene.flat, rays, 8)[0].hits;
+    ASSERT_EQ(hits.size(), 2u);
+    EXPECT_EQ(hits[0].t, 2);
+    EXPECT_FALSE(is_leaving(hits[0]));
+    EXPECT_EQ(hits[1].t, std::nextafter(2.0f, 3.0f));
+    EXPECT_TRUE(is_leaving(hits[1]));
+  }
+}
+
 TEST_P(HitLists, SidesThatAreNotSeenAreNotListed) {
   const dmat4 placed = glm::translate(dmat4(1), dvec3(0.5, 0, 0));
   const auto primitives = mixed_primitives(17, 60, 0.8f);

@@ -4,6 +4,7 @@
 // Closest and any hit of every shape against brute force in double, in both encodings.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "brute.h"
@@ -110,6 +111,30 @@ TEST_P(Trace, LimitsOfTheRay) {
     }
   }
   EXPECT_GT(counted, 200);
+}
+
+TEST_P(Trace, EqualHitsGoToTheSmallerSlot) {
+  // Every primitive three times, wherever the tree puts them.
+  const auto once = random_scene(13, GetParam(), 150, 0.3f);
+  std::vector<FlatPrimitive> primitives;
+  for (int copy = 0; copy < 3; ++copy)
+    for (const FlatPrimitive& p : once) primitives.push_back(p);
+  const Encoded scene = encode(primitives);
+  const auto slot = [&](std::size_t i) { return scene.tree.slots[i]; };
+  const auto rays = random_rays(14, 3000);
+  for (DeviceTracer* tracer : {&wide(), &scalar()}) {
+    tracer->upload(scene.nodes, scene.leaves, {}, scene.tree.root);
+    int hit = 0;
+    for (const HitRecord& h : tracer->closest(rays)) {
+      if (h.slot == CAPLET_NONE) continue;
+      hit++;
+      std::size_t i = 0;
+      while (slot(i) != h.slot) i++;
+      i %= once.size();
+      EXPECT_EQ(h.slot, std::min({slot(i), slot(i + once.size()), slot(i + 2 * once.size())}));
+    }
+    EXPECT_GT(hit, 200);
+  }
 }
 
 TEST_P(Trace, InvalidRaysMiss) {

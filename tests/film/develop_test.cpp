@@ -78,6 +78,9 @@ TEST(Develop, VarianceOfTheMean) {
   EXPECT_NEAR(value(image, "variance.G"), 0, rounding);
   EXPECT_NEAR(value(image, "variance.B"), 0.0625, rounding);
   EXPECT_GE(value(image, "variance.G"), 0);
+  // 1, 3 and 5: 35 / 3 - 9 = 8 / 3, over n - 1 = 2.
+  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1), Scene{}, true);
+  EXPECT_NEAR(value(three, "variance.R"), 4.0 / 3, 2 * rounding);
 }
 
 TEST(Develop, VarianceOfOneSampleIsZeroAndOnRequest) {

@@ -48,6 +48,14 @@ TEST(Layout, ReportsAShiftedField) {
                           "HitRecord.slot: offset it is loaded from is 4 on the device, 8 on the host"));
 }
 
+TEST(Layout, ReportsFieldsThatChangedPlaces) {
+  std::vector<RecordLayout> swapped = host_layout();
+  for (RecordLayout& layout : swapped)
+    if (layout.name == "RayRecord") std::swap(layout.fields.at(6).name, layout.fields.at(7).name);
+  EXPECT_THAT(compare_layout(Device::choose(""), swapped),
+              ElementsAre("the device has RayRecord.dz where the host has RayRecord.t_max"));
+}
+
 TEST(Layout, ReportsADifferentSize) {
   std::vector<RecordLayout> larger = host_layout();
   larger.back().bytes += 16;

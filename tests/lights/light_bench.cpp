@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "light_bench.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -25,7 +26,8 @@ const char* const kernel_text = R"(
   __global const ParamsRecord *params, __global const float *nodes, __global const float *leaves,                             \
       __global const InstanceRecord *instances, __global const GeometryRecord *geometries, __global const LightRecord *lights, \
       __global const float *light_data, __global const AliasRecord *light_alias, __global const SpectrumRecord *spectra,      \
-      __global const float *spectrum_tables, __global const float *environment_texels, __global const float *environment_cdf
+      __global const float *spectrum_tables, __global const float *environment_texels, __global const float *environment_cdf, \
+      __global const uint *primitive_geometry, __global const uint *surface_materials
 #define MAKE_GLOBALS                          \
   Globals g;                                  \
   g.params = params;                          \
@@ -40,6 +42,8 @@ const char* const kernel_text = R"(
   g.spectrum_tables = spectrum_tables;        \
   g.environment_texels = environment_texels;  \
   g.environment_cdf = environment_cdf;        \
+  g.primitive_geometry = primitive_geometry;  \
+  g.surface_materials = surface_materials;    \
   const uint i = (uint)get_global_id(0);      \
   if (i >= count) return;                     \
   const float4 lambda = (float4)(450.0f, 500.0f, 550.0f, 600.0f)
@@ -86,10 +90,11 @@ __kernel void sky(SCENE, __global const float* directions, __global float* out, 
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
-__kernel void selections(SCENE, __global uint* out, uint count) {
+__kernel void selections(SCENE, __global uint* out, __global float* chances, uint count) {
   MAKE_GLOBALS;
   float chance;
   out[i] = light_select(&g, ((float)i + 0.5f * lambda.x / 450.0f) / (float)count, &chance);
+  chances[i] = chance;
 }
 )";
 
@@ -123,6 +128,8 @@ LightBench::LightBench(const FlatScene& scene) : scene_(scene), device_(test_dev
   scene_buffers_.push_back(upload(device_, scene.spectrum_tables));
   scene_buffers_.push_back(upload(device_, scene.environment_texels));
   scene_buffers_.push_back(upload(device_, scene.environment_cdf));
+  scene_buffers_.push_back(upload(device_, scene.primitive_geometry));
+  scene_buffers_.push_back(upload(device_, scene.surface_materials));
 }
 
 void LightBench::bind_scene(cl::Kernel& kernel) {
@@ -191,17 +198,21 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   return found;
 }
 
-std::vector<double> LightBench::selections(std::size_t count) {
+std::vector<LightBench::Selection> LightBench::selections(std::size_t count) {
   Buffer<std::uint32_t> out(device_, count);
+  Buffer<float> chances(device_, count);
   cl::Kernel kernel = program(device_).kernel("selections");
   bind_scene(kernel);
   auto at = static_cast<cl_uint>(scene_buffers_.size());
   kernel.setArg(at++, out.handle());
+  kernel.setArg(at++, chances.handle());
   kernel.setArg(at++, static_cast<cl_uint>(count));
   launch(device_, kernel, count, 1);
-  std::vector<double> counts(scene_.lights.size(), 0);
-  for (const std::uint32_t light : out.read()) counts.at(light) += 1;
-  return counts;
+  const std::vector<std::uint32_t> lights = out.read();
+  const std::vector<float> chance = chances.read();
+  std::vector<Selection> found;
+  for (std::size_t i = 0; i < count; ++i) found.push_back({lights[i], chance[i]});
+  return found;
 }
 
 std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) {
@@ -245,6 +256,32 @@ std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) 
     const glm::dvec3 a(mesh->positions[0]), b(mesh->positions[1]), c(mesh->positions[2]);
     open_normal = glm::cross(b - a, c - a);
     parts.push_back([=](double u, double v) { return a + u * (b - a) + u * v * (c - b); });
+  } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape.geometry)) {
+    const glm::dvec3 axis = cylinder->p1 - cylinder->p0, z = glm::normalize(axis);
+    const glm::dvec3 x =
+        cylinder->radius * glm::normalize(glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dvec3 y = glm::cross(z, x);
+    center = cylinder->p0 + 0.5 * axis;
+    const auto around = [=](double v) { return std::cos(2 * pi * v) * x + std::sin(2 * pi * v) * y; };
+    const glm::dvec3 p0 = cylinder->p0, p1 = cylinder->p1;
+    const Map surfaces[3] = {[=](double u, double v) { return p0 + u * axis + around(v); },
+                             [=](double u, double v) { return p0 + u * around(v); },
+                             [=](double u, double v) { return p1 + u * around(v); }};
+    const auto& lit = shape.emission->surfaces;
+    for (std::uint32_t i = 0; i < 3; ++i)
+      if ((lit.empty() || std::ranges::find(lit, i) != lit.end()) && (i == 0 || cylinder->caps[i - 1] == Cap::flat))
+        parts.push_back(surfaces[i]);
+  } else if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) {
+    const glm::dvec3 low = box->p0, size = box->p1 - box->p0;
+    center = low + 0.5 * size;
+    for (int face = 0; face < 6; ++face)
+      parts.push_back([=](double u, double v) {
+        glm::dvec3 at(0);
+        at[face / 2] = face % 2;
+        at[(face / 2 + 1) % 3] = u;
+        at[(face / 2 + 2) % 3] = v;
+        return low + at * size;
+      });
   } else {
     open = true;
     const auto& disk = std::get<DiskShape>(shape.geometry);

@@ -41,8 +41,12 @@ class LightBench {
   std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points);
   /// Radiance of the sky, and its sampling density times the chance of selection, for unit directions.
   std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions);
-  /// How often light_select chose each light, over `count` equally spaced numbers.
-  std::vector<double> selections(std::size_t count);
+  /// What light_select chose, and the chance it gave, for `count` equally spaced numbers.
+  struct Selection {
+    std::uint32_t light;
+    double chance;
+  };
+  std::vector<Selection> selections(std::size_t count);
 
  private:
   void bind_scene(cl::Kernel& kernel);
@@ -51,8 +55,8 @@ class LightBench {
   std::vector<RawBuffer> scene_buffers_;
 };
 
-/// `count` points a smooth part of the shape's surface, evenly spread in its own coordinates; areas from the derivatives of the
-/// transformed parametrisation, taken by differences.
+/// `count` points a smooth part of the shape's emitting surface, evenly spread in its own coordinates; areas from the derivatives
+/// of the transformed parametrisation, taken by differences.
 std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count);
 
 }  // namespace caplet::test

@@ -288,7 +288,11 @@ TEST(LightSelection, FollowsPower) {
   const FlatScene flat = lower(scene_with(lights));
   EXPECT_EQ(flat.params.sampled_light_count, 29u);
   constexpr std::size_t n = 1 << 20;
-  const std::vector<double> counts = LightBench(flat).selections(n);
+  std::vector<double> counts(lights.size(), 0);
+  for (const LightBench::Selection& chosen : LightBench(flat).selections(n)) {
+    counts.at(chosen.light) += 1;
+    ASSERT_EQ(chosen.chance, double(flat.light_alias[chosen.light].probability));
+  }
   std::vector<double> from_table(lights.size(), 0);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const AliasRecord& row = flat.light_alias[i];

@@ -166,6 +166,18 @@ double area(decltype(Shape::geometry) geometry, const glm::dmat4& m = glm::dmat4
   return area(shape);
 }
 
+TEST(Areas, SpheresAndCapsules) {
+  const FlatPrimitive sphere{shape_sphere, 0, {1, 2, 3, 0.5f}};
+  EXPECT_NEAR(primitive_area(sphere, {}), 4 * pi * 0.25, 1e-12);
+  EXPECT_NEAR(area(SphereShape{0.5}, glm::scale(glm::dmat4(1), dvec3(3))), 4 * pi * 2.25, 1e-5);
+  const FlatPrimitive capsule{shape_capsule, 0, {1, 2, 3, 1, 2, 5, 0.5f}};
+  EXPECT_NEAR(primitive_area(capsule, {}), 2 * pi * 0.5 * 2 + 4 * pi * 0.25, 1e-12);
+  // The joining cone's half angle has the sine 3/5 and the cosine 4/5; its generator is 4 long, between circles of 4/5 of the
+  // radii.
+  const FlatPrimitive tapered{shape_tapered_capsule, 0, {0, 0, 0, 0, 0, 5, 4, 1}};
+  EXPECT_NEAR(primitive_area(tapered, {}), 2 * pi * (16 * 1.6 + 1 * 0.4) + pi * (4 + 1) * 0.8 * 4, 1e-12);
+}
+
 TEST(Areas, ABoxIsThePolyhedronOfItsPlanes) {
   EXPECT_NEAR(area(BoxShape{{1, 2, 3}, {2, 5, 7}}), 2 * (3 + 12 + 4), 1e-6);
   EXPECT_NEAR(area(cube()), 6, 1e-6);

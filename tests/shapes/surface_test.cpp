@@ -458,15 +458,15 @@ TEST(SurfaceParameters, PolesAndRims) {
 TEST(SurfaceParameters, Triangles) {
   const FlatPrimitive triangle = make_triangle({0, 0, 0}, {2, 0, 0}, {0, 4, 0});
   Probe probe(device(), 8, std::vector<FlatPrimitive>{triangle});
-  const std::vector<RayRecord> rays = {make_ray({0.5, 1, 1}, {0, 0, -1})};  // barycentric 1/2 1/4 1/4
+  const std::vector<RayRecord> rays = {make_ray({0.5, 2, 1}, {0, 0, -1})};  // barycentric 1/4 1/4 1/2
   const SurfaceOut plain = probe.trace({0}, rays)[0].surface;
-  EXPECT_NEAR(plain.u, 0.5, 1e-6);  // vertices at (0 0), (1 0), (1 1)
-  EXPECT_NEAR(plain.v, 0.25, 1e-6);
+  EXPECT_NEAR(plain.u, 0.75, 1e-6);  // vertices at (0 0), (1 0), (1 1)
+  EXPECT_NEAR(plain.v, 0.5, 1e-6);
   EXPECT_LT(glm::length(point(plain.dpdu) - dvec3(2, 0, 0)), 1e-6);
   EXPECT_LT(glm::length(point(plain.ng) - dvec3(0, 0, 1)), 1e-6);
   probe.mesh_uvs = {0.5f, 0, 0.5f, 2, 1.5f, 0};  // u along y by 1/4, v along x by 1
   const SurfaceOut own = probe.trace({0}, rays)[0].surface;
-  EXPECT_NEAR(own.u, 0.75, 1e-6);
+  EXPECT_NEAR(own.u, 1, 1e-6);
   EXPECT_NEAR(own.v, 0.5, 1e-6);
   EXPECT_LT(glm::length(point(own.dpdu) - dvec3(0, 4, 0)), 1e-6);
 }

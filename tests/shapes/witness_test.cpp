@@ -365,7 +365,7 @@ TEST(SceneWitness, InstancesKeepT) {
   sphere.geometry = SphereShape{1};
   sphere.world_from_object = glm::scale(glm::dmat4(1), {1, 1, 3});
   scene.objects.push_back({"ellipsoid", {sphere}, {}});
-  scene.instances.push_back({0, glm::translate(glm::dmat4(1), {10, 0, 0}), {}});
+  scene.instances.push_back({0, glm::translate(glm::dmat4(1), {10, 0, 2}), {}});
   const SceneWitness witness(scene);
   EXPECT_EQ(witness.size(), 3u);
   const std::vector<Ray> rays = {
@@ -375,7 +375,7 @@ TEST(SceneWitness, InstancesKeepT) {
   EXPECT_NEAR(hits[0]->t, 4.5, rounding);
   EXPECT_EQ(hits[0]->primitive, 1u);
   EXPECT_EQ(hits[0]->instance, no_instance);
-  EXPECT_NEAR(hits[1]->t, 5, 10 * rounding);
+  EXPECT_NEAR(hits[1]->t, 6, 10 * rounding);
   EXPECT_EQ(hits[1]->instance, 0u);
   EXPECT_NEAR(hits[2]->t, 8.5, 10 * rounding);
   EXPECT_FALSE(hits[3]);

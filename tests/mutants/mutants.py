@@ -1,0 +1,368 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Seeded faults: each is put into a copy of the sources, where the test that it names must fail.
+
+usage: mutants.py [--jobs N] [--write] [NAME...]   run all mutants, or those named; --write: their table into docs/testing.md
+       mutants.py --check                          is every mutant's place still there, once, and its test? Runs nothing.
+
+A mutant is an entry of a *.toml file of this folder: `old` is the text of `file` that becomes `new`, `test` a test program and a
+filter of its tests. Kernels are mutated for the device alone (CAPLET_KERNELS), so one of kernels/shared makes host and device differ.
+Exit status: 0 when all were caught, 1 when not, 2 for a fault of the list.
+"""
+import argparse
+import collections
+import concurrent.futures
+import dataclasses
+import fcntl
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = pathlib.Path(__file__).resolve().parent
+PAGE = ROOT / "docs/testing.md"
+BEGIN, END = "<!-- mutants: begin (./run mutants --write) -->", "<!-- mutants: end -->"
+WORK = ROOT / "build/mutants"
+TREE = WORK / "tree"  # the copy of the sources
+BUILD = TREE / "build/release"
+TIMEOUT = 300  # seconds a test may take
+NOT_COMPILED = "the build log says:"  # of host/device/program.cpp
+CAUGHT, SURVIVED, PASSED = "caught", "SURVIVED", "passed"
+
+
+class ListError(Exception):
+    pass
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    name: str
+    fault: str
+    file: str
+    old: str
+    new: str
+    test: str
+    source: str  # the file it is listed in
+
+    @property
+    def program(self):
+        return self.test.split(" ", 1)[0]
+
+    @property
+    def filter(self):
+        return self.test.split(" ", 1)[1]
+
+    @property
+    def is_kernel(self):
+        return self.file.startswith("kernels/")
+
+    def row(self, result):
+        tests = ", ".join(f"`{self.program}.{t}`" for t in self.filter.split(":"))
+        return f"| {self.name} | `{self.file}` | {self.fault} | {tests} | {result} |"
+
+
+def listed():
+    mutants = []
+    for path in sorted(FOLDER.glob("*.toml")):
+        with open(path, "rb") as file:
+            entries = tomllib.load(file)["mutant"]
+        for entry in entries:
+            try:
+                mutants.append(Mutant(source=path.name, **entry))
+            except TypeError as error:
+                raise ListError(f"{path.name}: {entry.get('name', '?')}: {error}") from None
+    return mutants
+
+
+# --- The list itself ---
+
+
+def complaints(mutants):
+    out = []
+    for name, count in collections.Counter(m.name for m in mutants).items():
+        if count > 1:
+            out.append(f"{name}: {count} mutants have this name")
+    cmake = "\n".join(p.read_text() for p in sorted(ROOT.glob("tests/*/CMakeLists.txt")))
+    programs = set(re.findall(r"caplet_test\((\w+)", cmake))
+    sources = "\n".join(p.read_text() for p in sorted(ROOT.glob("tests/**/*.cpp")))
+    tests = set(re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", sources))
+    for m in mutants:
+        where = f"{m.source}: {m.name}"
+        path = ROOT / m.file
+        count = path.read_text().count(m.old) if path.is_file() else 0
+        if count != 1:
+            out.append(f"{where}: its old text occurs {count} times in {m.file}, not once")
+        if m.old == m.new:
+            out.append(f"{where}: changes nothing")
+        if " " not in m.test or m.program not in programs:
+            out.append(f"{where}: '{m.program}' is no test program")
+            continue
+        for test in m.filter.split(":"):
+            suite, _, name = test.partition(".")
+            if (suite.split("/")[-1], name.split("/")[0]) not in tests:
+                out.append(f"{where}: there is no test {test}")
+    return out
+
+
+def table(mutants, results):
+    lines = ["| mutant | file | fault | test | result |", "|---|---|---|---|---|"]
+    return "\n".join(lines + [m.row(results[m.name]) for m in mutants])
+
+
+def page_parts():
+    text = PAGE.read_text()
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        raise ListError(f"{PAGE.relative_to(ROOT)}: the marks around the table are missing")
+    before, rest = text.split(BEGIN)
+    inside, after = rest.split(END)
+    return before, inside, after
+
+
+def check():
+    mutants = listed()
+    bad = complaints(mutants)
+    for line in bad:
+        print(line)
+    if page_parts()[1].strip() != table(mutants, {m.name: CAUGHT for m in mutants}):
+        bad.append("docs/testing.md: the table is not that of the list: ./run mutants --write")
+        print(bad[-1])
+    print(f"{len(mutants)} mutants, {len(bad)} complaints")
+    return 2 if bad else 0
+
+
+# --- The copy of the sources, and its build ---
+
+
+def copy_sources():
+    """Makes TREE what ROOT is; files that are equal stay untouched, so that little is built again."""
+    wanted = set()
+    for folder, names, files in os.walk(ROOT):
+        here = pathlib.Path(folder).relative_to(ROOT)
+        names[:] = [n for n in names if n != ".git" and not (here == pathlib.Path() and n.startswith("build"))]
+        wanted.update(here / f for f in files if not (ROOT / here / f).is_symlink())
+    for file in wanted:
+        to, contents = TREE / file, (ROOT / file).read_bytes()
+        if not to.is_file() or to.read_bytes() != contents:
+            to.parent.mkdir(parents=True, exist_ok=True)
+            to.write_bytes(contents)
+            shutil.copymode(ROOT / file, to)
+    for folder, names, files in os.walk(TREE):
+        here = pathlib.Path(folder).relative_to(TREE)
+        if here == pathlib.Path():
+            names[:] = [n for n in names if n != "build"]
+        for file in files:
+            if here / file not in wanted:
+                (TREE / here / file).unlink()
+
+
+def build(programs, jobs):
+    """Empty when it went well, or the end of the output."""
+    # Compilers' caches are to find what was built elsewhere.
+    env = dict(os.environ, CCACHE_BASEDIR=str(TREE), CCACHE_NOHASHDIR="1")
+    commands = [["ninja", "-C", str(BUILD), "-j", str(jobs), *programs]]
+    if not (BUILD / "build.ninja").exists():
+        commands.insert(0, ["cmake", "-S", str(TREE), "--preset", "release", "-DCAPLET_BENCH=OFF"])
+    for command in commands:
+        done = subprocess.run(command, env=env, cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                              text=True, errors="replace")
+        if done.returncode != 0:
+            return done.stdout[-4000:] or "no output"
+    return ""
+
+
+def program_path(name):
+    return next(BUILD.glob(f"tests/*/{name}"))
+
+
+# --- Running a test ---
+
+
+def outcome(program, test_filter, kernels, folder):
+    """Runs the tests in an own folder with own caches. One of PASSED, CAUGHT, or why neither can be said; and the output."""
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "CAPLET_TEST_", "CAPLET_KERNELS"))}
+    for name in ("CAPLET_CACHE", "POCL_CACHE_DIR", "TMPDIR"):
+        env[name] = str(folder / name.lower())
+        pathlib.Path(env[name]).mkdir(parents=True, exist_ok=True)
+    if kernels:
+        env["CAPLET_KERNELS"] = str(kernels)
+    try:
+        done = subprocess.run([str(program), f"--gtest_filter={test_filter}"], env=env, cwd=folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace", timeout=TIMEOUT)
+    except subprocess.TimeoutExpired:
+        return f"over {TIMEOUT} s", ""
+    text = done.stdout
+    ran = re.search(r"^\[=+\] (\d+) tests? from \d+ test suites? ran", text, re.MULTILINE)
+    if NOT_COMPILED in text:
+        return "does not compile", text
+    if ran and int(ran[1]) == 0:
+        return "no such test", text
+    if "[  SKIPPED ]" in text:
+        return "skips", text
+    if done.returncode == 0 and ran:
+        return PASSED, text
+    if done.returncode < 0:
+        return f"{CAUGHT} (signal {-done.returncode})", text
+    return (CAUGHT if "[  FAILED  ]" in text else f"exit status {done.returncode}"), text
+
+
+def mutate(path, m):
+    text = path.read_text()
+    if text.count(m.old) != 1:
+        raise ListError(f"{m.name}: its old text occurs {text.count(m.old)} times in {m.file}, not once")
+    path.write_text(text.replace(m.old, m.new))
+
+
+class Run:
+    def __init__(self, mutants, jobs):
+        self.mutants, self.jobs = mutants, jobs
+        self.results, self.seconds = {}, {}
+        self.lock = threading.Lock()
+        self.logs = WORK / "logs"
+
+    def report(self, m, result, seconds, text):
+        result = SURVIVED if result == PASSED else result
+        with self.lock:
+            self.results[m.name], self.seconds[m.name] = result, seconds
+            (self.logs / f"{m.name}.log").write_text(text)
+            print(f"[{len(self.results)}/{len(self.mutants)}] {m.name}: {result} ({seconds:.0f} s)", file=sys.stderr, flush=True)
+
+    def prepare(self):
+        """Builds the unmutated programs and keeps them apart."""
+        copy_sources()
+        programs = sorted({m.program for m in self.mutants})
+        print(f"building {', '.join(programs)} (minutes the first time)", file=sys.stderr, flush=True)
+        if failed := build(programs, self.jobs):
+            raise ListError(f"the unmutated sources do not build:\n{failed}")
+        shutil.rmtree(self.logs, ignore_errors=True)
+        self.logs.mkdir(parents=True)
+        self.plain = self.temporary / "plain"
+        self.plain.mkdir()
+        for name in programs:
+            shutil.copy2(program_path(name), self.plain / name)
+
+    def unmutated(self, pool):
+        """Every named test must pass as it is, and every program that runs kernels must see what CAPLET_KERNELS names."""
+        broken = self.temporary / "kernels-broken"
+        shutil.copytree(TREE / "kernels", broken)
+        with open(broken / "shared/kinds.h", "a") as file:
+            file.write('#error "these kernels do not compile"\n')
+        trials = []
+        for test in sorted({m.test for m in self.mutants}):
+            users = [m for m in self.mutants if m.test == test]
+            of_kernel = any(m.is_kernel for m in users)
+            trials.append((users, PASSED, TREE / "kernels" if of_kernel else None))
+        for program in sorted({m.program for m in self.mutants if m.is_kernel}):
+            trials.append(([m for m in self.mutants if m.is_kernel and m.program == program], "does not compile", broken))
+        waiting = []
+        for users, wanted, kernels in trials:
+            folder = self.temporary / f"test-{len(waiting)}"
+            folder.mkdir()
+            waiting.append((users, wanted, pool.submit(outcome, self.plain / users[0].program, users[0].filter, kernels, folder)))
+        bad = {}
+        for users, wanted, future in waiting:
+            got, text = future.result()
+            if got == wanted:
+                continue
+            why = f"unmutated: {got}" if wanted == PASSED else f"does not read CAPLET_KERNELS: {got}"
+            for m in users:
+                bad[m.name] = why
+                (self.logs / f"{m.name}.log").write_text(text)
+        for m in self.mutants:
+            if m.name in bad:
+                self.report(m, bad[m.name], 0, (self.logs / f"{m.name}.log").read_text())
+        return [m for m in self.mutants if m.name not in bad]
+
+    def of_kernel(self, m):
+        start = time.monotonic()
+        folder = self.temporary / m.name
+        folder.mkdir()
+        shutil.copytree(TREE / "kernels", folder / "kernels")
+        mutate(folder / pathlib.Path(m.file), m)
+        result, text = outcome(self.plain / m.program, m.filter, folder / "kernels", folder)
+        shutil.rmtree(folder)
+        self.report(m, result, time.monotonic() - start, text)
+
+    def of_host(self, m, pool):
+        """Builds; its test runs in the pool."""
+        start = time.monotonic()
+        path, folder = TREE / m.file, self.temporary / m.name
+        folder.mkdir()
+        original = path.read_bytes()
+        try:
+            mutate(path, m)
+            failed = build([m.program], self.jobs)
+            if not failed:
+                shutil.copy2(program_path(m.program), folder / m.program)
+        finally:
+            path.write_bytes(original)
+        if failed:
+            self.report(m, "does not build", time.monotonic() - start, failed)
+            return None
+
+        def test():
+            result, text = outcome(folder / m.program, m.filter, None, folder)
+            shutil.rmtree(folder)
+            self.report(m, result, time.monotonic() - start, text)
+
+        return pool.submit(test)
+
+    def run(self):
+        with tempfile.TemporaryDirectory(prefix="caplet-mutants-") as temporary:
+            self.temporary = pathlib.Path(temporary)
+            self.prepare()
+            with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+                sound = self.unmutated(pool)
+                waiting = [pool.submit(self.of_kernel, m) for m in sound if m.is_kernel]
+                waiting += [self.of_host(m, pool) for m in sound if not m.is_kernel]
+                for future in waiting:
+                    if future:
+                        future.result()
+        return self.results
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="mutants", description="Seeded faults: each must be caught by the test that it names.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="these mutants only")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at the same time")
+    parser.add_argument("--write", action="store_true", help="the table of all of them into docs/testing.md")
+    parser.add_argument("--check", action="store_true", help="look at the list alone")
+    options = parser.parse_args()
+    if options.check:
+        return check()
+    mutants = listed()
+    if bad := complaints(mutants):
+        raise ListError("\n".join(bad))
+    if unknown := set(options.names) - {m.name for m in mutants}:
+        raise ListError(f"unknown mutants: {', '.join(sorted(unknown))}")
+    if options.write and options.names:
+        raise ListError("--write is for all mutants")
+    chosen = [m for m in mutants if not options.names or m.name in options.names]
+    start = time.monotonic()
+    WORK.mkdir(parents=True, exist_ok=True)
+    lock = open(WORK / ".lock", "w")
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    results = Run(chosen, max(1, options.jobs)).run()
+    print(table(chosen, results))
+    caught = sum(r.startswith(CAUGHT) for r in results.values())
+    print(f"\n{caught} of {len(chosen)} mutants caught, {time.monotonic() - start:.0f} s "
+          f"(output of their tests: {(WORK / 'logs').relative_to(ROOT)})")
+    if options.write and caught == len(chosen):
+        before, _, after = page_parts()
+        PAGE.write_text(f"{before}{BEGIN}\n{table(chosen, {m.name: CAUGHT for m in chosen})}\n{END}{after}")
+    return 0 if caught == len(chosen) else 1
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except ListError as error:
+        print(f"mutants: {error}", file=sys.stderr)
+        sys.exit(2)
