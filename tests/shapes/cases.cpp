@@ -64,12 +64,6 @@ dvec3 CaseMaker::direction() {
 
 // --- Primitives ---
 
-struct CaseMaker::Frame {
-  double r;
-  dvec3 center, axis;
-  double length;
-};
-
 CaseMaker::Frame CaseMaker::frame(bool hard) {
   Frame f;
   f.r = std::pow(10.0, hard ? uniform(-3, 3) : uniform(-1, 1));
@@ -152,11 +146,9 @@ FlatPrimitive CaseMaker::open(int shape, bool hard, const Frame& at) {
   }
 }
 
-FlatPrimitive CaseMaker::polyhedron(bool hard, const Frame& at, std::vector<float>& leaves) {
+FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at, std::vector<float>& leaves) {
   for (;;) {
     PolyhedronShape shape;
-    const int planes = 4 + below(hard ? 12 : 6);
-    const double stretch = hard ? std::pow(10.0, uniform(-1.5, 1.5)) : 1;
     for (int i = 0; i < planes; ++i) {
       const dvec3 n = direction();
       const double along = glm::dot(n, at.axis);
@@ -235,19 +227,22 @@ FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
   return shape <= shape_box ? solid(shape, hard, at) : open(shape, hard, at);
 }
 
+CsgShape placed_csg(CsgShape csg, const glm::dmat4& m) {
+  for (auto& operand : csg.operands) {
+    Shape moved = *operand;
+    moved.world_from_object = m * moved.world_from_object;
+    operand = std::make_shared<const Shape>(moved);
+  }
+  return csg;
+}
+
 void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
   if (shape == shape_csg) {
     for (;;) {
       const Frame at = frame(hard);
       Shape csg = csg_shape(1);
       const auto m = glm::scale(glm::translate(glm::dmat4(1), at.center), dvec3(at.r));
-      // The place and size go into the operands, as they do in lower.
-      CsgShape placed = std::get<CsgShape>(csg.geometry);
-      for (auto& operand : placed.operands) {
-        Shape moved = *operand;
-        moved.world_from_object = m * moved.world_from_object;
-        operand = std::make_shared<const Shape>(moved);
-      }
+      const CsgShape placed = placed_csg(std::get<CsgShape>(csg.geometry), m);
       csg.geometry = placed;
       const reference::Primitive witness = reference::primitives_of(csg).at(0);
       // Differences that leave nothing cannot be hit.
@@ -261,7 +256,13 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
       return;
     }
   }
-  out.primitives.push_back(shape == shape_polyhedron ? polyhedron(hard, frame(hard), out.leaves) : primitive(shape, hard));
+  if (shape == shape_polyhedron) {
+    const Frame at = frame(hard);
+    const double stretch = hard ? std::pow(10.0, uniform(-1.5, 1.5)) : 1;
+    out.primitives.push_back(polyhedron(4 + below(hard ? 12 : 6), stretch, at, out.leaves));
+  } else {
+    out.primitives.push_back(primitive(shape, hard));
+  }
   out.witnesses.push_back(witness_of(out.primitives.back(), out.leaves));
 }
 
@@ -274,8 +275,9 @@ namespace {
 
 double columns(const glm::dmat4& m) { return glm::length(dvec3(m[0])) + glm::length(dvec3(m[1])) + glm::length(dvec3(m[2])); }
 
-// docs/numerics.md, "CSG": 16 eps (R + 3 e) + 8 eps R an operand, R and e in its own space and at most what stands here; taken to
-// the space that the shape is stored in by the largest stretch.
+// docs/numerics.md, "CSG": 16 eps (R + 3 e) an operand, R and e at most what stands here. Where its data cannot hold its
+// transform (boxes that are turned, affine maps) R and e are those of its own space, 8 eps R are added, and the result is taken
+// to the space that the shape is stored in by the largest stretch.
 double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_outer, const dvec3& center, double radius) {
   double out = 0;
   for (const reference::CsgOperand& operand : csg.body->operands) {
@@ -286,6 +288,11 @@ double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_oute
     }
     const glm::dmat4 outward = glm::inverse(inward);
     const reference::Ball ball = reference::bounding_ball(operand.primitive);
+    if (const double scale = similarity_scale(outward); scale > 0 && !std::holds_alternative<reference::Box>(operand.primitive)) {
+      const dvec3 middle(outward * glm::dvec4(ball.center, 1));
+      out = std::max(out, 16 * eps * (radius + 3 * (glm::length(middle - center) + std::sqrt(3.0) * scale * ball.radius)));
+      continue;
+    }
     const double extent = glm::length(ball.center) + std::sqrt(3.0) * ball.radius;
     const double away = glm::length(center - dvec3(outward[3]));
     out = std::max(out, 24 * eps * columns(outward) * (columns(inward) * (radius + away) + 3 * extent));
@@ -304,29 +311,50 @@ Extent extent_of(const FlatPrimitive& p, const reference::Primitive& witness) {
 }
 
 double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness, const RayRecord& ray) {
-  const Extent extent = extent_of(p, witness);
-  const double distance = glm::length(dvec3(ray.ox, ray.oy, ray.oz) - extent.center);
-  double factor = 16;
+  const float* d = p.data;
+  const dvec3 o(ray.ox, ray.oy, ray.oz);
+  const auto from = [&](const dvec3& c) { return glm::length(o - c); };
+  const double axis = glm::length(point(d + 3) - point(d));
   switch (p.shape) {
-    case shape_capsule:
-      factor = 12;
-      break;
     case shape_sphere:
+      return 16 * eps * (from(point(d)) + double(d[3]));
+    case shape_capsule:
+    case shape_cylinder:
+      return 16 * eps * (from(point(d)) + axis + double(d[6]));
+    case shape_tapered_capsule:
+    case shape_cone:
+      return 16 * eps * (from(point(d)) + axis + double(d[6]) + double(d[7]));
     case shape_triangle:
+      return 16 * eps *
+             (from(point(d)) + std::max({axis, glm::length(point(d + 6) - point(d)), glm::length(point(d + 6) - point(d + 3))}));
     case shape_disk:
+      return 16 * eps * (from(point(d)) + double(d[6]));
     case shape_box:
-      factor = 8;
-      break;
-    case shape_bilinear:
-      factor = 24;
-      break;
-    case shape_csg:  // and the way to the centre
-      return operands_bound(std::get<reference::Csg>(witness), glm::dmat4(1), extent.center, extent.radius) +
-             4 * eps * (distance + extent.radius);
-    default:
-      break;
+      return 8 * eps * (from(0.5 * (point(d) + point(d + 3))) + axis);
+    case shape_polyhedron: {
+      const auto& polyhedron = std::get<reference::Polyhedron>(witness);
+      double radius = 0;
+      for (const dvec3& corner : polyhedron.corners) radius = std::max(radius, glm::length(corner - polyhedron.center));
+      return 16 * eps * (from(polyhedron.center) + radius);
+    }
+    case shape_partial_sphere:
+      return 16 * eps * (from(dvec3(0)) + double(d[0]));
+    case shape_open_cylinder:
+      return 16 * eps * (from({0, 0, 0.5 * (double(d[1]) + double(d[2]))}) + double(d[0]) + double(d[2]) - double(d[1]));
+    case shape_partial_disk:
+      return 16 * eps * (from({0, 0, d[0]}) + double(d[1]));
+    case shape_bilinear: {
+      double diameter = 0;
+      for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < i; ++k) diameter = std::max(diameter, glm::length(point(d + 3 * i) - point(d + 3 * k)));
+      return 24 * eps * (from(point(d)) + diameter);
+    }
+    default: {  // csg
+      const reference::Ball ball = reference::bounding_ball(witness);
+      return operands_bound(std::get<reference::Csg>(witness), glm::dmat4(1), ball.center, ball.radius) +
+             3 * eps * from(ball.center);
+    }
   }
-  return (factor + 1) * eps * (distance + extent.radius + extent.reach);
 }
 
 // --- Points on them ---

@@ -47,17 +47,27 @@ class CaseMaker {
   RayRecord ray(const FlatPrimitive& primitive, const reference::Primitive& witness);
   CaseSet set(int shape, bool hard, int primitives, int rays_each);
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   glm::dvec3 direction();  // uniform over the sphere
+  /// A point of the surface, every other one on a rim, edge or end, and its outward (or stored) unit normal.
+  glm::dvec3 surface_point(const FlatPrimitive& primitive, const reference::Primitive& witness, glm::dvec3* normal);
+  /// Where a primitive is to be, and how large.
+  struct Frame {
+    double r;
+    glm::dvec3 center, axis;
+    double length;
+  };
+  /// A bounded polyhedron of `planes` planes that touch the ball of `at`, stretched along its axis.
+  FlatPrimitive polyhedron(int planes, double stretch, const Frame& at, std::vector<float>& leaves);
+  /// Along the shape's axis, or an edge.
+  glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& witness);
 
  private:
-  struct Frame;  // where a primitive is to be, and how large
   Frame frame(bool hard);
   FlatPrimitive basic(int shape, bool hard, const Frame& at);
   FlatPrimitive solid(int shape, bool hard, const Frame& at);
   FlatPrimitive open(int shape, bool hard, const Frame& at);
-  FlatPrimitive polyhedron(bool hard, const Frame& at, std::vector<float>& leaves);
   Shape csg_shape(int depth);
-  glm::dvec3 surface_point(const FlatPrimitive& primitive, const reference::Primitive& witness, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Spool& spool, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Box& box, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Polyhedron& polyhedron, glm::dvec3* normal);
@@ -66,11 +76,12 @@ class CaseMaker {
   glm::dvec3 point_of(const reference::PartialDisk& disk, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Bilinear& patch, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Csg& csg, glm::dvec3* normal);
-  glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& witness);
   double between(double low, double high) { return below(4) == 0 ? low : below(3) == 0 ? high : uniform(low, high); }
-  int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   std::mt19937 random_;
 };
+
+/// The place and size go into the operands, as they do in lower.
+CsgShape placed_csg(CsgShape csg, const glm::dmat4& m);
 
 /// CAPLET_TEST_SCALE, 1 to 1000; 1 when it is not set.
 int test_scale();
@@ -83,8 +94,8 @@ struct Extent {
 };
 Extent extent_of(const FlatPrimitive& primitive, const reference::Primitive& witness);
 
-/// Bound on the distance of o + t d from the surface, as docs/numerics.md states it: a multiple of eps (|o - c| + size). The
-/// final rounding of t moves the point by eps |t d| <= eps (|o - c| + size) more.
+/// Bound on the distance of o + t d from the surface, as the table of docs/numerics.md ("Traversal") states it; what else stands
+/// there about csg shapes.
 double surface_bound(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray);
 
 /// The primitives placed by random affine maps (turned, stretched by 0.2 to 3 along each axis, every other one mirrored, moved),

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "shared/kinds.h"
@@ -104,6 +105,19 @@ std::vector<PlacedPrimitive> unplaced(const std::vector<FlatPrimitive>& primitiv
 template <class T>
 Buffer<T> upload(const Device& device, const std::vector<T>& values) {
   return Buffer<T>(device, std::span<const T>(values));
+}
+
+// Made once: PoCL takes a second.
+const Program& program_of(const Device& device, int width) {
+  static std::map<std::pair<cl_context, int>, Program> programs;
+  auto found = programs.find({device.context()(), width});
+  if (found == programs.end()) {
+    const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
+    const std::string source = flatten_kernels(kernel_text);
+    found = programs.emplace(std::pair{device.context()(), width}, Program::from_source(device, "shape probe", source, options))
+                .first;
+  }
+  return found->second;
 }
 
 glm::dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
@@ -249,8 +263,7 @@ Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& 
 
 Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives, const std::vector<float>& leaves)
     : device_(device), leaves_(leaves) {
-  const Program program =
-      Program::from_source(device, "shape probe", flatten_kernels(kernel_text), "-DCAPLET_REAL_WIDTH=" + std::to_string(width));
+  const Program& program = program_of(device, width);
   trace_ = program.kernel("probe_trace");
   leave_ = program.kernel("probe_leave");
   list_ = program.kernel("probe_list");

@@ -64,6 +64,38 @@ __kernel void scene_trace(__global const float* nodes, __global const float* lea
   out->leaving = (uint)s.leaving;
   out->instance = hit.instance;
 }
+
+__kernel void scene_walk(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+                         __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
+                         __global const uint* surface_materials, __global const uint* mesh_indices,
+                         __global const float* mesh_normals, __global const float* mesh_uvs, __global const RayRecord* rays,
+                         __global float4* steps, __global uint* counts, uint most, uint root, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  Globals g;
+  g.nodes = nodes;
+  g.leaves = leaves;
+  g.instances = instances;
+  g.geometries = geometries;
+  g.primitive_geometry = primitive_geometry;
+  g.surface_materials = surface_materials;
+  g.mesh_indices = mesh_indices;
+  g.mesh_normals = mesh_normals;
+  g.mesh_uvs = mesh_uvs;
+  RayRecord ray = rays[i];
+  uint n = 0;
+  for (; n < most; n++) {
+    const HitRecord hit = trace_closest(nodes, leaves, instances, root, ray);
+    if (hit.slot == CAPLET_NONE) break;
+    const Surface s = surface_at(&g, &ray, &hit);
+    steps[(size_t)i * most + n] = (float4)(s.p, s.error);
+    const float3 o = offset_origin(s.p, s.ng, s.error, (float3)(ray.dx, ray.dy, ray.dz));
+    ray.ox = o.x;
+    ray.oy = o.y;
+    ray.oz = o.z;
+  }
+  counts[i] = n;
+}
 )";
 
 const Device& device() {
@@ -92,14 +124,20 @@ FlatScene lower_shapes(std::vector<Shape> shapes) {
   return lower(scene);
 }
 
-std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
+namespace {
+
+cl::Kernel kernel_of(const char* name, int width) {
   static std::map<int, Program> programs;
   auto found = programs.find(width);
   if (found == programs.end()) {
     const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
     found = programs.emplace(width, Program::from_source(device(), "scene probe", flatten_kernels(kernel_text), options)).first;
   }
-  cl::Kernel kernel = found->second.kernel("scene_trace");
+  return found->second.kernel(name);
+}
+
+// The scene and the rays on the device; calls take(buffers...).
+void with_scene(const FlatScene& scene, const std::vector<RayRecord>& rays, const auto& take) {
   const auto nodes = upload(scene.nodes), leaves = upload(scene.leaves), normals = upload(scene.mesh_normals),
              uvs = upload(scene.mesh_uvs);
   const auto instances = upload(scene.instances);
@@ -107,11 +145,38 @@ std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>
   const auto primitive_geometry = upload(scene.primitive_geometry), materials = upload(scene.surface_materials),
              indices = upload(scene.mesh_indices);
   const auto ray_buffer = upload(rays);
+  take(nodes, leaves, instances, geometries, primitive_geometry, materials, indices, normals, uvs, ray_buffer);
+}
+
+}  // namespace
+
+std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
+  cl::Kernel kernel = kernel_of("scene_trace", width);
   const Buffer<SceneHit> hits(device(), rays.size());
-  set_arguments(device(), kernel, nodes, leaves, instances, geometries, primitive_geometry, materials, indices, normals, uvs,
-                ray_buffer, hits, static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
-  launch(device(), kernel, rays.size(), 16);
+  with_scene(scene, rays, [&](const auto&... buffers) {
+    set_arguments(device(), kernel, buffers..., hits, static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
+    launch(device(), kernel, rays.size(), 16);
+  });
   return hits.read();
+}
+
+std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most) {
+  cl::Kernel kernel = kernel_of("scene_walk", 8);
+  const Buffer<WalkStep> steps(device(), rays.size() * most);
+  const Buffer<std::uint32_t> counts(device(), rays.size());
+  with_scene(scene, rays, [&](const auto&... buffers) {
+    set_arguments(device(), kernel, buffers..., steps, counts, static_cast<cl_uint>(most),
+                  static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
+    launch(device(), kernel, rays.size(), 16);
+  });
+  const std::vector<WalkStep> all = steps.read();
+  const std::vector<std::uint32_t> found = counts.read();
+  std::vector<Walk> out(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * most);
+    out[i].steps.assign(first, first + found[i]);
+  }
+  return out;
 }
 
 }  // namespace caplet::test

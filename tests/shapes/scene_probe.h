@@ -37,6 +37,16 @@ FlatScene lower_shapes(std::vector<Shape> shapes);
 /// `width`: CAPLET_REAL_WIDTH, 8 or 1.
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width = 8);
 
+/// A surface that a ray met on its way.
+struct WalkStep {
+  float p[3], error;
+};
+struct Walk {
+  std::vector<WalkStep> steps;  // in order
+};
+/// Every ray goes straight on through whatever it meets, from each surface by offset_origin, at most `most` times.
+std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most);
+
 inline glm::dvec3 vec(const float* p) { return {p[0], p[1], p[2]}; }
 
 }  // namespace caplet::test
