@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Distances to the shapes. The hull of two spheres is a minimum over its balls, found by bisection of the slope.
+// Distances to the shapes.
 #include "reference/primitive.h"
 
 #include <algorithm>
@@ -23,38 +23,19 @@ double distance_to_segment(const dvec3& x, const dvec3& a, const dvec3& b) {
 
 namespace {
 
-// The least value is where the slope is 0; it is flat there, so an error of 1e-13 of the length is one of 1e-26 length^2 /
-// radius.
-constexpr double ball_parameter_error = 1e-13;
-constexpr int most_ball_steps = 60;
-
 double value_of(const Sphere& s, const dvec3& x) { return glm::length(x - s.center) - s.radius; }
 
+// The least of |x - c(s)| - r(s) over the balls of the hull. With y along the axis and rho across it, that is convex in s and has
+// no slope where (s L - y) / |x - c(s)| = k, the growth of the radius by length: s L = y + rho k / sqrt(1 - k^2).
 double value_of(const Capsule& c, const dvec3& x) {
-  const dvec3 axis = c.p1 - c.p0;
-  const double growth = c.radius1 - c.radius0;
-  if (growth == 0) return distance_to_segment(x, c.p0, c.p1) - c.radius0;
-  const auto at = [&](double s) { return glm::length(x - (c.p0 + s * axis)) - (c.radius0 + s * growth); };
-  // Slope of `at`, times the distance; its sign is that of a rising function, since `at` is convex.
-  const auto slope = [&](double s) {
-    const dvec3 to_center = c.p0 + s * axis - x;
-    return glm::dot(to_center, axis) - growth * glm::length(to_center);
-  };
-  double low = 0, high = 1, at_low = slope(low), at_high = slope(high);
-  if (at_low > 0) return at(low);
-  if (at_high <= 0) return at(high);
-  // Regula falsi in its Illinois form, with a bisection every third step.
-  for (int i = 0; i < most_ball_steps && high - low > ball_parameter_error; ++i) {
-    double s = low - at_low * (high - low) / (at_high - at_low);
-    if (i % 3 == 2 || !(s > low && s < high)) s = 0.5 * (low + high);
-    const double here = slope(s);
-    if (here > 0) {
-      high = s, at_high = here, at_low *= 0.5;
-    } else {
-      low = s, at_low = here, at_high *= 0.5;
-    }
-  }
-  return std::min(at(low), at(high));
+  const dvec3 axis = c.p1 - c.p0, w = x - c.p0;
+  const double growth = c.radius1 - c.radius0, squared = glm::dot(axis, axis);
+  const auto at = [&](double s) { return glm::length(w - s * axis) - (c.radius0 + s * growth); };
+  // One ball holds the other.
+  if (growth * growth >= squared) return at(growth > 0 ? 1 : 0);
+  const double along = glm::dot(w, axis) / squared;
+  const double across = glm::length(w - along * axis);
+  return at(std::clamp(along + across * growth / std::sqrt(squared * (squared - growth * growth)), 0.0, 1.0));
 }
 
 double value_of(const Triangle& t, const dvec3& x) {
