@@ -59,9 +59,36 @@ std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
   return out;
 }
 
-SceneHit hit_of(SceneHit identity, const Crossing& crossing, const std::vector<std::uint32_t>& materials) {
+/// Faces that a mesh's normals turn over, pbrt's rule: where a mesh has normals they say which side is out, not the winding.
+/// Judged in the shape's outer space. Empty for what has none.
+std::vector<bool> turned_faces(const Shape& shape) {
+  std::vector<bool> out;
+  const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(shape.world_from_object)));
+  const auto add = [&](const auto& mesh, const auto& faces, const auto& by_winding) {
+    if (mesh.normals.empty()) return;
+    for (const auto& face : faces) {
+      dvec3 sum(0);
+      for (const std::uint32_t v : face)
+        if (const dvec3 n = normal_matrix * dvec3(mesh.normals[v]); glm::length(n) > 0) sum += glm::normalize(n);
+      out.push_back(glm::dot(normal_matrix * by_winding(face), sum) < 0);
+    }
+  };
+  if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+    add(*mesh, mesh->triangles, [&](const auto& face) {
+      const dvec3 a(mesh->positions[face[0]]);
+      return glm::cross(dvec3(mesh->positions[face[1]]) - a, dvec3(mesh->positions[face[2]]) - a);
+    });
+  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
+    add(*mesh, mesh->patches, [&](const auto& face) {
+      const auto corner = [&](std::size_t k) { return dvec3(mesh->positions[face[k]]); };
+      return glm::cross(corner(3) - corner(0), corner(2) - corner(1));
+    });
+  return out;
+}
+
+SceneHit hit_of(SceneHit identity, const Crossing& crossing, bool leaving, const std::vector<std::uint32_t>& materials) {
   identity.t = crossing.t;
-  identity.leaving = crossing.leaving;
+  identity.leaving = leaving;
   identity.surface = static_cast<std::uint32_t>(crossing.surface);
   identity.surface_margin = crossing.surface_margin;
   if (!materials.empty()) identity.material = materials[identity.surface];
@@ -112,6 +139,7 @@ void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, c
   surface_materials_.push_back(materials_by_surface(shape));
   corner_uvs_.push_back(corner_uvs(shape));
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  const std::vector<bool> turned = turned_faces(shape);
   const std::size_t first = placed_.size();
   std::uint32_t index = 0;
   for (const Primitive& primitive : primitives_of(shape)) {
@@ -121,6 +149,7 @@ void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, c
     // From behind an open shape's normal, as ReverseOrientation leaves it; from inside a solid.
     if (shape.one_sided) (is_solid(primitive) || !shape.reverse_orientation ? placed.sees_leaving : placed.sees_entering) = false;
     placed.reversed = shape.reverse_orientation;
+    placed.turned = !turned.empty() && turned[index];
     placed.identity.index = placed_.size();
     placed_.push_back(placed);
     ++index;
@@ -182,9 +211,9 @@ std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
   visit_touched(ray, [&](const Placed& placed, const Ray& local) {
     for (const Crossing& crossing : crossings(placed.primitive, local)) {
       if (!(crossing.t > local.t_min && crossing.t < local.t_max)) continue;
-      if (!(crossing.leaving ? placed.sees_leaving : placed.sees_entering)) continue;
+      if (!placed.sees(crossing)) continue;
       if (!best || crossing.t < best->t || (crossing.t == best->t && placed.identity.index < best->index))
-        best = hit_of(placed.identity, crossing, surface_materials_[placed.space]);
+        best = hit_of(placed.identity, crossing, placed.leaves(crossing), surface_materials_[placed.space]);
       return;
     }
   });
@@ -204,8 +233,8 @@ std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::vector<std::uint32_
   visit_touched(ray, [&](const Placed& placed, const Ray& local) {
     near.push_back(static_cast<std::uint32_t>(placed.identity.index));
     for (const Crossing& crossing : crossings(placed.primitive, local))
-      if (crossing.t > ray.t_min && crossing.t < ray.t_max && (crossing.leaving ? placed.sees_leaving : placed.sees_entering))
-        out.push_back(hit_of(placed.identity, crossing, surface_materials_[placed.space]));
+      if (crossing.t > ray.t_min && crossing.t < ray.t_max && placed.sees(crossing))
+        out.push_back(hit_of(placed.identity, crossing, placed.leaves(crossing), surface_materials_[placed.space]));
   });
   std::ranges::stable_sort(out, [](const SceneHit& a, const SceneHit& b) {
     return a.t != b.t ? a.t < b.t : a.leaving != b.leaving ? a.leaving : a.index < b.index;
@@ -218,7 +247,7 @@ dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
   const glm::dmat4& m = object_from_world_[placed.space];
   const dvec3 local = normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
   const dvec3 out = glm::normalize(glm::transpose(glm::dmat3(m)) * local);
-  return placed.reversed ? -out : out;
+  return placed.reversed != placed.turned ? -out : out;
 }
 
 glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point) const {

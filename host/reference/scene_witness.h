@@ -74,6 +74,9 @@ class SceneWitness {
     SceneHit identity;
     std::uint32_t space;  // index into object_from_world_ and surface_materials_
     bool sees_entering = true, sees_leaving = true, reversed = false;
+    bool turned = false;  // a mesh's face whose normals are against its winding
+    bool leaves(const Crossing& crossing) const { return crossing.leaving != turned; }
+    bool sees(const Crossing& crossing) const { return leaves(crossing) ? sees_leaving : sees_entering; }
   };
   struct Group {
     Ball ball;                 // of its primitives' balls, world space

@@ -5,25 +5,20 @@
 // surface and material. CAPLET_TEST_SCALE=N tries N times as many scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/matrix.hpp>
-#include <map>
 #include <mutex>
 #include <random>
 
 #include "list_tracer.h"
 #include "random_scene.h"
-#include "reference/from_scene.h"
-#include "reference/scene_witness.h"
 #include "shared/kinds.h"
+#include "verify/verify.h"
 
 namespace caplet::test {
 namespace {
@@ -31,7 +26,6 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-constexpr double eps = 0x1p-24;
 constexpr std::uint32_t capacity = 200;
 
 const ListTracer& tracer(int width = 8) {
@@ -56,172 +50,65 @@ std::vector<RayRecord> random_rays(std::uint32_t seed, int count) {
   return out;
 }
 
-using Name = std::array<std::uint32_t, 3>;  // instance, shape, primitive
-
-Name name_of(const reference::SceneHit& hit) { return {hit.instance, hit.shape, hit.primitive}; }
-
-Name name_of(const Scene& scene, const FlatScene& flat, const HitRecord& hit) {
-  const std::uint32_t primitive = std::bit_cast<std::uint32_t>(flat.leaves[hit.slot]);
-  const GeometryRecord& geometry = flat.geometries[flat.primitive_geometry[primitive]];
-  const auto world = static_cast<std::uint32_t>(scene.shapes.size());
-  const std::uint32_t placed = hit.instance == CAPLET_NONE ? CAPLET_NONE : flat.instances[hit.instance].object;
-  // Shapes of objects are numbered behind those of the world.
-  if (placed == CAPLET_NONE) return {reference::no_instance, geometry.object, primitive - geometry.primitive_begin};
-  return {placed - world, geometry.object - world, primitive - geometry.primitive_begin};
-}
-
-/// A primitive of the scene in its own space.
-struct Placed {
-  reference::Primitive primitive;
-  dmat4 object_from_world;
-  const Shape* shape;
-};
-
-std::map<Name, Placed> placed_of(const Scene& scene) {
-  std::map<Name, Placed> out;
-  const auto add = [&](const Shape& shape, const dmat4& m, std::uint32_t instance, std::uint32_t number) {
-    std::uint32_t k = 0;
-    for (const reference::Primitive& primitive : reference::primitives_of(shape))
-      out[{instance, number, k++}] = {primitive, glm::inverse(m), &shape};
-  };
-  for (std::uint32_t i = 0; i < scene.shapes.size(); ++i)
-    add(scene.shapes[i], scene.shapes[i].world_from_object, reference::no_instance, i);
-  for (std::uint32_t j = 0; j < scene.instances.size(); ++j) {
-    const Object& object = scene.objects[scene.instances[j].object];
-    for (std::uint32_t i = 0; i < object.shapes.size(); ++i)
-      add(object.shapes[i], scene.instances[j].world_from_object * object.shapes[i].world_from_object, j, i);
-  }
-  return out;
-}
-
-/// The ray in the primitive's space, and a bound there: twice the kernels' own (docs/numerics.md) and 8 eps of the terms of the
-/// ways there, those that are baked into the primitive and those of instances.
-struct Local {
-  const Placed* placed;
-  reference::Ray ray;
-  double bound;
-  double value(double t) const { return reference::value(placed->primitive, ray.origin + t * ray.direction); }
-  /// Where the ray begins at the surface, touches it or passes a rim; or, of csg shapes, goes through a wall or gap thinner than
-  /// the bounds of both its sides.
-  bool excused() const {
-    if (std::abs(value(0)) <= bound || std::abs(reference::margin(placed->primitive, ray)) <= bound) return true;
-    if (!std::holds_alternative<reference::Csg>(placed->primitive)) return false;
-    const auto crossings = reference::crossings(placed->primitive, ray);
-    for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-      double deepest = 0;
-      for (int k = 1; k < 64; ++k)
-        deepest = std::max(deepest, std::abs(value(crossings[i].t + (crossings[i + 1].t - crossings[i].t) * k / 64)));
-      if (deepest <= 2 * bound) return true;
-    }
-    return false;
-  }
-};
-
-Local local_of(const Placed& placed, const reference::Ray& ray) {
-  const dmat4& m = placed.object_from_world;
-  Local out{&placed, {dvec3(m * glm::dvec4(ray.origin, 1)), dvec3(m * glm::dvec4(ray.direction, 0)), 0, HUGE_VAL}, 0};
-  const reference::Ball ball = reference::bounding_ball(placed.primitive);
-  double columns = 0, back = 0;
-  const dmat4 inverse = glm::inverse(m);
-  for (int c = 0; c < 3; ++c) {
-    columns += glm::length(dvec3(m[c]));
-    back += glm::length(dvec3(inverse[c]));
-  }
-  const double distance = glm::length(out.ray.origin - ball.center);
-  const double world = glm::length(ray.origin) + glm::length(dvec3(inverse[3])) + back * (glm::length(ball.center) + ball.radius);
-  out.bound = eps * (48 * (distance + 3 * ball.radius) + 16 * (columns * world + glm::length(dvec3(m[3]))));
-  return out;
-}
-
 struct Tally {
-  std::mutex mutex;
-  int rays = 0, crossings = 0, excused = 0, failures = 0;
-  void fail(const std::string& what) {
-    const std::lock_guard lock(mutex);
-    if (++failures <= 5) ADD_FAILURE() << what;
-  }
+  std::size_t rays = 0, crossings = 0, grazing = 0, failures = 0;
+  std::array<std::size_t, reference::kind_names.size()> kinds{};
 };
 
-void check(const Scene& scene, const FlatScene& flat, const std::map<Name, Placed>& placed,
-           const reference::SceneWitness& witness, const RayRecord& record, const RayList& list, Tally& tally) {
-  const reference::Ray ray{{record.ox, record.oy, record.oz}, {record.dx, record.dy, record.dz}, 0, HUGE_VAL};
-  const std::string where =
-      fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", record.ox, record.oy, record.oz, record.dx, record.dy, record.dz);
-  if (list.overflow) tally.fail("overflow" + where);
-  if (list.any != !list.hits.empty() || (list.closest.slot == CAPLET_NONE) != list.hits.empty())
-    tally.fail("nearest, any and the list do not agree" + where);
-  for (std::size_t i = 1; i < list.hits.size(); ++i)
-    if (!(list.hits[i].t >= list.hits[i - 1].t)) tally.fail("the list is not in order" + where);
+/// What is hit, where, in which order; of which object, primitive, surface and material; points, normals and uv.
+void compare(const Scene& scene, const std::vector<RayRecord>& rays, Tally& tally) {
+  static const std::vector<Device> devices{Device::choose("")};
+  std::mutex mutex;
+  verify::SceneCheck check(scene, devices);
+  check.check(rays, [&](const verify::SceneCheck::Checked& ray) {
+    const verify::Outcome& outcome = ray.outcomes[0];
+    const std::lock_guard lock(mutex);
+    ++tally.rays;
+    tally.crossings += outcome.matches.size();
+    tally.grazing += !outcome.grazed.empty();
+    for (const verify::Match& match : outcome.matches)
+      ++tally.kinds[reference::kind_of(check.witness().placed(match.primitive).primitive)];
+    for (const verify::Disagreement& wrong : outcome.disagreements)
+      if (++tally.failures <= 5) {
+        const RayRecord& r = rays[ray.ray];
+        ADD_FAILURE() << wrong.text << fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+      }
+  });
+}
 
-  std::map<Name, std::pair<std::vector<reference::SceneHit>, std::vector<std::size_t>>> both;
-  for (const reference::SceneHit& hit : witness.all(ray)) both[name_of(hit)].first.push_back(hit);
-  for (std::size_t i = 0; i < list.hits.size(); ++i) both[name_of(scene, flat, list.hits[i])].second.push_back(i);
-  bool excused = false;
-  for (const auto& [name, pair] : both) {
-    const auto& [expected, found] = pair;
-    const auto it = placed.find(name);
-    if (it == placed.end()) {
-      tally.fail(fmt::format("there is no shape {} {} {}", name[0], name[1], name[2]) + where);
-      continue;
-    }
-    const Local local = local_of(it->second, ray);
-    const Shape& shape = *it->second.shape;
-    std::string wrong;
-    if (expected.size() != found.size()) {
-      wrong = "crossings at";
-      for (const std::size_t k : found) wrong += fmt::format(" {}", list.hits[k].t);
-      wrong += ", the witness says";
-      for (const reference::SceneHit& hit : expected) wrong += fmt::format(" {}", hit.t);
-      wrong += fmt::format("; margin {} bound {}", reference::margin(it->second.primitive, local.ray), local.bound);
-    }
-    for (std::size_t k = 0; wrong.empty() && k < found.size(); ++k) {
-      const HitRecord& hit = list.hits[found[k]];
-      // A mirrored mesh has its winding, and with it what counts as leaving, turned.
-      const bool wound =
-          std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
-      if (!wound && expected[k].leaving != is_leaving(hit)) wrong = fmt::format("crossing {} is on the other side", k);
-      if (std::abs(local.value(0.5 * (expected[k].t + double(hit.t)))) > 2 * local.bound)
-        wrong = fmt::format("crossing at {}, the witness says {}", hit.t, expected[k].t);
-      if (expected[k].surface != surface_number(hit) && expected[k].surface_margin > 1e-4)
-        wrong = fmt::format("surface {}, the witness says {}", surface_number(hit), expected[k].surface);
-      if (expected[k].surface == surface_number(hit) && list.surfaces[found[k]].material != expected[k].material)
-        wrong = fmt::format("material {}, the witness says {}", list.surfaces[found[k]].material, expected[k].material);
-      // Toward the side that the normal is of: outward, along the plane's or the winding's normal, turned by ReverseOrientation.
-      const CrossingSurface& s = list.surfaces[found[k]];
-      const dvec3 n(s.ng[0], s.ng[1], s.ng[2]), p(s.p[0], s.p[1], s.p[2]);
-      if (wrong.empty() && expected[k].surface_margin > 1e-3 &&
-          glm::dot(witness.normal(expected[k], ray.origin + expected[k].t * ray.direction), n) < 0.9)
-        wrong = fmt::format("normal {} {} {} at {}", n.x, n.y, n.z, hit.t);
-    }
-    if (wrong.empty()) continue;
-    if (local.excused())
-      excused = true;
-    else
-      tally.fail(fmt::format("instance {} shape {} primitive {}: ", static_cast<int>(name[0]), name[1], name[2]) + wrong + where);
-  }
-  const std::lock_guard lock(tally.mutex);
-  ++tally.rays;
-  tally.crossings += static_cast<int>(list.hits.size());
-  tally.excused += excused;
+void report(const Tally& tally) {
+  std::printf("%zu rays, %zu crossings, %zu grazing, %zu failures\n", tally.rays, tally.crossings, tally.grazing, tally.failures);
+  EXPECT_EQ(tally.failures, 0u);
+  EXPECT_GT(tally.crossings, tally.rays);
+  EXPECT_LT(tally.grazing, tally.rays / 50);
 }
 
 TEST(Scenes, OfAllShapesAgreeWithTheWitness) {
   Tally tally;
-  for (int i = 0; i < 6 * scale_of_test(); ++i) {
-    const Scene scene = random_scene(100 + static_cast<std::uint32_t>(i));
-    const FlatScene flat = lower(scene);
-    const reference::SceneWitness witness(scene);
-    const std::map<Name, Placed> placed = placed_of(scene);
-    EXPECT_EQ(placed.size(), witness.size());
-    const std::vector<RayRecord> rays = random_rays(200 + static_cast<std::uint32_t>(i), 2000);
-    const std::vector<RayList> lists = tracer().trace(flat, rays, capacity);
-    tbb::parallel_for(std::size_t{0}, rays.size(),
-                      [&](std::size_t k) { check(scene, flat, placed, witness, rays[k], lists[k], tally); });
+  for (int i = 0; i < 6 * scale_of_test(); ++i)
+    compare(random_scene(100 + static_cast<std::uint32_t>(i)), random_rays(200 + static_cast<std::uint32_t>(i), 2000), tally);
+  report(tally);
+  for (std::size_t k = 0; k < tally.kinds.size(); ++k) EXPECT_GT(tally.kinds[k], 200u) << reference::kind_names[k];
+}
+
+// Faces that the mesh's normals turn over keep their uvs; capsules of one point have the z axis of their own space.
+TEST(Scenes, OfTurnedFacesAndBalls) {
+  SceneMaker make(5);
+  Scene scene;
+  scene.materials.push_back({DiffuseMaterial{}, "", {}});
+  for (int i = 0; i < 24; ++i) {
+    const glm::vec3 a(make.direction()), b(make.direction()), c(make.direction()), d(make.direction());
+    const std::vector<glm::vec3> normals(4, glm::vec3(make.direction()));
+    Shape shape;
+    shape.world_from_object = make.placement(4);
+    if (i % 3 == 0) shape.geometry = TriangleMeshShape{{a, b, c, d}, {{0, 1, 2}, {1, 2, 3}}, normals, {}};
+    if (i % 3 == 1) shape.geometry = BilinearMeshShape{{a, b, c, d}, {{0, 1, 2, 3}}, normals, {}};
+    if (i % 3 == 2) shape.geometry = CapsulesShape{{a, b}, {a, b + 0.1f * c}, {0.6f, 0.5f}, {0.3f, 0.9f}, {}};
+    scene.shapes.push_back(shape);
   }
-  std::printf("%d rays, %d crossings, %d excused, %d failures\n", tally.rays, tally.crossings, tally.excused, tally.failures);
-  EXPECT_EQ(tally.failures, 0);
-  EXPECT_GT(tally.crossings, tally.rays);
-  EXPECT_LT(tally.excused, tally.rays / 50);
+  Tally tally;
+  compare(scene, random_rays(6, 10000), tally);
+  report(tally);
 }
 
 // Eight primitives at a time or one: the same crossings of the same primitives. Contraction may differ between the two, so that
