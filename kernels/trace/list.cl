@@ -115,7 +115,7 @@ static inline uint trace_all(__global const float* nodes, __global const float* 
   list.capacity = capacity;
   list.count = 0;
   list.more = 0;
-  list.t_begin = fmax(ray.t_min, 0.0f);
+  list.t_begin = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
   list.t_end = ray.t_max;
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);

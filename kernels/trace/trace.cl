@@ -73,8 +73,9 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
 #else
   uint bits = 0;
   for (uint i = 0; i < CAPLET_WIDTH; i++) {
-    const float near = fmax(fmax(node[s->near_x + i] * s->near_ix - s->near_ox, node[s->near_y + i] * s->near_iy - s->near_oy),
-                            fmax(node[s->near_z + i] * s->near_iz - s->near_oz, t_min));
+    const float met = fmax(fmax(node[s->near_x + i] * s->near_ix - s->near_ox, node[s->near_y + i] * s->near_iy - s->near_oy),
+                           node[s->near_z + i] * s->near_iz - s->near_oz);
+    const float near = met > t_min ? met : t_min;  // fmax may make -0 of -0 and 0
     const float far = fmin(fmin(node[s->far_x + i] * s->far_ix - s->far_ox, node[s->far_y + i] * s->far_iy - s->far_oy),
                            fmin(node[s->far_z + i] * s->far_iz - s->far_oz, t_best));
     enter[i] = near;
@@ -186,7 +187,7 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
   hit.surface = 0;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
   if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max)) return hit;
-  const float t_min = fmax(ray.t_min, 0.0f);
+  const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
   float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
   if (!(t_min < t_best)) return hit;
   uint best_slot = 0, best_instance = CAPLET_NONE, instance = CAPLET_NONE;

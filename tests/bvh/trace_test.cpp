@@ -137,6 +137,42 @@ TEST_P(Trace, EqualHitsGoToTheSmallerSlot) {
   }
 }
 
+// Entries of the stack order by the bits of where the ray enters: a zero with a sign must not get there. Rays begin within boxes,
+// and in the planes of their faces through the world's origin.
+TEST_P(Trace, ZerosOfEitherSignAreTheSame) {
+  const auto primitives = random_scene(15, GetParam(), 400, 0.6f);
+  const Encoded scene = encode(primitives);
+  std::vector<RayRecord> plus = random_rays(16, 3000);
+  for (std::size_t i = 0; i < plus.size(); ++i) {
+    RayRecord& r = plus[i];
+    if (i % 2 == 0) r.ox *= 0.1f, r.oy *= 0.1f, r.oz *= 0.1f;
+    if (i % 3 == 0) r.ox = 0;
+    if (i % 4 == 0) r.oy = 0;
+    if (i % 5 == 0) r.oz = 0;
+    if (i % 7 == 0) r.dx = 0;
+    r.t_min = 0;
+  }
+  std::vector<RayRecord> minus = plus;
+  for (RayRecord& r : minus) {
+    r.t_min = -0.0f;
+    for (float* x : {&r.ox, &r.oy, &r.oz, &r.dx, &r.dy, &r.dz})
+      if (*x == 0) *x = -0.0f;
+  }
+  for (DeviceTracer* tracer : {&wide(), &scalar()}) {
+    tracer->upload(scene.nodes, scene.leaves, {}, scene.tree.root);
+    const auto of_plus = tracer->closest(plus), of_minus = tracer->closest(minus);
+    const auto any_of_plus = tracer->any(plus), any_of_minus = tracer->any(minus);
+    int hit = 0;
+    for (std::size_t i = 0; i < plus.size(); ++i) {
+      hit += of_plus[i].slot != CAPLET_NONE;
+      EXPECT_EQ(of_plus[i].slot, of_minus[i].slot) << i;
+      EXPECT_EQ(of_plus[i].t, of_minus[i].t) << i;
+      EXPECT_EQ(any_of_plus[i], any_of_minus[i]) << i;
+    }
+    EXPECT_GT(hit, 1000);
+  }
+}
+
 TEST_P(Trace, InvalidRaysMiss) {
   const auto primitives = random_scene(4, GetParam(), 100, 0.5f);
   const Encoded scene = encode(primitives);
