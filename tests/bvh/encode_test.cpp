@@ -113,7 +113,7 @@ TEST(Encode, LimitsOfTheLayout) {
   EXPECT_NO_THROW(check_tree_limits(most_rows, most_nodes));
   EXPECT_THROW(check_tree_limits(most_rows + 1, 0), InputError);
   EXPECT_THROW(check_tree_limits(0, most_nodes + 1), InputError);
-  // A hundred million capsules fit, eight to a leaf of nine rows.
+  // A hundred million capsules fit, eight to a leaf of eight rows.
   std::array<std::uint64_t, shape_count> counts{};
   counts[shape_capsule] = 100'000'000;
   EXPECT_LT(least_rows(counts), most_rows);
