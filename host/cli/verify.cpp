@@ -58,7 +58,8 @@ bool replay(const Options& o) {
   std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>> by_scene;
   for (const verify::Case& one : cases) by_scene[{one.scene.file, one.scene.seed, one.scene.round}].push_back(&one);
   std::map<const verify::Case*, std::string> wrong;
-  for (const auto& [key, members] : by_scene) {
+  for (const auto& group : by_scene) {
+    const std::vector<const verify::Case*>& members = group.second;
     const verify::SceneName& name = members.front()->scene;
     const Scene scene =
         name.file.empty() ? verify::torture_scene(name.seed, name.round) : import_scene(name.file, FileImageReader());

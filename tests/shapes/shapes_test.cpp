@@ -154,7 +154,7 @@ void compare(const ShapeKind& kind, int width, bool hard, int primitives, int ra
 void scale_polyhedron(FlatPrimitive& p, float scale, std::vector<float>& leaves) {
   float* data = &leaves.at(std::bit_cast<std::uint32_t>(p.data[0]));
   const auto count = std::bit_cast<std::uint32_t>(data[3]);
-  for (const std::size_t i : {0, 1, 2, 4}) data[i] *= scale;
+  for (const std::size_t i : {0U, 1U, 2U, 4U}) data[i] *= scale;
   for (std::size_t i = 0; i < count; ++i) data[8 + 4 * i + 3] *= scale;
   for (int i = 3; i < 9; ++i) p.data[i] *= scale;
 }
