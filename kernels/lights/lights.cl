@@ -56,6 +56,7 @@ static inline int light_sample(const Globals* g, float3 p, float4 lambda, float 
       s->wi = unit_or(away, (float3)(0.0f));
       if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
       s->target = offset_origin(point.p, point.n, point.error, -s->wi);
+      if (!(norm1(s->target) < INFINITY)) return 0;  // the light's error bound is beyond floats
       s->delta = 0;
       s->pdf = chance * point.pdf;
       break;
