@@ -22,11 +22,30 @@ double stretch_of(const dmat4& m) {
   return std::sqrt(squares);
 }
 
-// The greatest multiple of eps in docs/numerics.md's bound of a kind. Of csg shapes 64 for what holds near them: 16 eps
-// (R + 3 e), where e is at most R.
-double factor_of(const reference::Primitive& primitive) {
-  if (std::holds_alternative<reference::Csg>(primitive)) return 64;
-  return std::holds_alternative<reference::Bilinear>(primitive) ? 24 : 16;
+// Distance from `center` of the furthest corner of an axis-aligned box around any solid of a csg shape, at most.
+double furthest_corner(const reference::Csg& csg, const dvec3& center, const dmat4& outer_from_csg, double stretch) {
+  double out = 0;
+  for (const reference::CsgOperand& operand : csg.body->operands) {
+    const dmat4 csg_from_operand = glm::inverse(operand.operand_from_csg), outer = outer_from_csg * csg_from_operand;
+    const double own_stretch = stretch * stretch_of(csg_from_operand);
+    if (const auto* nested = std::get_if<reference::Csg>(&operand.primitive)) {
+      out = std::max(out, furthest_corner(*nested, center, outer, own_stretch));
+    } else {
+      const reference::Ball ball = reference::bounding_ball(operand.primitive);
+      out = std::max(
+          out, glm::length(dvec3(outer * glm::dvec4(ball.center, 1)) - center) + std::sqrt(3.0) * own_stretch * ball.radius);
+    }
+  }
+  return out;
+}
+
+// The kernels' stated bound for a ray from a distance D of the primitive's ball (docs/numerics.md), in multiples of eps. Every
+// size in the bounds is at most twice the ball's radius R and every |o - p0| at most D + R: a factor of D + 3 R. Of csg shapes 3
+// D + 16 (R + 3 e), and half as much again for operands in spaces of their own; R is that of the shape's box and e the distance
+// of the furthest corner of an operand's.
+double bound_of(const reference::Primitive& primitive, const reference::Ball& ball, double corner, double distance) {
+  if (std::holds_alternative<reference::Csg>(primitive)) return 3 * distance + 24 * (std::sqrt(3.0) * ball.radius + 3 * corner);
+  return (std::holds_alternative<reference::Bilinear>(primitive) ? 24 : 16) * (distance + 3 * ball.radius);
 }
 
 double altitude(const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -77,16 +96,17 @@ Bounds::Bounds(const reference::SceneWitness& witness) : witness_(&witness) {
     const auto placed = witness.placed(i);
     const dmat4 back = glm::inverse(placed.object_from_world);
     const double world_stretch = stretch_of(back);
+    const auto* csg = std::get_if<reference::Csg>(&placed.primitive);
     places_.push_back({stretch_of(placed.object_from_world), world_stretch,
                        glm::length(dvec3(back[3])) + world_stretch * (glm::length(placed.ball.center) + placed.ball.radius),
-                       glm::length(dvec3(placed.object_from_world[3]))});
+                       glm::length(dvec3(placed.object_from_world[3])),
+                       csg ? furthest_corner(*csg, placed.ball.center, dmat4(1), 1) : 0});
   }
 }
 
-// In the primitive's space, with the distance D of the origin from its ball's centre and the ball's radius R: every size of the
-// kernels' bounds is at most 2 R and every |o - p0| at most D + R, so those are at most factor (D + 3 R). The way there: the
-// matrices' entries are rounded (1), and multiplied and added (3); of baked shapes the own numbers are rounded in the world (1).
-// Six times eps of all terms, as large as they get anywhere on the primitive, is more than both.
+// The kernels' own, and the way into the primitive's space: the matrices' entries are rounded (1), and multiplied and added (3);
+// of baked shapes the own numbers are rounded in the world (1). Six times eps of all terms, as large as they get anywhere on the
+// primitive, is more than both.
 LocalRay Bounds::local(std::size_t primitive, const reference::Ray& ray) const {
   const auto placed = witness_->placed(primitive);
   const Place& place = places_[primitive];
@@ -95,7 +115,7 @@ LocalRay Bounds::local(std::size_t primitive, const reference::Ray& ray) const {
       &placed.primitive, {dvec3(m * glm::dvec4(ray.origin, 1)), dvec3(m * glm::dvec4(ray.direction, 0)), 0, HUGE_VAL}, 0};
   const double distance = glm::length(out.ray.origin - placed.ball.center);
   const double terms = place.object_stretch * (glm::length(ray.origin) + place.world_size) + place.object_shift;
-  out.bound = eps * (factor_of(placed.primitive) * (distance + 3 * placed.ball.radius) + 6 * terms);
+  out.bound = eps * (bound_of(placed.primitive, placed.ball, place.corner, distance) + 6 * terms);
   return out;
 }
 

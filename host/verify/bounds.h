@@ -38,6 +38,7 @@ class Bounds {
  private:
   struct Place {
     double object_stretch, world_stretch, world_size, object_shift;
+    double corner;  // of csg shapes: how far their solids' boxes reach from the ball's centre
   };
   const reference::SceneWitness* witness_;
   std::vector<Place> places_;
