@@ -99,6 +99,7 @@ class Body {
     const dvec3 s = glm::normalize(glm::cross(plane.normal, std::abs(plane.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
     const dvec3 t = glm::cross(plane.normal, s);
     std::vector<std::pair<double, dvec3>> around;
+    around.reserve(rim.size());
     for (const dvec3& x : rim) around.emplace_back(std::atan2(glm::dot(x - center, t), glm::dot(x - center, s)), x);
     std::ranges::sort(around, {}, &std::pair<double, dvec3>::first);
     Face face{number, {}};

@@ -133,7 +133,7 @@ std::vector<std::pair<std::string, std::string>> only(const std::string& library
 
 std::string only_text(const std::string& library, const Loader& loader) {
   std::string out;
-  for (const auto& [name, value] : only(library, loader)) out += (out.empty() ? "" : " ") + name + "=" + value;
+  for (const auto& [name, value] : only(library, loader)) out += fmt::format("{}{}={}", out.empty() ? "" : " ", name, value);
   return out;
 }
 
