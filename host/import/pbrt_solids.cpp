@@ -198,7 +198,7 @@ PolyhedronShape make_polyhedron(Parameters& parameters) {
     }
     return out;
   };
-  const PolyhedronShape polyhedron{vectors("P", "point3"), vectors("N", "normal")};
+  PolyhedronShape polyhedron{vectors("P", "point3"), vectors("N", "normal")};
   const std::size_t planes = polyhedron.points.size();
   if (planes == 0 || polyhedron.normals.empty()) return {};
   if (polyhedron.normals.size() != planes) {

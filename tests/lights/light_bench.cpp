@@ -115,7 +115,7 @@ Device& test_device() {
 
 }  // namespace
 
-LightBench::LightBench(const FlatScene& scene) : scene_(scene), device_(test_device()) {
+LightBench::LightBench(const FlatScene& scene) : device_(test_device()) {
   scene_buffers_.push_back(upload(device_, std::vector<ParamsRecord>{scene.params}));
   scene_buffers_.push_back(upload(device_, scene.nodes));
   scene_buffers_.push_back(upload(device_, scene.leaves));

@@ -50,7 +50,6 @@ class LightBench {
 
  private:
   void bind_scene(cl::Kernel& kernel);
-  const FlatScene& scene_;
   Device device_;
   std::vector<RawBuffer> scene_buffers_;
 };
