@@ -50,6 +50,7 @@ static inline LocalSurface surface_polyhedron(const SurfaceQuery* q) {
   s.p = center + v;
   s.dpdu = across_v / dot(along.s012, across_v);
   s.dpdv = across_u / dot(along.s456, across_u);
+  if (!(norm1(s.dpdu) + norm1(s.dpdv) < INFINITY)) s.dpdu = s.dpdv = (float3)(0.0f);  // a solid so small that they are no floats
   s.uv = clamp((float2)(dot(v, along.s012) + along.s3, dot(v, along.s456) + along.s7), 0.0f, 1.0f);
   s.error = CAPLET_EPS * (32.0f * norm1(v) + 4.0f * norm1(s.p));
   return s;
