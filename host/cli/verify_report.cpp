@@ -59,19 +59,19 @@ std::string device_label(const DeviceInfo& info) {
 
 std::string table_of(const Statistics& s) {
   std::string out = fmt::format("{:<16}{:>11}{:>11}{:>9}{:>9} |", "kind", "rays", "crossings", "grazing", "disagree");
-  for (const char* name : verify::quantity_names) out += fmt::format(" {:>6}{:>7}{:>8} |", name, "99 %", "worst");
+  for (const char* name : verify::quantity_names) out += fmt::format(" {:>7}{:>8}{:>9} |", name, "99 %", "worst");
   out += "\n";
   for (std::size_t i = 0; i < s.kinds.size(); ++i) {
     const KindStatistics& k = s.kinds[i];
     if (k.rays == 0) continue;
     out += fmt::format("{:<16}{:>11}{:>11}{:>9}{:>9} |", reference::kind_names[i], k.rays, k.hits, k.grazed, k.disagreements);
     for (const auto& q : k.quantities)
-      out += fmt::format(" {:>6.3f}{:>7.3f}{:>8.3f} |", q.in_bounds.percentile(0.5), q.in_bounds.percentile(0.99),
+      out += fmt::format(" {:>7.3f}{:>8.3f}{:>9.3f} |", q.in_bounds.percentile(0.5), q.in_bounds.percentile(0.99),
                          q.in_bounds.worst());
     out += "\n";
     out += fmt::format("{:>56} |", "ulps");
     for (const auto& q : k.quantities)
-      out += fmt::format(" {:>6.2g}{:>7.2g}{:>8.2g} |", q.in_ulps.percentile(0.5), q.in_ulps.percentile(0.99), q.in_ulps.worst());
+      out += fmt::format(" {:>7.2g}{:>8.2g}{:>9.2g} |", q.in_ulps.percentile(0.5), q.in_ulps.percentile(0.99), q.in_ulps.worst());
     out += "\n";
   }
   return out;
