@@ -77,7 +77,7 @@ bool is_grazing(const LocalRay& local) {
                              HUGE_VAL};
     if (is_grazing({&operand.primitive, ray, local.bound * operand.stretch})) return true;
   }
-  return has_thin_wall(*csg, local);
+  return has_thin_wall(*csg, local) || reference::comes_within(*local.primitive, local.ray, local.bound);
 }
 
 /// How far the ray goes from the surface between two parameters of the same crossing, in bounds.
@@ -187,8 +187,9 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::point, std::abs(reference::value(primitive, x)) / glm::length(turned), error, ulp_of(largest));
 
   const dvec3 own = to_dvec3(pick.normal), unit = turned / glm::length(turned);
-  // The device's arithmetic: a unit vector by a square root and quotients (16 eps), through a matrix and back to unit length.
-  double allowed = bounds_.tilt(hit.index) + (16 + 8 * bounds_.condition(hit.index)) * eps;
+  // The device's arithmetic: a unit vector by a square root and quotients (16 eps), the sine and cosine of a cone (16), through a
+  // matrix and back to unit length.
+  double allowed = bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
   if (!(off <= 0.25 * allowed)) {
     // The surface is curved, or has an edge there: as much as its normal changes within the point's error.
