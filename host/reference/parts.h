@@ -15,6 +15,7 @@ double value_of(const Spool& spool, const glm::dvec3& x);
 double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if all ends were closed
 SurfaceAt surface_of(const Spool& spool, const glm::dvec3& x);
 double distance_from(const Spool& spool, const glm::dvec3& x, int surface);
+glm::dvec3 normal_of(const Spool& spool, const glm::dvec3& x, int surface);
 std::vector<Curve> boundary_of(const Spool& spool);
 // Where the side of normal n (one of side_normals) touches an end: along and across the axis.
 glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
@@ -27,6 +28,8 @@ SurfaceAt surface_of(const Box& box, const glm::dvec3& x);
 SurfaceAt surface_of(const Polyhedron& polyhedron, const glm::dvec3& x);
 double distance_from(const Box& box, const glm::dvec3& x, int surface);
 double distance_from(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
+glm::dvec3 normal_of(const Box& box, int surface);
+glm::dvec3 normal_of(const Polyhedron& polyhedron, int surface);
 
 // open.cpp
 double value_of(const PartialSphere& sphere, const glm::dvec3& x);

@@ -69,6 +69,13 @@ double distance_from(const Polyhedron& p, const dvec3& x, int surface) {
   return std::abs(glm::dot(p.normals[i], x - p.center) - p.offsets[i]);
 }
 
+dvec3 normal_of(const Box&, int surface) {
+  dvec3 out{0};
+  out[surface / 2] = surface % 2 == 0 ? -1 : 1;
+  return out;
+}
+dvec3 normal_of(const Polyhedron& p, int surface) { return p.normals[static_cast<std::size_t>(surface)]; }
+
 Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, std::span<const double> offsets) {
   Polyhedron out;
   out.center = center;

@@ -152,6 +152,15 @@ dvec3 normal_at(const Primitive& primitive, const dvec3& x, double step) {
   return glm::normalize(gradient);
 }
 
+dvec3 normal_of_surface(const Primitive& primitive, const dvec3& x, int surface, double step) {
+  if (surface >= 0 && surface < surface_count(primitive)) {
+    if (const auto* spool = std::get_if<Spool>(&primitive)) return normal_of(*spool, x, surface);
+    if (const auto* box = std::get_if<Box>(&primitive)) return normal_of(*box, surface);
+    if (const auto* polyhedron = std::get_if<Polyhedron>(&primitive)) return normal_of(*polyhedron, surface);
+  }
+  return normal_at(primitive, x, step);
+}
+
 Primitive carrier_of(const Primitive& primitive) {
   if (const auto* spool = std::get_if<Spool>(&primitive)) {
     Spool closed = *spool;

@@ -167,6 +167,30 @@ double distance_from(const Spool& s, const dvec3& x, int surface) {
   return distance2(p, center, center + dvec2(0, s.ends[end].radius));
 }
 
+dvec3 normal_of(const Spool& s, const dvec3& x, int surface) {
+  if (surface > 0) {
+    const bool first = surface == 1;
+    if (!s.ends[first ? 0 : 1].round) return first ? -s.axis : s.axis;
+    const dvec3 w = x - (first ? s.p0 : s.p1);
+    const double size = glm::length(w);
+    return size > 0 ? w / size : first ? -s.axis : s.axis;
+  }
+  const Profile profile = profile_of(s, x);
+  const dvec3 outward = x - s.p0 - profile.along * s.axis;
+  const dvec3 across = profile.across > 0 ? outward / profile.across : any_perpendicular(s.axis);
+  dvec2 nearest{0, 1};
+  double least = HUGE_VAL;
+  for (int i = 0; i < s.side_count; ++i) {
+    const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
+    const double away = std::abs(glm::dot(n, dvec2(profile.along, profile.across) - side_contact(s, 0, n)));
+    if (away < least) {
+      least = away;
+      nearest = n;
+    }
+  }
+  return nearest.x * s.axis + nearest.y * across;
+}
+
 std::vector<Curve> boundary_of(const Spool& s) {
   std::vector<Curve> out;
   const dvec3 u = any_perpendicular(s.axis), v = glm::cross(s.axis, u);

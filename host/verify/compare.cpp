@@ -80,9 +80,12 @@ bool is_grazing(const LocalRay& local) {
   return has_thin_wall(*csg, local) || reference::comes_within(*local.primitive, local.ray, local.bound);
 }
 
-/// How far the ray goes from the surface between two parameters of the same crossing, in bounds.
+/// How far the ray goes from the surface between two parameters of the same crossing, in bounds. It may well pass the hole or the
+/// gap of a partial disk there; from the disk's plane it is furthest at an end.
 double apart(const LocalRay& local, double t, double other) {
-  return std::max(std::abs(local.value(t)), std::abs(local.value(0.5 * (t + other)))) / local.bound;
+  const double at_end = std::abs(local.value(t));
+  if (std::holds_alternative<reference::PartialDisk>(*local.primitive)) return at_end / local.bound;
+  return std::max(at_end, std::abs(local.value(0.5 * (t + other)))) / local.bound;
 }
 
 /// The least and greatest of `f` at x and the corners of an octahedron that holds the ball of radius `reach` around it.
@@ -105,16 +108,16 @@ struct Solid {
   const reference::Primitive* primitive;
   glm::dmat4 object_from_world;
   double stretch;  // from the primitive's space to the solid's
+  int surface;     // of the solid
 };
 Solid solid_of(const reference::SceneWitness::PlacedPrimitive& placed, std::uint32_t surface) {
-  Solid out{&placed.primitive, placed.object_from_world, 1};
-  int number = static_cast<int>(surface);
+  Solid out{&placed.primitive, placed.object_from_world, 1, static_cast<int>(surface)};
   while (const auto* csg = std::get_if<reference::Csg>(out.primitive)) {
     const auto& operands = csg->body->operands;
-    const auto after = std::ranges::find_if(operands, [&](const auto& operand) { return operand.surface_begin > number; });
+    const auto after = std::ranges::find_if(operands, [&](const auto& operand) { return operand.surface_begin > out.surface; });
     const reference::CsgOperand& operand = *std::prev(after);
-    number -= operand.surface_begin;
-    out = {&operand.primitive, operand.operand_from_csg * out.object_from_world, out.stretch * operand.stretch};
+    out = {&operand.primitive, operand.operand_from_csg * out.object_from_world, out.stretch * operand.stretch,
+           out.surface - operand.surface_begin};
   }
   return out;
 }
@@ -178,22 +181,24 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   // Within this of x lies a point of the surface, and the normal is that of any point as close.
   const double error = static_cast<double>(pick.error) + bounds_.rounding(hit.index);
   const double reach = error * bounds_.stretch(hit.index) * solid.stretch;
-  const auto normal_there = [&](const dvec3& there) { return reference::normal_at(primitive, there, reach); };
   const dmat3 normal_matrix = glm::transpose(dmat3(solid.object_from_world));
   const glm::dmat4 world_from_object = glm::inverse(solid.object_from_world);
-  const dvec3 normal = normal_there(x), turned = normal_matrix * normal;
+  const auto world_normal = [&](const dvec3& there) {
+    return glm::normalize(normal_matrix * reference::normal_of_surface(primitive, there, solid.surface, reach));
+  };
   // The gradient of the value in the world is the transposed matrix's image of its gradient here.
   const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
-  set(Quantity::point, std::abs(reference::value(primitive, x)) / glm::length(turned), error, ulp_of(largest));
+  set(Quantity::point,
+      std::abs(reference::value(primitive, x)) / glm::length(normal_matrix * reference::normal_at(primitive, x, reach)), error,
+      ulp_of(largest));
 
-  const dvec3 own = to_dvec3(pick.normal), unit = turned / glm::length(turned);
+  const dvec3 own = to_dvec3(pick.normal), unit = world_normal(x);
   // The device's arithmetic: a unit vector by a square root and quotients (16 eps), the sine and cosine of a cone (16), through a
   // matrix and back to unit length.
   double allowed = bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
   if (!(off <= 0.25 * allowed)) {
-    // The surface is curved, or has an edge there: as much as its normal changes within the point's error.
-    const auto world_normal = [&](const dvec3& there) { return glm::normalize(normal_matrix * normal_there(there)); };
+    // The surface is curved: as much as its normal changes within the point's error.
     const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
     allowed += glm::length(high - low);
   }

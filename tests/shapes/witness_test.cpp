@@ -4,11 +4,13 @@
 // The witness on cases whose answer is known without it.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
+#include <set>
 #include <tuple>
 
 #include "reference/scene_witness.h"
@@ -244,6 +246,40 @@ TEST(Witness, BilinearPatches) {
   expect_surfaces(flat, {{1.25, 0.5, -1}, {0, 0, 1}}, {{1, 0, true}});
   expect_surfaces(flat, {{0.25, 0.5, -1}, {0, 0, 1}}, {});
   expect_surfaces(flat, {{-4, 0.5, 0}, {1, 0, 0}}, {});
+}
+
+// Away from edges the gradient says the same; beside one it is that of the surface asked for, however close the other is.
+TEST(Witness, NormalsOfSurfaces) {
+  const Spool cone = make_spool({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
+  const Spool bullet = make_spool({1, 0, 0}, {5, 0, 0}, {1, false, false}, {2, true, false});
+  const Box box{{-1, -2, -3}, {1, 2, 3}};
+  const std::array normals = {dvec3(0, 0, 2), dvec3(3, 0, -1), dvec3(-1, 2, -1), dvec3(-1, -2, -1)};
+  const std::array offsets = {1.0, 1.0, 1.0, 1.0};
+  const Polyhedron wedge = make_polyhedron({1, 1, 1}, normals, offsets);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  for (const Primitive& primitive : {Primitive(cone), Primitive(bullet), Primitive(box), Primitive(wedge)}) {
+    const Ball ball = bounding_ball(primitive);
+    std::set<int> seen;
+    for (int i = 0; i < 2000; ++i) {
+      const auto point = [&] {
+        return ball.center + ball.radius * dvec3(coordinate(random), coordinate(random), coordinate(random));
+      };
+      const dvec3 a = point(), b = point();
+      for (const Crossing& hit : crossings(primitive, {a, b - a})) {
+        const dvec3 x = a + hit.t * (b - a);
+        if (surface_at(primitive, x).margin < 1e-4) continue;
+        seen.insert(hit.surface);
+        EXPECT_LT(glm::length(normal_of_surface(primitive, x, hit.surface, 1e-6) - normal_at(primitive, x, 1e-6)), 1e-6);
+      }
+    }
+    EXPECT_EQ(seen.size(), static_cast<std::size_t>(surface_count(primitive)));
+  }
+  const dvec3 rim{2, 0, 1e-9}, side = glm::normalize(dvec3(3, 0, 1));
+  EXPECT_LT(glm::length(normal_of_surface(cone, rim, 0, 1e-3) - side), 1e-12);
+  EXPECT_LT(glm::length(normal_of_surface(cone, rim, 1, 1e-3) - dvec3(0, 0, -1)), 1e-12);
+  EXPECT_LT(glm::length(normal_of_surface(box, {1, 2, 3}, 3, 1e-3) - dvec3(0, 1, 0)), 1e-12);
+  EXPECT_LT(glm::length(normal_of_surface(Sphere{{1, 0, 0}, 2}, {3, 0, 0}, 0, 1e-3) - dvec3(1, 0, 0)), 1e-9);
 }
 
 TEST(Witness, CsgByMembership) {

@@ -348,6 +348,17 @@ TEST_F(Faults, AnotherNormalIsNoticed) {
                 .share(),
             0.9);
 }
+// Beside edges too: what counts is the surface that the device names.
+TEST_F(Faults, ATiltedNormalIsNoticed) {
+  const Noticed noticed = notice({Fault::normal}, [](Answer& a) {
+    const glm::vec3 n(a.list[0].normal[0], a.list[0].normal[1], a.list[0].normal[2]);
+    const glm::vec3 other = std::abs(n.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    const glm::vec3 tilted = glm::normalize(n + 0.01f * glm::normalize(glm::cross(n, other)));
+    for (int i = 0; i < 3; ++i) a.list[0].normal[i] = tilted[i];
+    return true;
+  });
+  EXPECT_GT(noticed.share(), 0.9);
+}
 TEST_F(Faults, AnotherUvIsNoticed) {
   EXPECT_GT(notice({Fault::uv},
                    [](Answer& a) {
@@ -356,6 +367,32 @@ TEST_F(Faults, AnotherUvIsNoticed) {
                    })
                 .share(),
             0.9);
+}
+
+// Rays so close to the plane of a ring that either side of it is right: between them they pass its hole.
+TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.shapes.emplace_back().geometry = DiskShape{0, 1, 0.9};
+  SceneCheck check(scene, devices());
+  const Comparison comparison(scene, check.witness());
+  const auto crosses_at = [](float x) {
+    return RayRecord{.ox = -3, .oy = 0, .oz = 1e-6f * (3 + x), .t_min = 0, .dx = 6, .dy = 0, .dz = -6e-6f, .t_max = HUGE_VALF};
+  };
+  int compared = 0;
+  check.check(std::vector{crosses_at(0.95f)}, [&](const SceneCheck::Checked& ray) {
+    ASSERT_EQ(ray.found[0].list.size(), 1u);
+    EXPECT_GT(ray.found[0].list[0].point[0], 0.9f);
+    const Expected other = comparison.expected(crosses_at(-0.95f));
+    ASSERT_EQ(other.hits.size(), 1u);
+    const Outcome outcome = comparison.compare(other, ray.found[0]);
+    EXPECT_TRUE(outcome.disagreements.empty()) << outcome.disagreements.front().text;
+    ASSERT_EQ(outcome.matches.size(), 1u);
+    const double off = outcome.matches[0].deviations[static_cast<std::size_t>(Quantity::t)].in_bounds;
+    EXPECT_NEAR(off, 1.9e-6 / comparison.bounds().local(0, other.ray).bound, 1e-3);
+    ++compared;
+  });
+  EXPECT_EQ(compared, 1);
 }
 
 TEST(Cases, KeepTheBitsOfTheirRays) {
