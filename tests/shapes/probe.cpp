@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "shared/kinds.h"
+#include "support/scene_buffers.h"
 
 namespace caplet::test {
 
@@ -100,11 +101,6 @@ std::vector<PlacedPrimitive> unplaced(const std::vector<FlatPrimitive>& primitiv
   std::vector<PlacedPrimitive> out;
   for (const FlatPrimitive& p : primitives) out.push_back({p, false, {}, {}});
   return out;
-}
-
-template <class T>
-Buffer<T> upload(const Device& device, const std::vector<T>& values) {
-  return Buffer<T>(device, std::span<const T>(values));
 }
 
 // Made once: PoCL takes a second.

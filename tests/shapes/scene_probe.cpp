@@ -5,6 +5,7 @@
 #include <map>
 
 #include "device/flatten.h"
+#include "support/scene_buffers.h"
 
 namespace caplet::test {
 
@@ -27,23 +28,10 @@ typedef struct {
   uint instance;
 } SceneHit;
 
-__kernel void scene_trace(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
-                          __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
-                          __global const uint* surface_materials, __global const uint* mesh_indices,
-                          __global const float* mesh_normals, __global const float* mesh_uvs, __global const RayRecord* rays,
-                          __global SceneHit* hits, uint root, uint count) {
+__kernel void scene_trace(SCENE_PARAMETERS, __global const RayRecord* rays, __global SceneHit* hits, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  Globals g;
-  g.nodes = nodes;
-  g.leaves = leaves;
-  g.instances = instances;
-  g.geometries = geometries;
-  g.primitive_geometry = primitive_geometry;
-  g.surface_materials = surface_materials;
-  g.mesh_indices = mesh_indices;
-  g.mesh_normals = mesh_normals;
-  g.mesh_uvs = mesh_uvs;
+  SCENE_GLOBALS(g);
   const RayRecord ray = rays[i];
   const HitRecord hit = trace_closest(nodes, leaves, instances, root, ray);
   __global SceneHit* out = hits + i;
@@ -65,23 +53,11 @@ __kernel void scene_trace(__global const float* nodes, __global const float* lea
   out->instance = hit.instance;
 }
 
-__kernel void scene_walk(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
-                         __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
-                         __global const uint* surface_materials, __global const uint* mesh_indices,
-                         __global const float* mesh_normals, __global const float* mesh_uvs, __global const RayRecord* rays,
-                         __global float4* steps, __global uint* counts, uint most, uint root, uint count) {
+__kernel void scene_walk(SCENE_PARAMETERS, __global const RayRecord* rays, __global float4* steps, __global uint* counts, uint most,
+                         uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  Globals g;
-  g.nodes = nodes;
-  g.leaves = leaves;
-  g.instances = instances;
-  g.geometries = geometries;
-  g.primitive_geometry = primitive_geometry;
-  g.surface_materials = surface_materials;
-  g.mesh_indices = mesh_indices;
-  g.mesh_normals = mesh_normals;
-  g.mesh_uvs = mesh_uvs;
+  SCENE_GLOBALS(g);
   RayRecord ray = rays[i];
   uint n = 0;
   for (; n < most; n++) {
@@ -101,11 +77,6 @@ __kernel void scene_walk(__global const float* nodes, __global const float* leav
 const Device& device() {
   static const Device chosen = Device::choose("");
   return chosen;
-}
-
-template <class T>
-Buffer<T> upload(const std::vector<T>& values) {
-  return Buffer<T>(device(), std::span<const T>(values));
 }
 
 }  // namespace
@@ -131,21 +102,12 @@ cl::Kernel kernel_of(const char* name, int width) {
   auto found = programs.find(width);
   if (found == programs.end()) {
     const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
-    found = programs.emplace(width, Program::from_source(device(), "scene probe", flatten_kernels(kernel_text), options)).first;
+    found = programs
+                .emplace(width, Program::from_source(device(), "scene probe",
+                                                     flatten_kernels(std::string(scene_parameters) + kernel_text), options))
+                .first;
   }
   return found->second.kernel(name);
-}
-
-// The scene and the rays on the device; calls take(buffers...).
-void with_scene(const FlatScene& scene, const std::vector<RayRecord>& rays, const auto& take) {
-  const auto nodes = upload(scene.nodes), leaves = upload(scene.leaves), normals = upload(scene.mesh_normals),
-             uvs = upload(scene.mesh_uvs);
-  const auto instances = upload(scene.instances);
-  const auto geometries = upload(scene.geometries);
-  const auto primitive_geometry = upload(scene.primitive_geometry), materials = upload(scene.surface_materials),
-             indices = upload(scene.mesh_indices);
-  const auto ray_buffer = upload(rays);
-  take(nodes, leaves, instances, geometries, primitive_geometry, materials, indices, normals, uvs, ray_buffer);
 }
 
 }  // namespace
@@ -153,10 +115,10 @@ void with_scene(const FlatScene& scene, const std::vector<RayRecord>& rays, cons
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
   cl::Kernel kernel = kernel_of("scene_trace", width);
   const Buffer<SceneHit> hits(device(), rays.size());
-  with_scene(scene, rays, [&](const auto&... buffers) {
-    set_arguments(device(), kernel, buffers..., hits, static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
-    launch(device(), kernel, rays.size(), 16);
-  });
+  const SceneBuffers buffers(device(), scene);
+  const auto ray_buffer = upload(device(), rays);
+  buffers.set_arguments(kernel, ray_buffer, hits, static_cast<cl_uint>(rays.size()));
+  launch(device(), kernel, rays.size(), 16);
   return hits.read();
 }
 
@@ -164,11 +126,10 @@ std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& ray
   cl::Kernel kernel = kernel_of("scene_walk", 8);
   const Buffer<WalkStep> steps(device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(device(), rays.size());
-  with_scene(scene, rays, [&](const auto&... buffers) {
-    set_arguments(device(), kernel, buffers..., steps, counts, static_cast<cl_uint>(most),
-                  static_cast<cl_uint>(scene.params.root), static_cast<cl_uint>(rays.size()));
-    launch(device(), kernel, rays.size(), 16);
-  });
+  const SceneBuffers buffers(device(), scene);
+  const auto ray_buffer = upload(device(), rays);
+  buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most), static_cast<cl_uint>(rays.size()));
+  launch(device(), kernel, rays.size(), 16);
   const std::vector<WalkStep> all = steps.read();
   const std::vector<std::uint32_t> found = counts.read();
   std::vector<Walk> out(rays.size());
