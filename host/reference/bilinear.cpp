@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear patches: the point nearest to x by a search over the rulings of either family, each a segment.
+// Bilinear patches: the point nearest to x by the rulings of either family, each a segment.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <utility>
+#include <vector>
 
 #include "parts.h"
 
@@ -29,56 +30,65 @@ Nearest nearest_on_ruling(const Bilinear& b, double u, const dvec3& x) {
   return {glm::length(x - (a + v * ruling)), {u, v}};
 }
 
-/// The least of what rulings between two u have, by golden sections, where it is the only minimum.
-Nearest least_between(const Bilinear& b, double low, double high, const dvec3& x) {
-  constexpr double golden = 0.6180339887498949;
-  double left = high - golden * (high - low), right = low + golden * (high - low);
-  double at_left = nearest_on_ruling(b, left, x).distance, at_right = nearest_on_ruling(b, right, x).distance;
-  while (high - low > 1e-16 && low < left && left < right && right < high) {
-    if (at_left <= at_right) {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = high - golden * (high - low);
-      at_left = nearest_on_ruling(b, left, x).distance;
-    } else {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = low + golden * (high - low);
-      at_right = nearest_on_ruling(b, right, x).distance;
-    }
+/// A polynomial of degree N, the constant first.
+template <int N>
+using Polynomial = std::array<double, N + 1>;
+
+template <int N>
+double at(const Polynomial<N>& p, double x) {
+  double out = p[N];
+  for (int i = N - 1; i >= 0; --i) out = out * x + p[static_cast<std::size_t>(i)];
+  return out;
+}
+
+/// Where p changes sign within [0, 1], and where its derivatives do: between those p is monotone.
+template <int N>
+void add_roots(const Polynomial<N>& p, std::vector<double>& out) {
+  if constexpr (N > 1) {
+    Polynomial<N - 1> derivative;
+    for (int i = 0; i < N; ++i) derivative[static_cast<std::size_t>(i)] = (i + 1) * p[static_cast<std::size_t>(i) + 1];
+    add_roots<N - 1>(derivative, out);
   }
+  std::ranges::sort(out);
+  const std::size_t stations = out.size();
+  for (std::size_t i = 0; i <= stations; ++i) {
+    double low = i == 0 ? 0 : out[i - 1], high = i == stations ? 1 : out[i];
+    const bool positive = at<N>(p, low) > 0;
+    if (positive == (at<N>(p, high) > 0)) continue;
+    for (;;) {
+      const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) break;
+      ((at<N>(p, middle) > 0) == positive ? low : high) = middle;
+    }
+    out.push_back(0.5 * (low + high));
+  }
+}
+
+/// The nearest of those points that are nearest on the line of their ruling, and of the edges that are rulings. The squared
+/// distance from x to the line of a ruling is |(a - x) x r|^2 / |r|^2 with a and r linear in u, a quartic over a quadratic: its
+/// extremes are the roots of a quintic.
+Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
+  const dvec3 a0 = b.p00 - x, a1 = b.p10 - b.p00, r0 = b.p01 - b.p00, r1 = (b.p11 - b.p10) - r0;
+  const dvec3 c0 = glm::cross(a0, r0), c1 = glm::cross(a0, r1) + glm::cross(a1, r0), c2 = glm::cross(a1, r1);
+  const Polynomial<4> n = {glm::dot(c0, c0), 2 * glm::dot(c0, c1), glm::dot(c1, c1) + 2 * glm::dot(c0, c2), 2 * glm::dot(c1, c2),
+                           glm::dot(c2, c2)};
+  const Polynomial<2> d = {glm::dot(r0, r0), 2 * glm::dot(r0, r1), glm::dot(r1, r1)};
+  Polynomial<5> slope{};  // n' d - n d'
+  for (std::size_t i = 0; i <= 4; ++i)
+    for (std::size_t k = 0; k <= 2; ++k)
+      if (i + k > 0) slope[i + k - 1] += (static_cast<double>(i) - static_cast<double>(k)) * n[i] * d[k];
+  // Where rounding makes two roots one, a root of the derivative is as near.
+  std::vector<double> candidates;
+  add_roots<5>(slope, candidates);
+  candidates.push_back(0);
+  candidates.push_back(1);
   Nearest best;
-  for (const double u : {low, high, 0.5 * (low + high)})
+  for (const double u : candidates)
     if (const Nearest found = nearest_on_ruling(b, u, x); found.distance < best.distance) best = found;
   return best;
 }
 
-Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
-  // The squared distance to the ruling's line is a rational function of u of low degree: it has few minima. Where the ruling's
-  // ends clamp, two may lie close together: 256 samples, and the other family, part them. No ruling moves faster than its ends,
-  // so most of 16 coarse cells are seen to hold nothing less and are not sampled.
-  constexpr int coarse = 16, fine = 16;
-  const double speed = std::max(glm::length(b.p10 - b.p00), glm::length(b.p11 - b.p01));
-  double at[coarse + 1], least = HUGE_VAL;
-  for (int i = 0; i <= coarse; ++i) least = std::min(least, at[i] = nearest_on_ruling(b, double(i) / coarse, x).distance);
-  Nearest best;
-  for (int i = 0; i < coarse; ++i) {
-    if (0.5 * (at[i] + at[i + 1] - speed / coarse) > std::min(least, best.distance)) continue;
-    double within[fine + 1];
-    for (int k = 0; k <= fine; ++k) within[k] = nearest_on_ruling(b, (i + double(k) / fine) / coarse, x).distance;
-    for (int k = 0; k <= fine; ++k) {
-      if ((k > 0 && within[k - 1] < within[k]) || (k < fine && within[k + 1] < within[k])) continue;
-      if (within[k] - speed / (coarse * fine) > best.distance) continue;
-      const Nearest found =
-          least_between(b, std::max(0.0, (i + (k - 1.0) / fine) / coarse), std::min(1.0, (i + (k + 1.0) / fine) / coarse), x);
-      if (found.distance < best.distance) best = found;
-    }
-  }
-  return best;
-}
-
+/// Of the whole patch: the nearest point lies on an edge, which is a ruling of one family, or is nearest on both its rulings.
 Nearest nearest_of(const Bilinear& b, const dvec3& x) {
   const Nearest by_u = nearest_by_u(b, x);
   const Nearest by_v = nearest_by_u({b.p00, b.p01, b.p10, b.p11}, x);

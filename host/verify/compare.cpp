@@ -223,7 +223,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   return out;
 }
 
-void Comparison::compare_primitive(const Expected& expected, const Pair& pair, Outcome& out) const {
+void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const {
   const LocalRay local = bounds_.local(pair.primitive, expected.ray);
   const bool sheet = is_sheet(*local.primitive), turned = sheet && witness_.is_reversed(pair.primitive);
   const auto disagree = [&](Fault fault, const std::string& text) {
@@ -240,16 +240,23 @@ void Comparison::compare_primitive(const Expected& expected, const Pair& pair, O
     for (const SceneHit* hit : pair.expected) different += fmt::format(" {}", hit->t);
     if (pair.expected.empty()) different += " none";
   }
+  const auto is_leaving = [&](const SceneHit* hit) { return hit->leaving != turned; };
   for (std::size_t k = 0; different.empty() && k < pair.found.size(); ++k) {
+    const bool leaving = pair.found[k]->leaving != 0;
+    // Where a sheet is folded closer than the bound, either of its sides may come first.
+    if (sheet && is_leaving(pair.expected[k]) != leaving) {
+      const auto other = std::find_if(pair.expected.begin() + static_cast<std::ptrdiff_t>(k), pair.expected.end(),
+                                      [&](const SceneHit* hit) { return is_leaving(hit) == leaving; });
+      if (other != pair.expected.end() && apart(local, pair.found[k]->t, (*other)->t) <= 1) std::swap(pair.expected[k], *other);
+    }
     const double t = pair.found[k]->t, by_witness = pair.expected[k]->t, off = apart(local, t, by_witness);
     if (!(off <= 1)) {
       fault = Fault::t;
       different =
           fmt::format("the crossing at {}, at {} by the witness, is off by {:.3g} of what is allowed", t, by_witness, off);
-    } else if ((pair.found[k]->leaving != 0) != (pair.expected[k]->leaving != turned)) {
+    } else if (leaving != is_leaving(pair.expected[k])) {
       fault = Fault::side;
-      different = fmt::format("the crossing at {} is {}, the witness says otherwise", t,
-                              pair.found[k]->leaving != 0 ? "leaving" : "entering");
+      different = fmt::format("the crossing at {} is {}, the witness says otherwise", t, leaving ? "leaving" : "entering");
     }
   }
   const bool matched = different.empty();
@@ -353,7 +360,7 @@ Outcome Comparison::compare(const Expected& expected, const Found& found) const 
     else
       pair_of(primitive).found.push_back(&pick);
   }
-  for (const Pair& pair : pairs) compare_primitive(expected, pair, out);
+  for (Pair& pair : pairs) compare_primitive(expected, pair, out);
   std::ranges::sort(out.grazed);
   out.grazed.erase(std::unique(out.grazed.begin(), out.grazed.end()), out.grazed.end());
   return out;

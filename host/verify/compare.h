@@ -80,7 +80,7 @@ class Comparison {
   struct Pair;  // crossings of one primitive
   std::size_t primitive_of(const PickRecord& pick) const;
   std::string name_of(std::size_t primitive) const;
-  void compare_primitive(const Expected& expected, const Pair& pair, Outcome& out) const;
+  void compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const;
   void compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const;
   Match measure(const LocalRay& local, const reference::SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const;
 

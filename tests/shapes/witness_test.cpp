@@ -248,6 +248,30 @@ TEST(Witness, BilinearPatches) {
   expect_surfaces(flat, {{-4, 0.5, 0}, {1, 0, 0}}, {});
 }
 
+// However sharply a patch is folded: its own points are no distance from it, and no other of its points is nearer than that.
+TEST(Witness, DistanceFromFoldedPatches) {
+  // Where two extremes meet, rounding of the squared distance (2^-52) may hide them.
+  constexpr double hidden = 0x1p-26;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 3000; ++i) {
+    Bilinear patch{random_vector(random), random_vector(random), random_vector(random), random_vector(random)};
+    // Opposite corners, or neighbours, nearly the same.
+    const double fold = std::pow(10, -6 * share(random));
+    if (i % 3 == 0) patch.p11 = patch.p00 + fold * (patch.p11 - patch.p00);
+    if (i % 3 == 1) patch.p10 = patch.p00 + fold * (patch.p10 - patch.p00);
+    const auto at = [&](double u, double v) {
+      return (1 - u) * ((1 - v) * patch.p00 + v * patch.p01) + u * ((1 - v) * patch.p10 + v * patch.p11);
+    };
+    const double u = i % 2 == 0 ? share(random) : 0.5 + 0.01 * (share(random) - 0.5), v = i % 2 == 0 ? share(random) : u;
+    const dvec3 x = at(u, v), off = x + std::pow(10, -4 * share(random)) * random_vector(random);
+    EXPECT_LT(value(patch, x), hidden) << i;
+    const double distance = value(patch, off);
+    for (int k = 0; k < 200; ++k) ASSERT_LE(distance, glm::length(off - at(share(random), share(random))) + hidden) << i;
+    ASSERT_LE(distance, glm::length(off - x) + hidden) << i;
+  }
+}
+
 // Away from edges the gradient says the same; beside one it is that of the surface asked for, however close the other is.
 TEST(Witness, NormalsOfSurfaces) {
   const Spool cone = make_spool({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});

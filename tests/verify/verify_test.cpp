@@ -395,6 +395,44 @@ TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
   EXPECT_EQ(compared, 1);
 }
 
+// A patch folded so that its two sides are closer than the bound: which of them the ray meets first is for rounding to say.
+TEST(Comparison, SidesOfAFoldMayComeInEitherOrder) {
+  Scene scene;
+  scene.materials.emplace_back();
+  BilinearMeshShape fold;
+  fold.positions = {{-0.816438556f, -0.479016423f, 0.322445929f},
+                    {0.14514336f, 0.508792877f, 0.8485654f},
+                    {0.0148992138f, 0.509117723f, 0.860567927f},
+                    {0.0253444444f, -0.99760592f, -0.064343393f}};
+  fold.patches = {{0, 1, 2, 3}};
+  scene.shapes.emplace_back().geometry = fold;
+  SceneCheck check(scene, devices());
+  const Comparison comparison(scene, check.witness());
+  const RayRecord ray = {.ox = 6869.22589f,
+                         .oy = -686.688535f,
+                         .oz = 10665.8857f,
+                         .t_min = 0,
+                         .dx = -3729.18791f,
+                         .dy = 372.804917f,
+                         .dz = -5789.91404f,
+                         .t_max = HUGE_VALF};
+  int compared = 0;
+  check.check(std::vector{ray}, [&](const SceneCheck::Checked& answer) {
+    std::vector<PickRecord> list(answer.found[0].list.begin(), answer.found[0].list.end());
+    ASSERT_EQ(list.size(), 2u);
+    ASSERT_NE(list[0].leaving, list[1].leaving);
+    for (int order = 0; order < 2; ++order) {
+      const Outcome outcome = comparison.compare(answer.expected, {answer.found[0].nearest, list});
+      EXPECT_TRUE(outcome.disagreements.empty()) << outcome.disagreements.front().text;
+      EXPECT_EQ(outcome.matches.size(), 2u);
+      ++compared;
+      std::swap(list[0], list[1]);
+      std::swap(list[0].t, list[1].t);
+    }
+  });
+  EXPECT_EQ(compared, 2);
+}
+
 TEST(Cases, KeepTheBitsOfTheirRays) {
   const auto folder = test::temporary_folder() / "cases";
   Failure failure;
