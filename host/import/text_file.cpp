@@ -11,7 +11,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace caplet {
 
@@ -66,7 +65,10 @@ NumberError parse_float(std::string_view token, float& value) {
   const char* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (stop != end || error == std::errc::invalid_argument) return NumberError::not_a_number;
-  if (error == std::errc()) return std::isfinite(value) ? NumberError::none : NumberError::not_finite;
+  if (error == std::errc()) {
+    if (!std::isfinite(value)) return NumberError::not_finite;
+    return std::abs(value) <= largest_number ? NumberError::none : NumberError::out_of_range;
+  }
   // from_chars reports too large and too small alike; a double tells them apart.
   double wide = 0;
   if (std::from_chars(begin, end, wide).ec == std::errc()) {
@@ -95,7 +97,7 @@ std::string describe(NumberError error, std::string_view token) {
     case NumberError::not_finite:
       return fmt::format("{} is not finite", quoted(token));
     case NumberError::out_of_range:
-      return fmt::format("{} is out of range (largest: {:.3g})", quoted(token), std::numeric_limits<float>::max());
+      return fmt::format("{} is out of range (largest: {:.3g})", quoted(token), largest_number);
     default:
       return fmt::format("{} is not a number", quoted(token));
   }

@@ -33,7 +33,12 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c ==
 /// Why a number was refused; empty: it was not.
 enum class NumberError { none, not_a_number, not_finite, out_of_range };
 
-/// The float nearest to the whole of `token` (decimal notation, a leading '+' allowed); what is too small becomes 0.
+/// The greatest number in a file that brings no camera: with every point and radius within it, the camera that sees all of them
+/// stands within largest_length (scene.h) of the origin.
+inline constexpr float largest_number = 1e16F;
+
+/// The float nearest to the whole of `token` (decimal notation, a leading '+' allowed); what is too small becomes 0, and beyond
+/// largest_number is out of range.
 NumberError parse_float(std::string_view token, float& value);
 
 /// `token` in quotes for a message: shortened, unprintable bytes as \xNN.

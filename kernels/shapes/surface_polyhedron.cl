@@ -7,11 +7,15 @@
 
 #include "shapes/surface_local.cl"
 
-// The point of face `face` nearest to v (relative to the centre). In the face's plane each other plane is a half-plane, and they
-// are added one by one: where the nearest point so far is beyond one, the new nearest point is on that one's line, within the
-// earlier ones (Seidel 1991). A hit is beyond an edge by its rounding alone, so this is done once or twice at most.
-static inline float3 polyhedron_face_point(__global const float* planes, uint count, uint face, float3 v) {
+// The point of face `face` nearest to v (relative to the centre; all corners are within `radius` of it). In the face's plane each
+// other plane is a half-plane, and they are added one by one: where the nearest point so far is beyond one, the new nearest point
+// is on that one's line, within the earlier ones (Seidel 1991). A hit is beyond an edge by its rounding alone, so this is done
+// once or twice at most. Of a ray from so far that its rounding is larger than the solid any point will do: one nearby keeps feet
+// of perpendiculars exact, and where planes parallel but for rounding bound a line nowhere, it ends.
+static inline float3 polyhedron_face_point(__global const float* planes, uint count, float radius, uint face, float3 v) {
   const float4 own = vload4(face, planes);
+  const float away = max3(fabs(v));
+  if (away > 2.0f * radius) v *= 2.0f * radius / away;
   v -= (dot(own.xyz, v) - own.w) * own.xyz;
   v -= (dot(own.xyz, v) - own.w) * own.xyz;
   const float3 start = v;
@@ -23,7 +27,7 @@ static inline float3 polyhedron_face_point(__global const float* planes, uint co
     if (!(squared > 0x1p-40f)) continue;  // the same plane to rounding
     const float3 foot = start - ((dot(other.xyz, start) - other.w) / squared) * slope;
     const float3 line = cross(own.xyz, slope);
-    float low = -INFINITY, high = INFINITY;
+    float high = 8.0f * radius / sqrt(squared), low = -high;
     for (uint k = 0; k < j; k++) {
       const float4 earlier = vload4(k, planes);
       const float along = dot(earlier.xyz, line), bound = (earlier.w - dot(earlier.xyz, foot)) / along;
@@ -41,7 +45,7 @@ static inline LocalSurface surface_polyhedron(const SurfaceQuery* q) {
   __global const float* planes = head + 8;
   const float3 center = load3(head), normal = load3(planes + 4u * q->surface);
   const uint count = as_uint(head[3]);
-  const float3 v = polyhedron_face_point(planes, count, q->surface, q->x - center);
+  const float3 v = polyhedron_face_point(planes, count, head[4], q->surface, q->x - center);
   const float8 along = vload8(q->surface, planes + (4u * count + 7u) / 8u * 8u);
   // In the plane, u is constant along cross(U, n) and v along cross(V, n).
   const float3 n = unit_or(normal, q->fallback), across_u = cross(along.s012, n), across_v = cross(along.s456, n);

@@ -145,6 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"word", "<0,a,0> <0,0,1> 1\n", ":1:4: ", "'a' is not a number"},
                     Bad{"no_radius", "<0,0,0> <0,0,1>\n", ":1:16: ", "a number is missing"},
                     Bad{"word_for_radius", "<0,0,0> <0,0,1> steel\n", ":1:17: ", "'steel' is not a number"},
+                    Bad{"huge_radius", "<0,0,0> <0,0,1> +1e21\n", ":1:17: ", "'+1e21' is out of range (largest: 1e+16)"},
                     Bad{"zero_radius", "<0,0,0> <0,0,1> 0\n", ":1:17: ", "must be positive"},
                     Bad{"negative_radius", "<0,0,0> <0,0,1> -1\n", ":1:17: ", "must be positive"},
                     Bad{"zero_second_radius", "<0,0,0> <0,0,1> 1 0\n", ":1:19: ", "must be positive"},
@@ -182,6 +183,16 @@ TEST(CapsulesScene, HasAMaterialForEachName) {
   EXPECT_EQ(scene.materials[2].name, "default");
   EXPECT_EQ(test::capsules_of(scene).materials, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(scene.lights.size(), 1U);
+}
+
+// The largest numbers that are read leave room for the camera.
+TEST(CapsulesScene, OfTheLargestNumbersIsSound) {
+  const Scene scene = import_capsules_file(
+      test::write_file("far.capsules", "<1e16,1e16,1e16> <1e16,1e16,9e15> 1e16\n<-1e16,-1e16,-1e16> <1e16,-1e16,1e16> 1e16\n"),
+      test::NoImages());
+  Diagnostics diagnostics;
+  validate(scene, diagnostics);
+  EXPECT_FALSE(diagnostics.has_errors());
 }
 
 TEST(CapsulesScene, HasOneMaterialWithoutNames) {

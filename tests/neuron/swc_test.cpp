@@ -292,6 +292,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"nan", "1 1 0 0 nan 1 -1\n", ":1:9: ", "not finite"},
                     Bad{"infinity", "1 1 -inf 0 0 1 -1\n", ":1:5: ", "not finite"},
                     Bad{"too_large", "1 1 1e39 0 0 1 -1\n", ":1:5: ", "out of range"},
+                    Bad{"beyond_the_camera", "1 1 0 0 0 1 -1\n2 3 0 2e16 0 1 1\n",
+                        ":2:7: ", "'2e16' is out of range (largest: 1e+16)"},
                     Bad{"far_too_large", "1 1 1e999 0 0 1 -1\n", ":1:5: ", "out of range"},
                     Bad{"fractional_id", "1.5 1 0 0 0 1 -1\n", ":1:1: ", "id: '1.5' is not a whole number"},
                     Bad{"huge_id", "99999999999999999999 1 0 0 0 1 -1\n", ":1:1: ", "not a whole number"},

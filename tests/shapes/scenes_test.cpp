@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <glm/geometric.hpp>
@@ -17,6 +18,7 @@
 
 #include "list_tracer.h"
 #include "random_scene.h"
+#include "scene_probe.h"
 #include "shared/kinds.h"
 #include "verify/verify.h"
 
@@ -222,6 +224,58 @@ TEST(Scenes, StretchedNeighboursAreInOrder) {
       EXPECT_NEAR(double(next.closest.t) * speed, expected[i + 1] - start, 1e-5 * (expected[i + 1] + 1));
       EXPECT_EQ(next.hits.size(), expected.size() - i - 1);
     }
+  }
+}
+
+// A ray from so far that its rounding is larger than the solid, and planes that bound it nowhere: a face's point was led along a
+// line to where those planes meet, 1e37 away.
+TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
+  const glm::vec3 center(9.0625f, 8.4375f, 8.91458321f);
+  const std::array planes = {glm::vec4(-1, 0, 0, 2.6875),
+                             glm::vec4(1, 0, 0, 2.6875),
+                             glm::vec4(0, -1, 0, 1.5625),
+                             glm::vec4(0, 1, 0, 1.5625),
+                             glm::vec4(0, 0, -1, 5.91458321),
+                             glm::vec4(0, 0, 1, 134217712),
+                             glm::vec4(-0.881479979, 3.45548094e-37, 0.472221404, 0.424015522),
+                             glm::vec4(-1.03915141e-07, 1.22253113e-07, 1, 31952148),
+                             glm::vec4(0.473405421, 0.0541034788, -0.879181504, 34.7567635)};
+  PolyhedronShape shape;
+  for (const glm::dvec4 plane : planes) {
+    const glm::dvec3 n(plane);
+    shape.normals.push_back(n);
+    shape.points.push_back(glm::dvec3(center) + plane.w / glm::dot(n, n) * n);
+  }
+  FlatScene scene = lower_shapes({shape_of(shape)});
+  // To the bit.
+  const std::size_t head = std::bit_cast<std::uint32_t>(scene.leaves.at(scene.leaves.size() - 16));
+  ASSERT_EQ(std::bit_cast<std::uint32_t>(scene.leaves.at(head + 3)), planes.size());
+  for (int i = 0; i < 3; ++i) scene.leaves[head + static_cast<std::size_t>(i)] = center[i];
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    for (int k = 0; k < 4; ++k) scene.leaves[head + 8 + 4 * i + static_cast<std::size_t>(k)] = planes[i][k];
+
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  std::vector<RayRecord> rays;
+  for (int i = 0; i < 20'000; ++i) {
+    const double far = std::pow(10.0, 13 + 4 * std::abs(coordinate(random)));
+    rays.push_back(list_ray(dvec3(far), dvec3(-far)));
+    rays.push_back(list_ray(far * dvec3(coordinate(random), coordinate(random), coordinate(random)), dvec3(0)));
+    rays.back().dx = -rays.back().ox;
+    rays.back().dy = -rays.back().oy;
+    rays.back().dz = -rays.back().oz;
+  }
+  for (const int width : {8, 1}) {
+    int crossings = 0;
+    for (const RayList& list : tracer(width).trace(scene, rays, 8))
+      for (const CrossingSurface& surface : list.surfaces) {
+        ++crossings;
+        // All corners are within 7 of the centre. A face's point is sought from within twice that in every coordinate, and within
+        // 8 times along a line.
+        EXPECT_LT(glm::length(vec(surface.p) - dvec3(center)), 7 * (2 * std::sqrt(3.0) + 8));
+        EXPECT_TRUE(std::isfinite(surface.error));
+      }
+    EXPECT_GT(crossings, 10'000);
   }
 }
 
