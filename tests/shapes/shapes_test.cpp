@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "cases.h"
+#include "judge.h"
 #include "lower/flat_shapes.h"
 #include "shared/kinds.h"
 
@@ -334,7 +335,8 @@ void expect_same_but_named(const CaseSet& a, CaseSet b, const auto& renamed) {
       ++odd;
       const bool may_be = std::abs(reference::value(a.witness(i), exact.origin)) <= bound ||
                           reference::referee(a.witness(i), exact, bound) == reference::Verdict::tangent;
-      if (!may_be && ++wrong <= 5) ADD_FAILURE() << "ray " << i;
+      if (!may_be && ++wrong <= 5)
+        ADD_FAILURE() << "ray " << i << ": hit " << hit << " and " << other << ": " << described(a.primitive(i), a.rays[i]);
       continue;
     }
     ++hits;
@@ -389,11 +391,15 @@ TEST(ShapeRelations, RoundCylindersAreCapsules) {
   CaseMaker maker(37);
   const CaseSet capsules = maker.set(shape_capsule, true, 200, 50), tapered = maker.set(shape_tapered_capsule, true, 200, 50);
   CaseSet cylinders = capsules, cones = tapered;
+  // Far from the origin a short axis may vanish, and validation refuses cylinders and cones without one.
+  const auto has_axis = [](const FlatPrimitive& p) { return !std::equal(p.data, p.data + 3, p.data + 3); };
   for (FlatPrimitive& p : cylinders.primitives) {
+    if (!has_axis(p)) continue;
     p.shape = shape_cylinder;
     p.data[7] = p.data[8] = CAPLET_CAP_ROUND;
   }
   for (FlatPrimitive& p : cones.primitives) {
+    if (!has_axis(p)) continue;
     p.shape = shape_cone;
     p.data[8] = p.data[9] = CAPLET_CAP_ROUND;
   }
