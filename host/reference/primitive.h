@@ -161,8 +161,8 @@ Ball bounding_ball(const Primitive& primitive);
 /// x (by winding / as given / outward).
 glm::dvec3 normal_at(const Primitive& primitive, const glm::dvec3& x, double step);
 
-/// The outward unit normal of what surface `surface` is part of, a whole sphere, tangent cone or plane, at its point nearest to x:
-/// beside an edge that of one side alone. Of shapes with one surface, and of csg shapes, normal_at().
+/// The outward unit normal of what surface `surface` is part of, a whole sphere, tangent cone or plane, at its point nearest to
+/// x: beside an edge that of one side alone. Of shapes with one surface, and of csg shapes, normal_at().
 glm::dvec3 normal_of_surface(const Primitive& primitive, const glm::dvec3& x, int surface, double step);
 
 /// The solid whose boundary an open shape other than triangles, disks and patches is part of; solids are their own.

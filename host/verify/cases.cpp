@@ -93,8 +93,14 @@ Case load(const fs::path& file) {
     if (const auto scene = json.find("scene"); scene != json.end()) {
       out.scene.file = scene->get<std::string>();
     } else {
-      out.scene.seed = json.at("torture").at("seed").get<std::uint64_t>();
-      out.scene.round = json.at("torture").at("round").get<std::uint64_t>();
+      const auto whole = [&](const char* name) {
+        const Json& value = json.at("torture").at(name);
+        if (!value.is_number_unsigned())
+          throw refuse(fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, value.dump()));
+        return value.get<std::uint64_t>();
+      };
+      out.scene.seed = whole("seed");
+      out.scene.round = whole("round");
     }
     const Json &o = json.at("ray").at("origin"), &d = json.at("ray").at("direction");
     out.ray = {number(o.at(0), file), number(o.at(1), file), number(o.at(2), file), 0,

@@ -468,7 +468,10 @@ TEST(Cases, BadOnesAreRefused) {
   EXPECT_THAT(refused(""), HasSubstr("not a case"));
   EXPECT_THAT(refused("[1, 2]"), HasSubstr("not a case"));
   EXPECT_THAT(refused(R"({"format": 3})"), HasSubstr("not a case"));
-  EXPECT_THAT(refused(head + R"("torture": {"seed": -1.5}})"), HasSubstr("not a case"));
+  EXPECT_THAT(refused(head + R"("torture": {"seed": -1.5}})"), HasSubstr("seed is a whole number from 0 up, not -1.5"));
+  EXPECT_THAT(refused(head + R"("torture": {"seed": 1, "round": "2"}})"), HasSubstr("round is a whole number"));
+  EXPECT_THAT(refused(head + R"("torture": {"seed": 1}})"), HasSubstr("not a case"));
+  EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": [1, 2, 1e300], "direction": [0, 0, 1]}})"), HasSubstr("finite"));
   EXPECT_THAT(refused(head + R"("scene": 5, "ray": {}})"), HasSubstr("not a case"));
   EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2"], "direction": [0, 0, 1]}})"), HasSubstr("not a case"));
   EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2", "x"], "direction": [0, 0, 1]}})"),
