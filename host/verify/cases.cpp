@@ -139,6 +139,7 @@ std::vector<Case> load_cases(const fs::path& path) {
     files.push_back(path);
   }
   std::vector<Case> out;
+  out.reserve(files.size());
   for (const fs::path& file : files) out.push_back(load(file));
   return out;
 }
