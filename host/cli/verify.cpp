@@ -64,6 +64,7 @@ bool replay(const Options& o) {
     const Scene scene =
         name.file.empty() ? verify::torture_scene(name.seed, name.round) : import_scene(name.file, FileImageReader());
     std::vector<RayRecord> rays;
+    rays.reserve(members.size());
     for (const verify::Case* one : members) rays.push_back(one->ray);
     verify::SceneCheck check(scene, devices);
     std::mutex mutex;
