@@ -89,7 +89,7 @@ static inline float area_error(const Globals* g, __global const LightRecord* lig
   return 16.0f * CAPLET_EPS * (world + norm1(x - p));
 }
 
-// Samples primitive light `light` as seen from p: 0 when nothing of it that emits faces p.
+// Samples primitive light `light` as seen from p: 0 when nothing of it that emits and that rays see ("onesided") faces p.
 static inline int area_sample(const Globals* g, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
   __global const GeometryRecord* geometry = g->geometries + light->geometry;
   __global const float* data = area_data(g, light);
@@ -179,6 +179,11 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
   if (!(distance_squared > 0.0f)) return 0;
   const float facing = -dot(s->n, away) / sqrt(distance_squared);
   if (both ? facing == 0.0f : !(facing > 0.0f)) return 0;
+  if (placed) {
+    // Before ReverseOrientation a ray enters against the normal.
+    const uint unseen = (facing > 0.0f) != flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
+    if (g->instances[light->instance].flags & unseen) return 0;
+  }
   if (per_area > 0.0f) s->pdf = per_area * distance_squared / fabs(facing);
   s->error = area_error(g, light, area_magnitude(shape, data), s->p, p);
   s->pdf = fmin(s->pdf, CAPLET_MAX_DENSITY);

@@ -29,7 +29,7 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
   return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) + frame.n * (1.0f - t));
 }
 
-// The first crossing of the primitive at `slot` by the ray from p along wi; 0 when there is none.
+// The first crossing that a ray sees of the primitive at `slot`, from p along wi; 0 when there is none.
 static inline int primitive_crossing(const Globals* g, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
   const GeometryRecord geometry = g->geometries[g->primitive_geometry[as_uint(g->leaves[slot])]];
   float3 o = p, d = wi;
@@ -37,7 +37,12 @@ static inline int primitive_crossing(const Globals* g, uint slot, uint instance,
     o = transform_point(g->instances[instance].object_from_world, p);
     d = transform_vector(g->instances[instance].object_from_world, wi);
   }
-  const ShapeRay ray = shape_ray(o, d, 0.0f, g->leaves);
+  ShapeRay ray = shape_ray(o, d, 0.0f, g->leaves);
+  if (instance != CAPLET_NONE) {
+    // Every shape that is sampled here looks for the first crossing of a side that is seen.
+    if (g->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
+    if (g->instances[instance].flags & CAPLET_INSTANCE_NO_LEAVING) ray.sees_leaving = 0;
+  }
   const uint lane = slot & 7u;
   real t;
   real_mask side;

@@ -18,10 +18,11 @@
 
 // wi: unit, to the light. target: end of the shadow ray of a finite light, off the light's own surface. radiance: that arrives
 // along wi unoccluded (delta lights: irradiance over cos). pdf: of wi by solid angle times the chance of the light; for delta
-// lights that chance alone.
+// lights that chance alone. index: of the light.
 typedef struct {
   float3 wi, target;
   int infinite, delta;
+  uint index;
   float4 radiance;
   float pdf;
 } LightSample;
@@ -41,7 +42,8 @@ static inline uint light_select(const Globals* g, float u, float* probability) {
 static inline int light_sample(const Globals* g, float3 p, float4 lambda, float u_select, float2 u, LightSample* s) {
   if (g->params->sampled_light_count == 0u) return 0;
   float chance;
-  __global const LightRecord* light = g->lights + light_select(g, u_select, &chance);
+  s->index = light_select(g, u_select, &chance);
+  __global const LightRecord* light = g->lights + s->index;
   if (!(chance > 0.0f)) return 0;
   s->infinite = 0;
   s->delta = 1;

@@ -11,12 +11,13 @@
 #include "shapes/surface_shapes.cl"
 
 // World space. p lies on the surface within `error`: p +- ng * error is on the intended side. ng points outward of solids, and by
-// winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE.
+// winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE;
+// primitive_light: that of the whole primitive, of which this surface may be dark.
 typedef struct {
   float3 p, ng, ns, dpdu, dpdv;
   float2 uv;
   float error;
-  uint geometry, primitive, surface, material, light;
+  uint geometry, primitive, surface, material, light, primitive_light;
   int leaving;
 } Surface;
 
@@ -75,9 +76,9 @@ static inline Surface surface_at(const Globals* g, const RayRecord* ray, const H
   s.surface = surface;
   s.leaving = leaving;
   const uint base = placed ? g->instances[hit->instance].light_base : 0u;
-  s.light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
-                ? CAPLET_NONE
-                : base + geometry.light_offset + (primitive - geometry.primitive_begin);
+  s.light = s.primitive_light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
+                                    ? CAPLET_NONE
+                                    : base + geometry.light_offset + (primitive - geometry.primitive_begin);
   s.material = geometry.material;
   if (geometry.surface_begin != CAPLET_NONE) {
     const uint entry = g->surface_materials[geometry.surface_begin + surface];

@@ -31,18 +31,20 @@ static inline void store_first_hit(const Globals* g, uint path, const Surface* s
 static inline void sample_light(const Globals* g, uint path, const Surface* s, const Frame* frame, const Bsdf* bsdf, float3 wo_local,
                                 float3 wo, float4 throughput, float4 wavelengths, float u_select, float2 u) {
   LightSample light;
-  // From the side that wo is on, as the density of a scattered ray that meets the light is: within an emitting solid it matters.
+  // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
   if (!light_sample(g, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface.
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
   const int crosses = dot(light.wi, s->ng) * dot(wo, s->ng) < 0.0f;
   if (transmitted != crosses) return;
+  // A refracted ray sees its own primitive from the other side than this sample did: it alone finds that light.
+  if (transmitted && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
   const float weight = light.delta ? 1.0f : power_heuristic(light.pdf, bsdf_pdf);
   const float4 contribution = throughput * f * light.radiance * (weight / light.pdf);
-  if (!(max4(contribution) > 0.0f)) return;
+  if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
   RayRecord ray;
   const float3 origin = offset_origin(s->p, s->ng, s->error, light.wi);
   const float3 direction = light.infinite ? light.wi : light.target - origin;
@@ -61,7 +63,7 @@ static void stage_item(const Globals* g, uint item) {
   float4 throughput = vload4(path, g->path_throughput);
   const float4 wavelengths = vload4(path, g->path_wavelengths);
   float4 pdfs = vload4(path, g->path_wavelength_pdfs);
-  float4 scatter = vload4(path, g->path_scatter);  // last pdf, eta scale
+  float4 scatter = vload4(path, g->path_scatter);  // last pdf, eta scale, bits of the light that was crossed
   const uint flags = g->path_flags[path];
   const uint depth = flags >> PATH_DEPTH_SHIFT;
   const int specular = (flags & PATH_SPECULAR) != 0;
@@ -79,7 +81,8 @@ static void stage_item(const Globals* g, uint item) {
     const float4 emitted = light_emitted(g, s.light, s.ng, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
-      if (!specular)
+      // What a refracted ray finds of the primitive that it crossed has no other strategy.
+      if (!specular && as_uint(scatter.z) != s.light)
         weight = power_heuristic(scatter.x, light_area_pdf(g, s.light, (float3)(ray.ox, ray.oy, ray.oz), &s, direction));
       vstore4(vload4(path, g->path_radiance) + throughput * emitted * weight, path, g->path_radiance);
     }
@@ -90,6 +93,12 @@ static void stage_item(const Globals* g, uint item) {
   const Bsdf bsdf = bsdf_make(g, s.material, wavelengths);
   if (depth == 0) store_first_hit(g, path, &s, &bsdf, wo_local, wo, hit.t, wavelengths, pdfs, hit.instance);
   if (depth >= g->params->max_depth) return;
+  if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
+    // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
+    pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
+    throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
+    vstore4(pdfs, path, g->path_wavelength_pdfs);
+  }
 
   const PathSample at = path_sample(g, path);
   const float2 choices = sampler_2d(at.seed, at.sample, SAMPLE_CHOICES(depth));
@@ -102,14 +111,9 @@ static void stage_item(const Globals* g, uint item) {
   const float3 wi = to_world(&frame, sample.wi);
   if (sample.transmitted != (dot(wi, s.ng) * dot(wo, s.ng) < 0.0f)) return;
   throughput *= sample.weight;
-  if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
-    // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here.
-    pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
-    throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
-    vstore4(pdfs, path, g->path_wavelength_pdfs);
-  }
   scatter.x = sample.pdf;
   scatter.y *= sample.eta_scale;
+  scatter.z = as_float(sample.transmitted ? s.primitive_light : CAPLET_NONE);
 
   // The square root keeps paths longer than their throughput alone would, and the first three scatterings always go on: variance falls
   // faster than time grows (docs/performance.md).

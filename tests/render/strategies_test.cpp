@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Light sampling and scattering, weighted against each other, against scattering alone: the same light in every scene, for a
+// scene whose lights have no chance of selection is rendered by paths that meet them. That estimate uses no density of a light.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "film/develop.h"
+#include "import/import.h"
+#include "render_scene.h"
+#include "support/data.h"
+
+namespace caplet::test {
+namespace {
+
+struct Mean {
+  double value = 0, error = 0;
+};
+
+const char* const at_the_shape = "LookAt 1.5 -4 1.2  0 0 0  0 0 1\n";
+const char* const beside_it = "LookAt 1 -3 3  2 0 -1  0 0 1\n";  // at the floor
+
+Scene scene_of(const std::string& world, const std::string& view = at_the_shape) {
+  const auto file = temporary_folder() / "strategies.pbrt";
+  std::ofstream(file) << "Integrator \"path\" \"integer maxdepth\" 8\n"
+                      << view
+                      << "Camera \"perspective\" \"float fov\" 40\nPixelFilter \"box\"\n"
+                         "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nWorldBegin\n"
+                      << world;
+  return import_scene(file, FileImageReader());
+}
+
+/// Of the green of a render. `sampled`: with light sampling, of all lights alike.
+Mean mean_of(const Scene& scene, int samples, bool sampled) {
+  FlatScene flat = lower(scene);
+  // Csg shapes, whose area nobody knows, are sampled too.
+  for (uint i = 0; i < flat.params.light_count; ++i)
+    flat.light_alias[i] = {1, i, 1 / static_cast<float>(flat.params.light_count), 0};
+  flat.params.sampled_light_count = sampled ? flat.params.light_count : 0;
+  RenderOptions options;
+  options.samples_per_pixel = samples;
+  const RenderResult result = render(flat, test_device(), options, {});
+  const LayeredImage image = develop(result.film, flat.params, scene, true);
+  const std::vector<float>&values = channel(image, "G").floats, &variances = channel(image, "variance.G").floats;
+  const auto pixels = static_cast<double>(values.size());
+  Mean out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    out.value += values[i] / pixels;
+    out.error += variances[i] / (pixels * pixels);
+  }
+  out.error = std::sqrt(out.error);
+  return out;
+}
+
+struct Case {
+  std::string name, world;
+  const char* view = at_the_shape;
+  int samples = 1024;
+  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+};
+
+const std::string lamp = "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n", turned = lamp + "ReverseOrientation\n";
+const std::string lamp_both = "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n";
+const std::string box = "Shape \"box\" \"point3 p0\" [-0.7 -0.5 -0.6] \"point3 p1\" [0.6 0.8 0.5]\n";
+const std::string sphere = "Shape \"sphere\" \"float radius\" 0.9\n";
+const std::string capsule = "Shape \"capsule\" \"point3 p0\" [-0.5 0 -0.2] \"point3 p1\" [0.5 0.1 0.2] \"float radius\" 0.6\n";
+const std::string tube = "Shape \"cylinder\" \"point3 p0\" [-0.5 0 -0.2] \"point3 p1\" [0.5 0.1 0.2] \"float radius\" 0.7\n";
+
+const std::string pipe = "Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" -0.5 \"float zmax\" 0.7\n";
+const std::string open_tube =
+    "Shape \"cylinder\" \"point3 p0\" [-0.5 0 -0.2] \"point3 p1\" [0.5 0.1 0.2] \"float radius\" 0.4 \"string caps\" \"open\"\n";
+const std::string disk = "Shape \"disk\" \"float radius\" 0.8\n";
+const std::string triangles =
+    "Shape \"trianglemesh\" \"point3 P\" [-0.7 -0.8 0  0.8 -0.6 0.2  0.7 0.8 0  -0.8 0.8 0.5] \"integer indices\" [0 1 2  0 2 "
+    "3]\n";
+const std::string unseen = " \"bool onesided\" true\n";
+const std::string floor =
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -1  9 -9 -1  9 9 -1  -9 9 -1] \"integer indices\" [0 1 2  0 2 3]\n";
+
+/// A shape's statement with more parameters.
+std::string with(std::string shape, const std::string& parameters) {
+  shape.pop_back();
+  return shape + parameters;
+}
+
+std::string glass(double alpha) {
+  return "Material \"dielectric\" \"float eta\" 1.5 \"bool remaproughness\" false \"float roughness\" " + std::to_string(alpha) +
+         "\n";
+}
+
+std::vector<Case> cases() {
+  const std::string hollow = glass(0.4) + "ObjectBegin \"block\"\n" + box +
+                             "ObjectEnd\nObjectBegin \"hole\"\nTranslate 0.1 0.2 0\nShape \"sphere\" \"float radius\" 0.4\n"
+                             "ObjectEnd\n";
+  const std::string difference = "Shape \"csg\" \"string operation\" \"difference\" \"string operands\" [\"block\" \"hole\"]\n";
+  return {
+      {"box_turned", glass(0.6) + turned + box},
+      {"box_both_sides", glass(0.6) + lamp_both + box},
+      {"box_of_one_lit_face",
+       glass(0.4) + "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] \"integer surfaces\" [3]\nReverseOrientation\n" + box,
+       at_the_shape, 2048},
+      {"sphere_turned", glass(0.6) + turned + sphere},
+      {"sphere_both_sides", glass(0.4) + lamp_both + sphere},
+      {"ellipsoid_turned", glass(0.4) + turned + "Scale 1 0.7 0.5\n" + sphere},
+      {"capsule_turned", glass(0.4) + turned + capsule},
+      {"cylinder_turned", glass(0.4) + turned + tube},
+      {"cylinder_both_sides", glass(0.4) + lamp_both + tube},
+      {"hollow_box_turned", hollow + turned + difference},
+      {"hollow_box_both_sides", hollow + lamp_both + difference},
+      {"onesided_hollow_box_both_sides", hollow + lamp_both + with(difference, unseen)},
+      {"triangles_both_sides",
+       glass(0.4) + lamp_both +
+           "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0.2  1 1 0  -1 1 0.5] \"integer indices\" [0 1 2  0 2 3]\n"},
+      {"sphere_within_sphere", glass(0.4) + sphere + "Material \"diffuse\"\n" + lamp + "Shape \"sphere\" \"float radius\" 0.3\n"},
+      {"glass_lamp_within_glass", glass(0.4) + sphere + glass(0.3) + turned + "Shape \"sphere\" \"float radius\" 0.5\n"},
+      {"sphere_within_box", glass(0.4) + box + "Material \"diffuse\"\n" + lamp + "Shape \"sphere\" \"float radius\" 0.3\n"},
+      {"onesided_pipe_turned", floor + turned + "Scale 1 1 0.5\n" + with(pipe, unseen), beside_it, 2048},
+      {"onesided_pipe_both_sides", floor + lamp_both + with(pipe, unseen), beside_it},
+      {"onesided_tube_both_sides", floor + lamp_both + with(tube, unseen), beside_it},
+      {"onesided_open_tube_turned", floor + turned + with(open_tube, unseen), beside_it, 2048},
+      {"onesided_open_tube_both_sides", floor + lamp_both + with(open_tube, unseen), beside_it, 2048},
+      {"onesided_capsule_both_sides", floor + lamp_both + with(capsule, unseen), beside_it},
+      {"onesided_disk_both_sides", floor + lamp_both + "Rotate 30 0 1 0\n" + with(disk, unseen), beside_it},
+      {"onesided_disk_turned", floor + turned + with(disk, unseen), beside_it},
+      {"onesided_triangles_both_sides", floor + lamp_both + with(triangles, unseen), beside_it},
+      {"onesided_triangles_turned", floor + turned + with(triangles, unseen), beside_it},
+      {"onesided_triangles_mirrored",
+       floor + "ObjectBegin \"lamp\"\n" + lamp + with(triangles, unseen) + "ObjectEnd\nScale 1 1 -1\nObjectInstance \"lamp\"\n",
+       beside_it},
+      {"box_within_box_lamp",
+       glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + turned + "Scale 8 8 8\n" + box},
+  };
+}
+
+/// Solids turned inside out around floor and camera, whose insides no ray sees.
+std::vector<Case> dark_cases() {
+  const std::string whole = "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"block\" \"block\"]\n";
+  return {
+      {"box", floor + turned + "Scale 9 9 9\n" + with(box, unseen)},
+      {"sphere", floor + turned + "Scale 9 9 9\n" + with(sphere, unseen)},
+      {"csg", "ObjectBegin \"block\"\n" + box + "ObjectEnd\n" + floor + turned + "Scale 9 9 9\n" + with(whole, unseen)},
+      {"capsule", floor + turned + "Scale 12 12 12\n" + with(capsule, unseen)},
+      {"cylinder", floor + turned + "Scale 12 12 12\n" + with(tube, unseen)},
+  };
+}
+
+class Strategies : public testing::TestWithParam<Case> {};
+
+TEST_P(Strategies, LightSamplingAgreesWithScatteringAlone) {
+  const Scene scene = scene_of(GetParam().world, GetParam().view);
+  const Mean both = mean_of(scene, GetParam().samples, true), alone = mean_of(scene, GetParam().samples, false);
+  RecordProperty("both", std::to_string(both.value));
+  RecordProperty("alone", std::to_string(alone.value));
+  const double error = std::hypot(both.error, alone.error);
+  EXPECT_NEAR(both.value, alone.value, 4.5 * error);
+  EXPECT_LT(error, 7e-3 * alone.value) << "too few samples to tell";
+}
+
+class DarkSides : public testing::TestWithParam<Case> {};
+
+TEST_P(DarkSides, GiveNoLight) {
+  const Scene scene = scene_of(GetParam().world, GetParam().view);
+  EXPECT_EQ(mean_of(scene, 64, true).value, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, DarkSides, testing::ValuesIn(dark_cases()),
+                         [](const testing::TestParamInfo<Case>& row) { return row.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(Cases, Strategies, testing::ValuesIn(cases()),
+                         [](const testing::TestParamInfo<Case>& row) { return row.param.name; });
+
+}  // namespace
+}  // namespace caplet::test
