@@ -2,11 +2,14 @@
 // Copyright Caplet authors
 #include "render_scene.h"
 
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 #include "film/develop.h"
 #include "import/import.h"
+#include "support/data.h"
 
 namespace caplet::test {
 
@@ -35,6 +38,24 @@ const Channel& channel(const LayeredImage& image, const std::string& name) {
   for (const Channel& channel : image.channels)
     if (channel.name == name) return channel;
   throw std::logic_error("no channel " + name);
+}
+
+Scene scene_of_text(const std::string& text) {
+  const auto file = temporary_folder() / "text.pbrt";
+  std::ofstream(file) << text;
+  return import_scene(file, FileImageReader());
+}
+
+Mean mean_of(const LayeredImage& image, const std::string& name) {
+  const std::vector<float>&values = channel(image, name).floats, &variances = channel(image, "variance." + name).floats;
+  const auto pixels = static_cast<double>(values.size());
+  Mean out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    out.value += values[i] / pixels;
+    out.error += variances[i] / (pixels * pixels);
+  }
+  out.error = std::sqrt(out.error);
+  return out;
 }
 
 Picture picture_of(const LayeredImage& image) {

@@ -27,6 +27,15 @@ Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, c
                      RenderOptions options = {});
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options = {});
 
+/// The scene of a pbrt text.
+Scene scene_of_text(const std::string& text);
+
+/// Mean of a channel over the picture, and its standard error by the variance layer.
+struct Mean {
+  double value = 0, error = 0;
+};
+Mean mean_of(const LayeredImage& image, const std::string& name);
+
 /// R G B (and variance, where present) of an image.
 Picture picture_of(const LayeredImage& image);
 const Channel& channel(const LayeredImage& image, const std::string& name);

@@ -6,35 +6,25 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "film/develop.h"
-#include "import/import.h"
 #include "render_scene.h"
-#include "support/data.h"
 
 namespace caplet::test {
 namespace {
 
-struct Mean {
-  double value = 0, error = 0;
-};
-
 const char* const at_the_shape = "LookAt 1.5 -4 1.2  0 0 0  0 0 1\n";
 const char* const beside_it = "LookAt 1 -3 3  2 0 -1  0 0 1\n";  // at the floor
 
-Scene scene_of(const std::string& world, const std::string& view = at_the_shape) {
-  const auto file = temporary_folder() / "strategies.pbrt";
-  std::ofstream(file) << "Integrator \"path\" \"integer maxdepth\" 8\n"
-                      << view
-                      << "Camera \"perspective\" \"float fov\" 40\nPixelFilter \"box\"\n"
-                         "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nWorldBegin\n"
-                      << world;
-  return import_scene(file, FileImageReader());
+Scene scene_of(const std::string& world, const std::string& view) {
+  return scene_of_text("Integrator \"path\" \"integer maxdepth\" 8\n" + view +
+                       "Camera \"perspective\" \"float fov\" 40\nPixelFilter \"box\"\n"
+                       "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nWorldBegin\n" +
+                       world);
 }
 
 /// Of the green of a render. `sampled`: with light sampling, of all lights alike.
-Mean mean_of(const Scene& scene, int samples, bool sampled) {
+Mean light_of(const Scene& scene, int samples, bool sampled) {
   FlatScene flat = lower(scene);
   // Csg shapes, whose area nobody knows, are sampled too.
   for (uint i = 0; i < flat.params.light_count; ++i)
@@ -43,16 +33,7 @@ Mean mean_of(const Scene& scene, int samples, bool sampled) {
   RenderOptions options;
   options.samples_per_pixel = samples;
   const RenderResult result = render(flat, test_device(), options, {});
-  const LayeredImage image = develop(result.film, flat.params, scene, true);
-  const std::vector<float>&values = channel(image, "G").floats, &variances = channel(image, "variance.G").floats;
-  const auto pixels = static_cast<double>(values.size());
-  Mean out;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    out.value += values[i] / pixels;
-    out.error += variances[i] / (pixels * pixels);
-  }
-  out.error = std::sqrt(out.error);
-  return out;
+  return mean_of(develop(result.film, flat.params, scene, true), "G");
 }
 
 struct Case {
@@ -152,7 +133,7 @@ class Strategies : public testing::TestWithParam<Case> {};
 
 TEST_P(Strategies, LightSamplingAgreesWithScatteringAlone) {
   const Scene scene = scene_of(GetParam().world, GetParam().view);
-  const Mean both = mean_of(scene, GetParam().samples, true), alone = mean_of(scene, GetParam().samples, false);
+  const Mean both = light_of(scene, GetParam().samples, true), alone = light_of(scene, GetParam().samples, false);
   RecordProperty("both", std::to_string(both.value));
   RecordProperty("alone", std::to_string(alone.value));
   const double error = std::hypot(both.error, alone.error);
@@ -164,7 +145,7 @@ class DarkSides : public testing::TestWithParam<Case> {};
 
 TEST_P(DarkSides, GiveNoLight) {
   const Scene scene = scene_of(GetParam().world, GetParam().view);
-  EXPECT_EQ(mean_of(scene, 64, true).value, 0);
+  EXPECT_EQ(light_of(scene, 64, true).value, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, DarkSides, testing::ValuesIn(dark_cases()),
