@@ -62,7 +62,10 @@ __kernel void rays(__global const CameraRecord* camera, __global const float* in
   if (i < count) out[i] = camera_ray(&g, vload2(2 * i, in), vload2(2 * i + 1, in));
 }
 __kernel void sums(__global const float* values, uint count, __global float* out) {
-  for (uint i = 0; i < count; ++i) add_compensated(out, out + 1, values[i]);
+  float sum = 0.0f, low = 0.0f;
+  for (uint i = 0; i < count; ++i) add_compensated(&sum, &low, values[i]);
+  out[0] = sum;
+  out[1] = low;
 }
 )";
 
