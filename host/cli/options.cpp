@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "import/pbrt_names.h"
 #include "import/presentation.h"
 
 namespace caplet::cli {
@@ -110,6 +111,23 @@ RayNumbers parse_ray(const std::string& text) {
   RayNumbers ray{};
   if (const auto bad = to_ray(numbers, ray)) refuse("--ray", bad->message);
   return ray;
+}
+
+Layers parse_layers(const std::optional<std::string>& list, bool variance) {
+  Layers layers = list && *list != "all" ? Layers::none() : list ? Layers::all() : Layers::usual();
+  if (list && *list != "all" && *list != "none")
+    for (std::string_view rest = *list;;) {
+      const std::size_t comma = rest.find(',');
+      const std::string_view name = rest.substr(0, comma);
+      const auto found = std::ranges::find(layer_names, name);
+      if (found == layer_names.end())
+        refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like Z,albedo, or all, or none)",
+                                       name, pbrt::nearest_name(name, {layer_names.begin(), layer_names.end()})));
+      layers = layers.with(static_cast<Layer>(found - layer_names.begin()));
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+  return variance ? layers.with(Layer::variance) : layers;
 }
 
 void apply(const Overrides& overrides, Scene& scene) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "film/layers.h"
 #include "scene/scene.h"
 #include "table/ray_file.h"
 
@@ -32,6 +33,10 @@ void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film);
 
 /// "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError naming --ray.
 RayNumbers parse_ray(const std::string& text);
+
+/// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_names between commas.
+/// And the variance, when asked for. Throws InputError naming --layers.
+Layers parse_layers(const std::optional<std::string>& list, bool variance);
 
 /// What the command line overrides.
 struct Overrides {

@@ -31,6 +31,7 @@ namespace {
 
 struct Options {
   std::string scene, output, preview, stats, device, size, crop;
+  std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
   std::optional<double> time_limit;
@@ -133,6 +134,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   RunSeconds seconds;
   log::set_quiet(options.quiet);
   const Overrides overrides = check_options(options);
+  const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
   const Device device = Device::choose(options.device);
 
@@ -158,7 +160,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;
 
-  LayeredImage image = develop(result.film, flat.params, scene, options.variance);
+  LayeredImage image = develop(result.film, flat.params, scene, layers);
   add_metadata(image, scene, options, invocation, device, result);
   write_exr(output, image);
   if (!options.preview.empty()) write_preview(options.preview, image);
@@ -195,6 +197,10 @@ void add_render(CLI::App& app, const Invocation& invocation) {
         return std::isfinite(value) && value > 0 ? std::string() : "'" + text + "' is not a positive number of seconds";
       })
       ->type_name("SECONDS");
+  command
+      ->add_option("--layers", o->layers,
+                   "Layers beside R G B A: some of Z,albedo,N,P,object,primitive,variance, or all, or none")
+      ->type_name("LIST");
   command->add_flag("--variance", o->variance, "Also write variance.R/G/B: the variance of each pixel's mean");
   command->add_option("--stats", o->stats, "Write times, ray counts and memory as JSON")->type_name("FILE.json");
   command->add_flag("-q,--quiet", o->quiet, "No progress, only warnings and errors");

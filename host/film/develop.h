@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/image.h"
+#include "film/layers.h"
 #include "scene/scene.h"
 #include "shared/records.h"
 
@@ -15,15 +16,18 @@ namespace caplet {
 /// Z of pixels whose camera rays all missed: Blender's value. Infinity would poison filters and normalising nodes.
 inline constexpr float depth_of_nothing = 1e10f;
 
-/// Layers of the rendered window (docs/output.md), of film records in its scan order, times the film's exposure:
+/// R G B A and the layers asked for of the rendered window (docs/output.md), of film records in its scan order, times the film's
+/// exposure:
 /// R G B     mean of the samples, linear in the film's colour space; at most film.max_component_value, the others scaled with it
 /// A         coverage: share of the camera rays that hit something
-/// albedo    mean over all samples (0 where nothing is hit)
-/// N, P, Z   mean over the samples that hit: shading normal (not renormalised), world position, distance; 0, 0 and
-///           depth_of_nothing without hits
+/// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1 is white in any light
+/// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1 long), world position, distance;
+///           0, 0 and depth_of_nothing without hits
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
-/// variance  (with_variance) variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
+/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
+/// Nothing that is written is infinite or not a number: where sums or the exposure went beyond a float, R G B are black and the
+/// variance is the greatest float (other layers: 0), and a warning counts those pixels.
 /// Throws std::logic_error when the film is not of the window's size.
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, bool with_variance);
+LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers);
 
 }  // namespace caplet

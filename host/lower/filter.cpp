@@ -91,8 +91,6 @@ double filter_value(const PixelFilter& filter, double x, double radius) {
 
 void lower_filter(const PixelFilter& filter, FlatScene& out) {
   out.filter_table.clear();
-  out.params.filter_radius_x = static_cast<float>(filter.radius_x);
-  out.params.filter_radius_y = static_cast<float>(filter.radius_y);
   out.params.filter_width = append_axis(filter, filter.radius_x, out.filter_table);
   out.params.filter_height = append_axis(filter, filter.radius_y, out.filter_table);
 }

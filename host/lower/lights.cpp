@@ -101,7 +101,7 @@ class LightLowering {
     const EnvironmentIntegrals of = lower_environment(*light.image, out_);
     record.kind = light_image;
     record.spectrum = spectra_.add_unbounded(ConstantSpectrum{1});
-    out_.params.illuminant_table = spectra_.illuminant_table(light.image->space);
+    out_.params.environment_illuminant = spectra_.illuminant_table(light.image->space);
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
     record.scale =
         static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));

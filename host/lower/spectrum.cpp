@@ -85,7 +85,8 @@ SpectrumTable::SpectrumTable(FlatScene& out, ColorSpace space) : out_(out), spac
     out_.observer.push_back(0);
   }
   out_.wavelength_table = make_wavelength_table();
-  out_.params.illuminant_table = illuminant_table(space_);
+  out_.params.illuminant_table = out_.params.environment_illuminant = illuminant_table(space_);
+  std::ranges::transform(rgb_from_xyz(space_), out_.params.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
 }
 
 std::uint32_t SpectrumTable::illuminant_table(ColorSpace space) {

@@ -18,7 +18,8 @@ namespace caplet {
 /// Appends spectra to a FlatScene, each distinct one once.
 class SpectrumTable {
  public:
-  /// Also fills observer, wavelength_table, and the colour space's illuminant table (params.illuminant_table).
+  /// `space` is the film's. Also fills observer, wavelength_table, the space's illuminant table (params.illuminant_table) and
+  /// params.rgb_from_xyz.
   SpectrumTable(FlatScene& out, ColorSpace space);
 
   /// Index into FlatScene::spectra. RGB is uplifted by a sigmoid polynomial; values are clamped to [0, 1].
@@ -32,8 +33,8 @@ class SpectrumTable {
   /// Luminance (CIE Y with the integral of y-bar as unit; 1 for rgb (1 1 1)) of the spectrum that add_illuminant makes.
   double illuminant_luminance(const Spectrum& spectrum) const;
 
-  /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use. An environment whose texels are in
-  /// another space than the constructor's needs it as params.illuminant_table.
+  /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use: an environment whose texels are in
+  /// another space than the film's needs it as params.environment_illuminant.
   std::uint32_t illuminant_table(ColorSpace space);
 
  private:

@@ -46,10 +46,10 @@ static inline float4 spectrum_eval(const Globals* g, uint spectrum, float4 lambd
   return sigmoid;
 }
 
-// An environment texel (sigmoid c0 c1 c2 and scale) times the colour space's illuminant at four wavelengths (nm).
+// An environment texel (sigmoid c0 c1 c2 and scale) times its colour space's illuminant at four wavelengths (nm).
 static inline float4 sigmoid_illuminant(const Globals* g, float4 texel, float4 lambda) {
   return texel.w * sigmoid_polynomial(texel.x, texel.y, texel.z, lambda) *
-         spectrum_table_at4(g->spectrum_tables + g->params->illuminant_table, lambda);
+         spectrum_table_at4(g->spectrum_tables + g->params->environment_illuminant, lambda);
 }
 
 // One wavelength (nm) from u in [0, 1) and its density (1/nm): the density is constant between the table's entries, so it is
@@ -90,12 +90,9 @@ static inline float3 xyz_from_spectrum(const Globals* g, float4 radiance, float4
   return 0.25f * xyz;
 }
 
-// Linear sRGB from XYZ: primaries of IEC 61966-2-1 with the white of the tabulated D65 (host: rgb_from_xyz, a test compares
-// them).
-static inline float3 rgb_from_xyz(float3 xyz) {
-  return (float3)(dot((float3)(3.24042342f, -1.53712393f, -0.49852668f), xyz),
-                  dot((float3)(-0.96926724f, 1.87601319f, 0.04155607f), xyz),
-                  dot((float3)(0.05564430f, -0.20402909f, 1.05724167f), xyz));
+// Linear RGB from XYZ by a 3x3 row-major matrix (params->rgb_from_xyz: the film's colour space; host: rgb_from_xyz).
+static inline float3 rgb_from_xyz(__global const float* m, float3 xyz) {
+  return (float3)(dot(load3(m), xyz), dot(load3(m + 3), xyz), dot(load3(m + 6), xyz));
 }
 
 #endif

@@ -19,10 +19,10 @@ static inline void store_first_hit(const Globals* g, uint path, const Surface* s
   uint object = g->geometries[s->geometry].object;
   if (instance != CAPLET_NONE && g->instances[instance].object != CAPLET_NONE) object = g->instances[instance].object;
   const uint primitive = s->primitive - g->geometries[s->geometry].primitive_begin;
-  // The albedo's colour under the illuminant: scale-free, so that a white surface has albedo 1 1 1.
-  const float4 white = sigmoid_illuminant(g, (float4)(0.0f, 0.0f, 0.0f, 2.0f), wavelengths);
-  const float3 rgb = rgb_from_xyz(xyz_from_spectrum(g, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs));
-  vstore4((float4)(rgb.x, rgb.y, rgb.z, depth), path, g->path_albedo);
+  // Under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
+  const float4 white = spectrum_table_at4(g->spectrum_tables + g->params->illuminant_table, wavelengths);
+  const float3 xyz = xyz_from_spectrum(g, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs);
+  vstore4((float4)(xyz.x, xyz.y, xyz.z, depth), path, g->path_albedo);
   vstore4((float4)(normal.x, normal.y, normal.z, as_float(object)), path, g->path_normal);
   vstore4((float4)(s->p.x, s->p.y, s->p.z, as_float(primitive)), path, g->path_position);
 }

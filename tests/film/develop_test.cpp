@@ -6,6 +6,9 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "film/chromaticities.h"
 #include "film/develop.h"
@@ -65,7 +68,7 @@ float value(const LayeredImage& image, const char* channel, std::size_t pixel = 
 constexpr double rounding = 1e-6;
 
 TEST(Develop, MeansOfTheSamples) {
-  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, true);
+  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, Layers::all());
   EXPECT_NEAR(value(image, "R"), 2, rounding);
   EXPECT_NEAR(value(image, "G"), 0.5, rounding);
   EXPECT_NEAR(value(image, "B"), 0.5, rounding);
@@ -73,19 +76,19 @@ TEST(Develop, MeansOfTheSamples) {
 
 TEST(Develop, VarianceOfTheMean) {
   // Red 1 and 3: variance of the samples (divisor n) 1, of the mean 1 / (n - 1) = 1. Blue 0.25, 0.75: 0.0625. Green: none.
-  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, true);
+  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, Layers::all());
   EXPECT_NEAR(value(image, "variance.R"), 1, rounding);
   EXPECT_NEAR(value(image, "variance.G"), 0, rounding);
   EXPECT_NEAR(value(image, "variance.B"), 0.0625, rounding);
   EXPECT_GE(value(image, "variance.G"), 0);
   // 1, 3 and 5: 35 / 3 - 9 = 8 / 3, over n - 1 = 2.
-  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1), Scene{}, true);
+  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1), Scene{}, Layers::all());
   EXPECT_NEAR(value(three, "variance.R"), 4.0 / 3, 2 * rounding);
 }
 
 TEST(Develop, VarianceOfOneSampleIsZeroAndOnRequest) {
-  EXPECT_EQ(value(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, true), "variance.R"), 0);
-  EXPECT_EQ(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, false).find("variance.R"), nullptr);
+  EXPECT_EQ(value(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::all()), "variance.R"), 0);
+  EXPECT_EQ(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::usual()).find("variance.R"), nullptr);
 }
 
 TEST(Develop, CompensationIsSubtracted) {
@@ -97,7 +100,7 @@ TEST(Develop, CompensationIsSubtracted) {
     record.xyz[c] = 16777218.0f;
     record.xyz_low[c] = static_cast<float>(16777218.0 - 16777216.0 * white[c] * 3);
   }
-  const auto image = develop({record}, window(1, 1), Scene{}, false);
+  const auto image = develop({record}, window(1, 1), Scene{}, Layers::usual());
   EXPECT_NEAR(value(image, "G"), 3, rounding);
 }
 
@@ -105,7 +108,7 @@ TEST(Develop, ExposureScalesColorAndVariance) {
   Scene scene;
   scene.film.exposure_time = 0.5;
   scene.film.iso = 400;
-  const auto image = develop({with_samples({{1, 0, 0}, {3, 0, 0}})}, window(1, 1), scene, true);
+  const auto image = develop({with_samples({{1, 0, 0}, {3, 0, 0}})}, window(1, 1), scene, Layers::all());
   EXPECT_NEAR(value(image, "R"), 4, rounding);
   EXPECT_NEAR(value(image, "variance.R"), 4, rounding);
 }
@@ -113,27 +116,45 @@ TEST(Develop, ExposureScalesColorAndVariance) {
 TEST(Develop, MaxComponentValueKeepsTheHue) {
   Scene scene;
   scene.film.max_component_value = 1;
-  const auto image = develop({with_samples({{4, 2, 1}})}, window(1, 1), scene, false);
+  const auto image = develop({with_samples({{4, 2, 1}})}, window(1, 1), scene, Layers::usual());
   EXPECT_NEAR(value(image, "R"), 1, rounding);
   EXPECT_NEAR(value(image, "G"), 0.5, rounding);
   EXPECT_NEAR(value(image, "B"), 0.25, rounding);
 }
 
-TEST(Develop, FirstHitLayersAreMeansOverHits) {
+TEST(Develop, MaxComponentValueScalesTheVariance) {
+  // Red 2 and 6 have a mean of 4, whose variance is 4; scaled to 1 it is a sixteenth of that. Exposure 2 before the limit changes
+  // neither.
+  Scene scene;
+  scene.film.max_component_value = 1;
+  for (const double exposure : {1.0, 2.0}) {
+    scene.film.exposure_time = exposure;
+    const auto image = develop({with_samples({{2, 1, 0}, {6, 1, 0}})}, window(1, 1), scene, Layers::all());
+    EXPECT_NEAR(value(image, "R"), 1, rounding);
+    EXPECT_NEAR(value(image, "variance.R"), 0.25, rounding);
+  }
+}
+
+FilmRecord with_hits() {
   FilmRecord record = nothing();
   record.samples = 4;
   record.hits = 2;
   record.object = 7;
   record.primitive = 3000000000u;
+  const auto white = xyz_of_srgb(1, 1, 1);
   for (std::size_t c = 0; c < 3; ++c) {
-    record.albedo[c] = 1.0f;
+    record.albedo[c] = static_cast<float>(white[c]);
     record.normal[c] = c == 2 ? 2.0f : 0.0f;
     record.position[c] = 6.0f + static_cast<float>(c);
   }
   record.depth = 5;
-  const auto image = develop({record}, window(1, 1), Scene{}, false);
+  return record;
+}
+
+TEST(Develop, FirstHitLayersAreMeansOverHits) {
+  const auto image = develop({with_hits()}, window(1, 1), Scene{}, Layers::usual());
   EXPECT_EQ(value(image, "A"), 0.5f);
-  EXPECT_EQ(value(image, "albedo.R"), 0.25f);
+  for (const char* name : {"albedo.R", "albedo.G", "albedo.B"}) EXPECT_NEAR(value(image, name), 0.25f, rounding) << name;
   EXPECT_EQ(value(image, "N.Z"), 1.0f);
   EXPECT_EQ(value(image, "P.X"), 3.0f);
   EXPECT_EQ(value(image, "P.Z"), 4.0f);
@@ -142,18 +163,168 @@ TEST(Develop, FirstHitLayersAreMeansOverHits) {
   EXPECT_EQ(image.find("primitive.id")->uints.at(0), 3000000000u);
 }
 
+TEST(Develop, CompensationOfLayersIsSubtracted) {
+  // Sums that are a half too great each, and what tells it.
+  FilmRecord record = with_hits();
+  for (std::size_t c = 0; c < 3; ++c) record.position_low[c] = record.normal_low[c] = 0.5f;
+  record.depth_low = 0.5f;
+  const auto white = xyz_of_srgb(1, 1, 1);
+  for (std::size_t c = 0; c < 3; ++c) record.albedo_low[c] = static_cast<float>(0.5 * white[c]);
+  const auto image = develop({record}, window(1, 1), Scene{}, Layers::usual());
+  for (const char* name : {"albedo.R", "albedo.G", "albedo.B"}) EXPECT_NEAR(value(image, name), 0.125f, rounding) << name;
+  EXPECT_EQ(value(image, "N.Z"), 0.75f);
+  EXPECT_EQ(value(image, "N.X"), -0.25f);
+  EXPECT_EQ(value(image, "P.X"), 2.75f);
+  EXPECT_EQ(value(image, "P.Z"), 3.75f);
+  EXPECT_EQ(value(image, "Z"), 2.25f);
+}
+
+TEST(Develop, NormalsAreAtMostOneLong) {
+  // Rounded unit vectors that are all too long by up to 1e-7, and one that is not.
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = 0.01 * i, height = std::sin(3.0 * i);
+    const std::array<double, 3> n{std::sqrt(1 - height * height) * std::cos(angle),
+                                  std::sqrt(1 - height * height) * std::sin(angle), height};
+    FilmRecord record = with_hits();
+    record.hits = 1;
+    for (std::size_t c = 0; c < 3; ++c) record.normal[c] = static_cast<float>(n[c] * (i % 2 == 0 ? 1 + 1e-7 : 0.5));
+    const auto image = develop({record}, window(1, 1), Scene{}, Layers::usual());
+    const double length = std::hypot(value(image, "N.X"), value(image, "N.Y"), value(image, "N.Z"));
+    EXPECT_LE(length, 1.0);
+    // Three roundings to float, each towards 0 by up to 2^-23 of the component.
+    EXPECT_NEAR(length, i % 2 == 0 ? 1 : 0.5, 2e-7);
+  }
+}
+
+TEST(Develop, LayersAreThoseAskedFor) {
+  const auto names = [](Layers layers) {
+    std::vector<std::string> out;
+    for (const Channel& channel : develop({with_hits()}, window(1, 1), Scene{}, layers).channels) out.push_back(channel.name);
+    return out;
+  };
+  const auto with = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"R", "G", "B", "A"});
+    return more;
+  };
+  EXPECT_EQ(names(Layers::none()), with({}));
+  EXPECT_EQ(names(Layers::none().with(Layer::depth)), with({"Z"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::albedo)), with({"albedo.R", "albedo.G", "albedo.B"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::normal)), with({"N.X", "N.Y", "N.Z"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::position)), with({"P.X", "P.Y", "P.Z"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::object)), with({"object.id"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::primitive)), with({"primitive.id"}));
+  EXPECT_EQ(names(Layers::none().with(Layer::variance)), with({"variance.R", "variance.G", "variance.B"}));
+  EXPECT_EQ(names(Layers::all()).size(), 19u);
+  EXPECT_EQ(names(Layers::usual()), names(Layers::all().without(Layer::variance)));
+  const auto image = develop({with_hits()}, window(1, 1), Scene{}, Layers::none().with(Layer::primitive).with(Layer::depth));
+  EXPECT_EQ(value(image, "Z"), 2.5f);
+  EXPECT_EQ(image.find("primitive.id")->uints.at(0), 3000000000u);
+}
+
+// Published matrices from XYZ: IEC 61966-2-1, Display P3 (SMPTE EG 432-1 with the D65 white), ITU-R BT.2020, SMPTE ST 2065-1.
+struct Space {
+  ColorSpace space;
+  std::array<double, 9> from_xyz;
+};
+const Space spaces[] = {
+    {ColorSpace::srgb, {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259, 1.0572252}},
+    {ColorSpace::dci_p3, {2.4934969, -0.9313836, -0.4027108, -0.8294890, 1.7626641, 0.0236247, 0.0358458, -0.0761724, 0.9568845}},
+    {ColorSpace::rec2020,
+     {1.7166512, -0.3556708, -0.2533663, -0.6666844, 1.6164812, 0.0157685, 0.0176399, -0.0427706, 0.9421031}},
+    {ColorSpace::aces2065_1, {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
+};
+
+TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
+  const std::array<double, 3> xyz{0.4, 0.3, 0.2};
+  for (const auto& [space, m] : spaces) {
+    Scene scene;
+    scene.film.space = space;
+    FilmRecord record = with_hits();
+    record.samples = record.hits = 1;
+    for (std::size_t c = 0; c < 3; ++c) record.xyz[c] = record.albedo[c] = static_cast<float>(xyz[c]);
+    const auto image = develop({record}, window(1, 1), scene, Layers::usual());
+    EXPECT_EQ(image.space, space);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double expected = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
+      // Whites by a spectrum or as xy differ by up to 2e-4 in XYZ.
+      EXPECT_NEAR(value(image, std::string(1, "RGB"[c]).c_str()), expected, 1e-3) << static_cast<int>(space) << ' ' << c;
+      EXPECT_NEAR(value(image, (std::string("albedo.") + "RGB"[c]).c_str()), expected, 1e-3)
+          << static_cast<int>(space) << ' ' << c;
+    }
+  }
+}
+
+TEST(Develop, VarianceIsInTheFilmsSpace) {
+  // Two samples of half and of one and a half times the same colour c: the variance of the mean is (c / 2)^2 in each component.
+  // The squares are the device's: here of the published colours.
+  const std::array<double, 3> xyz{0.4, 0.3, 0.2};
+  for (const auto& [space, m] : spaces) {
+    Scene scene;
+    scene.film.space = space;
+    FilmRecord record = nothing();
+    record.samples = 2;
+    std::array<double, 3> rgb{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      rgb[c] = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
+      record.xyz[c] = static_cast<float>(2 * xyz[c]);
+      record.rgb_squared[c] = static_cast<float>((0.25 + 2.25) * rgb[c] * rgb[c]);
+    }
+    const auto image = develop({record}, window(1, 1), scene, Layers::all());
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(value(image, (std::string("variance.") + "RGB"[c]).c_str()), rgb[c] * rgb[c] / 4, 2e-3)
+          << static_cast<int>(space) << ' ' << c;
+  }
+}
+
+TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const float most = std::numeric_limits<float>::max();
+  // What compensated sums become when they overflow; then a finite sum that the exposure takes beyond a float; then squares
+  // alone.
+  FilmRecord overflowed = with_hits();
+  overflowed.xyz[0] = inf;
+  overflowed.xyz_low[0] = nan;
+  overflowed.depth = inf;
+  FilmRecord bright = with_samples({{1e30, 0, 0}, {1e30, 0, 0}});
+  bright.rgb_squared[0] = bright.rgb_squared_low[0] = nan;
+  const FilmRecord good = with_samples({{0.5, 0.25, 0.125}, {0.5, 0.25, 0.125}});
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  Scene scene;
+  const auto image = develop({overflowed, bright, good}, window(3, 1), scene, Layers::all());
+  scene.film.exposure_time = 1e20;
+  const auto exposed = develop({good, bright, nothing()}, window(3, 1), scene, Layers::all());
+  const std::string said = testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
+  for (const auto* picture : {&image, &exposed})
+    for (const Channel& channel : picture->channels)
+      for (const float v : channel.floats) EXPECT_TRUE(std::isfinite(v)) << channel.name;
+  EXPECT_EQ(value(image, "R", 0), 0);
+  EXPECT_EQ(value(image, "variance.G", 0), most);
+  EXPECT_EQ(value(image, "Z", 0), 0);
+  EXPECT_FLOAT_EQ(value(image, "R", 1), 1e30f);
+  EXPECT_EQ(value(image, "variance.R", 1), most);
+  EXPECT_NEAR(value(image, "R", 2), 0.5, rounding);
+  EXPECT_NEAR(value(image, "variance.R", 2), 0, rounding);
+  EXPECT_EQ(value(exposed, "R", 1), 0);
+  EXPECT_FLOAT_EQ(value(exposed, "R", 0), 0.5e20f);
+  EXPECT_NE(said.find("2 of 3 pixels"), std::string::npos) << said;
+  EXPECT_NE(said.find("the first: 3,2"), std::string::npos) << said;
+  EXPECT_NE(said.find("1 of 3 pixels"), std::string::npos) << said;
+  EXPECT_NE(said.find("the first: 4,2"), std::string::npos) << said;
+}
+
 TEST(Develop, EmptyPixelsAreFinite) {
   FilmRecord missed = nothing();
   missed.samples = 16;
-  const auto image = develop({missed, nothing()}, window(2, 1), Scene{}, true);
+  const auto image = develop({missed, nothing()}, window(2, 1), Scene{}, Layers::all());
   for (const Channel& channel : image.channels)
     for (const float v : channel.floats) EXPECT_EQ(v, channel.name == "Z" ? 1e10f : 0.0f) << channel.name;
   EXPECT_EQ(image.find("object.id")->uints.at(1), 0xffffffffu);
 }
 
 TEST(Develop, WindowsAndOrder) {
-  const auto image =
-      develop({with_samples({{1, 1, 1}}), with_samples({{2, 2, 2}}), with_samples({{3, 3, 3}})}, window(1, 3), Scene{}, false);
+  const auto image = develop({with_samples({{1, 1, 1}}), with_samples({{2, 2, 2}}), with_samples({{3, 3, 3}})}, window(1, 3),
+                             Scene{}, Layers::usual());
   EXPECT_EQ(image.width, 10);
   EXPECT_EQ(image.height, 6);
   EXPECT_EQ(image.x, 3);
@@ -161,7 +332,7 @@ TEST(Develop, WindowsAndOrder) {
   EXPECT_EQ(image.data_width, 1);
   EXPECT_EQ(image.data_height, 3);
   EXPECT_NEAR(value(image, "R", 2), 3, rounding);
-  EXPECT_THROW(develop({nothing()}, window(2, 1), Scene{}, false), std::logic_error);
+  EXPECT_THROW(develop({nothing()}, window(2, 1), Scene{}, Layers::usual()), std::logic_error);
 }
 
 TEST(Chromaticities, AgreeWithTheSpectralSide) {

@@ -59,7 +59,7 @@ TEST(Layout, ReportsFieldsThatChangedPlaces) {
 TEST(Layout, ReportsADifferentSize) {
   std::vector<RecordLayout> larger = host_layout();
   larger.back().bytes += 16;
-  EXPECT_THAT(compare_layout(Device::choose(""), larger), ElementsAre("FilmRecord: size is 112 on the device, 128 on the host"));
+  EXPECT_THAT(compare_layout(Device::choose(""), larger), ElementsAre("FilmRecord: size is 144 on the device, 160 on the host"));
 }
 
 TEST(Layout, ReportsAListOfAnotherLength) {

@@ -23,7 +23,7 @@ Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions o
   options.samples_per_pixel = samples_per_pixel;
   Rendered out;
   out.result = render(flat, test_device(), options, {});
-  out.image = develop(out.result.film, flat.params, scene, true);
+  out.image = develop(out.result.film, flat.params, scene, Layers::all());
   return out;
 }
 
