@@ -41,6 +41,7 @@ struct Chunk {
   std::vector<Name> names;
   std::unordered_map<std::string, std::uint32_t> name_index;
   std::vector<std::pair<Place, std::string>> errors;
+  std::size_t more_errors = 0;  // than `errors` holds
   int lines = 0;
   bool tapered = false;
 };
@@ -113,6 +114,8 @@ class LineReader {
   bool fail(std::size_t position, std::string message) {
     if (chunk_.errors.size() < kMostErrors)
       chunk_.errors.emplace_back(Place{chunk_.lines, static_cast<int>(position) + 1}, std::move(message));
+    else
+      ++chunk_.more_errors;
     return false;
   }
 
@@ -230,6 +233,7 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
   std::vector<std::vector<std::uint32_t>> file_name(chunks.size());
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     for (const auto& [place, message] : chunks[i].errors) diagnostics.error(where(place), message);
+    diagnostics.add_more(chunks[i].more_errors);
     for (const Name& name : chunks[i].names) {
       const auto [entry, fresh] = name_index.try_emplace(name.text, static_cast<std::uint32_t>(names.size()));
       if (fresh) names.emplace_back(name.text, where(name.first_use));

@@ -17,8 +17,22 @@
 #include "import/pbrt_options.h"
 #include "import/pbrt_parser.h"
 #include "import/pbrt_shapes.h"
+#include "import/pbrt_v3.h"
 
 namespace caplet::pbrt {
+
+namespace {
+
+constexpr std::size_t most_attributes = 256;  // of different names; no target knows as many
+
+template <class Map>
+std::vector<std::string> names_of(const Map& map) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : map) names.push_back(name);
+  return names;
+}
+
+}  // namespace
 
 // --- Options ---
 
@@ -124,11 +138,7 @@ void Parser::coord_sys_transform() {
     state_.ctm = found->second;
     return;
   }
-  std::vector<std::string> known;
-  for (const auto& [system, matrix] : coordinate_systems_) known.push_back(system);
-  const std::string nearest = nearest_name(name, known);
-  diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) +
-                                (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+  diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) + nearest(name, names_of(coordinate_systems_)));
 }
 
 void Parser::look_at() {
@@ -178,22 +188,34 @@ void Parser::attribute() {
                                   nearest_name(target, targets) + "\"");
     return;
   }
+  SharedParameters& current = state_.attributes[target];
   for (Parameter& parameter : given) {
     all_attributes_.push_back(std::make_shared<Parameter>(std::move(parameter)));
-    state_.attributes[target].push_back(all_attributes_.back());
+    const auto& fresh = all_attributes_.back();
+    const auto same = [&](const auto& other) { return other->name == fresh->name; };
+    if (const auto found = std::find_if(current.begin(), current.end(), same); found != current.end()) {
+      (*found)->replaced_by = fresh;
+      *found = fresh;
+    } else if (current.size() < most_attributes) {
+      current.push_back(fresh);
+    } else {
+      throw SyntaxError{fresh->where, "more than " + std::to_string(most_attributes) + " attributes of one target"};
+    }
   }
 }
 
 void Parser::material() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "material");
-  if (!check_name("Material", type, where_, diagnostics_)) {
+  const Refusal refusal = refusal_of("Material", type);
+  if (!refusal.is_known) {
+    diagnostics_.error(where_, refusal.text, refusal.text);
     state_.material = 0;
     return;
   }
   state_.material = static_cast<std::uint32_t>(uses_.size());
   uses_.push_back({materials_.size(), {}, where_});
-  materials_.push_back({type, {}, std::move(given)});
+  materials_.push_back({type, {}, std::move(given), refusal.text, where_});
 }
 
 void Parser::make_named_material() {
@@ -207,8 +229,10 @@ void Parser::make_named_material() {
   }
   named_materials_.emplace(name, materials_.size());
   if (!has_type) given.error("\"string type\" is missing");
-  const bool known = has_type && check_name("Material", type, given.where("type"), diagnostics_);
-  materials_.push_back({known ? type : "", name, std::move(given)});
+  const Refusal refusal = has_type ? refusal_of("Material", type) : Refusal{};
+  const SourceLocation where = given.where("type");
+  if (!refusal.is_known) diagnostics_.error(where, refusal.text, refusal.text);
+  materials_.push_back({refusal.is_known ? type : "", name, std::move(given), refusal.text, where});
 }
 
 std::uint32_t Parser::use_of_name(const std::string& name, const SourceLocation& where) {
@@ -225,21 +249,26 @@ void Parser::named_material() {
 void Parser::make_named_medium() {
   const std::string name = string_argument("a name");
   Parameters given = parameters(owner(name), "medium");
-  media_.emplace(name, where_);
-  if (given.has("type"))
-    check_name("MakeNamedMedium", given.text("type", ""), given.where("type"), diagnostics_);
-  else
-    given.error("\"string type\" is missing");
+  const std::string type = given.text("type", "");
+  media_.emplace(name, Medium{where_, type});
+  if (!given.has("type")) return given.error("\"string type\" is missing");
+  const Refusal refusal = refusal_of("MakeNamedMedium", type);
+  if (!refusal.is_known) diagnostics_.error(given.where("type"), refusal.text, refusal.text);
 }
 
 void Parser::medium_interface() {
-  std::vector<std::string> known;
-  for (const auto& [name, where] : media_) known.push_back(name);
   for (int side = 0; side < 2; ++side) {
     const SourceLocation place = lexer_->place(lexer_->peek());
     if (side == 1 && lexer_->peek().kind != Token::Kind::string) return;
     const std::string name = string_argument("a medium's name (or \"\")");
-    if (!name.empty() && !media_.contains(name)) diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined");
+    if (name.empty()) continue;
+    if (const auto found = media_.find(name); found == media_.end())
+      diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined" + nearest(name, names_of(media_)));
+    else
+      diagnostics_.error(place,
+                         "the medium " + in_quotes(name) + " is a MakeNamedMedium \"" + found->second.type + "\" (" +
+                             found->second.where.to_string() + "), which is not rendered yet",
+                         "MakeNamedMedium " + found->second.type);
   }
 }
 
@@ -251,7 +280,8 @@ void Parser::texture() {
   const std::string texture_class = string_argument("a class");
   Parameters given = parameters(owner(name), "texture");
   if (kind != "float" && kind != "spectrum") {
-    diagnostics_.error(kind_place, "a texture is \"float\" or \"spectrum\", not " + in_quotes(kind));
+    const std::string old = v3_name("Texture", kind), said = "a texture is \"float\" or \"spectrum\", not " + in_quotes(kind);
+    diagnostics_.error(kind_place, said + (old.empty() ? "" : ": that is " + old), said);
     return;
   }
   bool known = false;
@@ -295,11 +325,8 @@ void Parser::shape() {
 const Object* Parser::finished_object(const std::string& name, std::string& problem) const {
   const auto found = object_names_.find(name);
   if (found == object_names_.end()) {
-    std::vector<std::string> known;
-    for (const auto& [other, index] : object_names_) known.push_back(other);
-    const std::string nearest = nearest_name(name, known);
-    problem = "names the object " + in_quotes(name) + ", which is not defined before this" +
-              (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\"");
+    problem =
+        "names the object " + in_quotes(name) + ", which is not defined before this" + nearest(name, names_of(object_names_));
     return nullptr;
   }
   const Object& object = scene_.objects[found->second];
@@ -309,51 +336,95 @@ const Object* Parser::finished_object(const std::string& name, std::string& prob
   return nullptr;
 }
 
-void Parser::resolve_materials() {
-  std::vector<std::optional<std::uint32_t>> index_of_statement;
-  for (MaterialStatement& statement : materials_) {
+namespace {
+
+/// Calls `visit` with every index of a material that a shape has.
+void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit) {
+  visit(shape.material);
+  for (std::uint32_t& material : shape.materials) visit(material);
+  if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    for (std::uint32_t& material : capsules->materials) visit(material);
+  if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
+    for (std::shared_ptr<const Shape>& operand : csg->operands) {
+      auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
+      each_material(*own, visit);
+      operand = std::move(own);
+    }
+}
+
+void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visit) {
+  for (Shape& shape : scene.shapes) each_material(shape, visit);
+  for (Object& object : scene.objects)
+    for (Shape& shape : object.shapes) each_material(shape, visit);
+}
+
+}  // namespace
+
+/// By statement: does a shape have its material?
+std::vector<bool> Parser::used_materials() {
+  std::vector<bool> used(materials_.size(), false);
+  each_material(scene_, [&](std::uint32_t& index) {
+    const MaterialUse& use = uses_[index];
+    if (use.statement) used[*use.statement] = true;
+    if (const auto found = use.statement ? named_materials_.end() : named_materials_.find(use.name);
+        found != named_materials_.end())
+      used[found->second] = true;
+  });
+  return used;
+}
+
+/// The index in the scene of each statement's material. One that cannot be rendered is an error where a shape has it; of the
+/// others a warning tells.
+std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used) {
+  std::vector<std::uint32_t> index_of_statement;
+  std::size_t left_out = 0;
+  std::string first_left_out;
+  for (std::size_t i = 0; i < materials_.size(); ++i) {
+    MaterialStatement& statement = materials_[i];
     index_of_statement.push_back(static_cast<std::uint32_t>(scene_.materials.size()));
     if (statement.type.empty()) continue;
-    Material material = make_material(statement.type, statement.parameters, textures_);
-    material.name = statement.name;
-    scene_.materials.push_back(std::move(material));
+    Diagnostics aside;
+    Diagnostics& diagnostics = used[i] ? diagnostics_ : aside;
+    if (!statement.refusal.empty()) {
+      diagnostics.error(statement.where, statement.refusal, statement.refusal);
+    } else {
+      statement.parameters.report_to(diagnostics);
+      Material material = make_material(statement.type, statement.parameters, textures_);
+      material.name = statement.name;
+      if (!aside.has_errors()) scene_.materials.push_back(std::move(material));
+    }
+    if (!aside.has_errors()) continue;
+    try {
+      aside.finish();
+    } catch (const InputError& error) {
+      if (left_out++ == 0) first_left_out = error.messages().front();
+    }
   }
-  std::vector<std::string> known;
-  for (const auto& [name, index] : named_materials_) known.push_back(name);
+  if (left_out > 0 && !diagnostics_.has_errors())
+    diagnostics_.warning({}, first_left_out + " (no shape has this material" +
+                                 (left_out > 1 ? ", nor " + std::to_string(left_out - 1) + " others that are wrong)" : ")"));
+  return index_of_statement;
+}
+
+void Parser::resolve_materials() {
+  const std::vector<std::uint32_t> index_of_statement = make_materials(used_materials());
+  const std::vector<std::string> known = names_of(named_materials_);
   std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
   for (std::size_t i = 1; i < uses_.size(); ++i) {
     const MaterialUse& use = uses_[i];
     const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
-    if (use.statement || named != named_materials_.end()) {
-      index_of_use[i] = *index_of_statement[use.statement ? *use.statement : named->second];
-      continue;
-    }
-    const std::string nearest = nearest_name(use.name, known);
-    diagnostics_.error(use.where, "the material " + in_quotes(use.name) + " is not defined" +
-                                      (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+    if (use.statement || named != named_materials_.end())
+      index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
+    else
+      diagnostics_.error(use.where, "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, known));
   }
   bool uses_default = false;
   const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
   index_of_use[0] = default_index;
-  const auto remap_one = [&](std::uint32_t& material) {
+  each_material(scene_, [&](std::uint32_t& material) {
     uses_default = uses_default || material == 0;
     material = index_of_use[material];
-  };
-  const std::function<void(Shape&)> remap = [&](Shape& shape) {
-    remap_one(shape.material);
-    for (std::uint32_t& material : shape.materials) remap_one(material);
-    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-      for (std::uint32_t& material : capsules->materials) remap_one(material);
-    if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
-      for (std::shared_ptr<const Shape>& operand : csg->operands) {
-        auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
-        remap(*own);
-        operand = std::move(own);
-      }
-  };
-  for (Shape& shape : scene_.shapes) remap(shape);
-  for (Object& object : scene_.objects)
-    for (Shape& shape : object.shapes) remap(shape);
+  });
   if (uses_default) scene_.materials.push_back({DiffuseMaterial{}, "default", {main_file_}});
 }
 

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "import/pbrt_lexer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -51,27 +52,16 @@ int parse_integer(const Token& token, const Lexer& lexer) {
 }
 
 Lexer::Lexer(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
-  if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
-}
-
-void Lexer::advance() {
-  if (text_[at_] == '\n') {
-    ++line_;
-    column_ = 1;
-  } else {
-    ++column_;
-  }
-  ++at_;
+  if (text_.starts_with("\xef\xbb\xbf")) at_ = line_start_ = 3;
 }
 
 void Lexer::skip_blanks() {
-  while (at_ < text_.size()) {
-    if (text_[at_] == '#')
-      while (at_ < text_.size() && text_[at_] != '\n') advance();
-    else if (is_blank(text_[at_]))
-      advance();
-    else
-      return;
+  for (; at_ < text_.size(); ++at_) {
+    if (text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+    if (at_ == text_.size() || !is_blank(text_[at_])) return;
+    if (text_[at_] != '\n') continue;
+    ++line_;
+    line_start_ = at_ + 1;
   }
 }
 
@@ -91,25 +81,25 @@ Token Lexer::next() {
 
 Token Lexer::scan() {
   skip_blanks();
-  Token token{Token::Kind::end, "end of file", line_, column_};
+  Token token{Token::Kind::end, "end of file", line_, column()};
   if (at_ == text_.size()) return token;
   const char first = text_[at_];
   if (first == '"') return scan_string();
   const std::size_t start = at_;
   if (first == '[' || first == ']') {
     token.kind = first == '[' ? Token::Kind::open : Token::Kind::close;
-    advance();
+    ++at_;
   } else {
     token.kind = Token::Kind::word;
-    while (at_ < text_.size() && !ends_word(text_[at_])) advance();
+    while (at_ < text_.size() && !ends_word(text_[at_])) ++at_;
   }
   token.text = std::string_view(text_).substr(start, at_ - start);
   return token;
 }
 
 Token Lexer::scan_string() {
-  Token token{Token::Kind::string, {}, line_, column_};
-  advance();
+  Token token{Token::Kind::string, {}, line_, column()};
+  ++at_;
   const std::size_t start = at_;
   std::string* unescaped = nullptr;
   bool bad_escape = false;
@@ -117,17 +107,17 @@ Token Lexer::scan_string() {
   while (at_ < text_.size() && text_[at_] != '"' && text_[at_] != '\n') {
     if (text_[at_] != '\\') {
       if (unescaped) *unescaped += text_[at_];
-      advance();
+      ++at_;
       continue;
     }
     if (!unescaped) unescaped = &unescaped_.emplace_back(text_.substr(start, at_ - start));
     constexpr std::string_view escapes = "nrtbf\\'\"", meanings = "\n\r\t\b\f\\'\"";
-    const SourceLocation here{file_, line_, column_};
-    advance();
+    const SourceLocation here{file_, line_, column()};
+    ++at_;
     const std::size_t which = at_ < text_.size() ? escapes.find(text_[at_]) : std::string_view::npos;
     if (which != std::string_view::npos) {
       *unescaped += meanings[which];
-      advance();
+      ++at_;
     } else if (!bad_escape) {
       bad_escape = true;
       escape_place = here;
@@ -135,7 +125,7 @@ Token Lexer::scan_string() {
   }
   if (at_ == text_.size() || text_[at_] == '\n') throw SyntaxError{place(token), "this string is not closed on its line"};
   token.text = unescaped ? std::string_view(*unescaped) : std::string_view(text_).substr(start, at_ - start);
-  advance();
+  ++at_;
   if (bad_escape) throw SyntaxError{escape_place, "unknown escape in a string"};
   return token;
 }

@@ -16,6 +16,7 @@ namespace caplet::pbrt {
 struct SyntaxError {
   SourceLocation where;
   std::string message;
+  std::string kind = {};  // as for Diagnostics::error
 };
 
 struct Token {
@@ -42,11 +43,11 @@ class Lexer {
   Token scan();
   Token scan_string();
   void skip_blanks();
-  void advance();
+  int column() const { return static_cast<int>(at_ - line_start_) + 1; }
 
   std::string file_, text_;
-  std::size_t at_ = 0;
-  int line_ = 1, column_ = 1;
+  std::size_t at_ = 0, line_start_ = 0;
+  int line_ = 1;
   Token ahead_;
   bool has_ahead_ = false;
   std::deque<std::string> unescaped_;

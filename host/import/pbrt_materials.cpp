@@ -162,6 +162,7 @@ TextureValue make_texture(const std::string& kind, const std::string& texture_cl
     else
       value.refusal = "a mix texture of different kinds of spectra, which is not rendered yet";
   } else {
+    std::string missing;
     if (texture_class == "imagemap") {
       const std::string name = parameters.text("filename", "");
       const std::string file = resolve_file(name, parameters.where("filename"), parameters.main_file());
@@ -169,9 +170,10 @@ TextureValue make_texture(const std::string& kind, const std::string& texture_cl
       if (name.empty() && !parameters.has("filename"))
         parameters.error("\"filename\" is missing");
       else if (!std::filesystem::is_regular_file(file, ignored))
-        parameters.error("filename", "missing texture: no such file " + in_quotes(file));
+        missing = ", whose file " + in_quotes(file) + " does not exist";
     }
-    value.refusal = "Texture \"" + texture_class + "\" (" + parameters.where().to_string() + "), which is not rendered yet";
+    value.refusal =
+        "Texture \"" + texture_class + "\" (" + parameters.where().to_string() + ")" + missing + ", which is not rendered yet";
     return value;
   }
   parameters.finish();

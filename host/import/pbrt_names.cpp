@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "import/pbrt_lexer.h"
+#include "import/pbrt_v3.h"
 
 namespace caplet::pbrt {
 
@@ -123,20 +124,24 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return best;
 }
 
-bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics) {
+Refusal refusal_of(std::string_view directive, const std::string& name) {
   for (const NameTable& table : name_tables()) {
     if (table.directive != directive) continue;
-    if (contains(table.accepted, name)) return true;
-    if (contains(table.refused, name)) {
-      diagnostics.error(where, table.directive + " \"" + name + "\" is not rendered yet");
-      return false;
-    }
+    if (contains(table.accepted, name)) return {};
+    if (contains(table.refused, name)) return {table.directive + " \"" + name + "\" is not rendered yet"};
+    const std::string unknown = "unknown " + table.directive + " " + in_quotes(name);
+    if (const std::string old = v3_name(directive, name); !old.empty()) return {unknown + ": that is " + old, false};
     std::vector<std::string> known = table.accepted;
     known.insert(known.end(), table.refused.begin(), table.refused.end());
-    diagnostics.error(where, "unknown " + table.directive + " " + in_quotes(name) + "; the nearest known name is \"" +
-                                 nearest_name(name, known) + "\"");
-    return false;
+    return {unknown + "; the nearest known name is \"" + nearest_name(name, known) + "\"", false};
   }
+  return {"unknown directive " + in_quotes(directive), false};
+}
+
+bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics) {
+  const Refusal refusal = refusal_of(directive, name);
+  if (refusal.text.empty()) return true;
+  diagnostics.error(where, refusal.text, refusal.text);
   return false;
 }
 

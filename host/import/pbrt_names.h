@@ -24,8 +24,16 @@ const std::vector<NameTable>& name_tables();
 /// All directives.
 const std::vector<std::string>& directive_names();
 
-/// The known name with the smallest edit distance; empty if there is none.
+/// The known name with the smallest edit distance; empty if there is none. Takes time by the number of names: pointless for an
+/// error that is not shown (Diagnostics::is_full).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
+
+/// Why a type of `directive` cannot be used, and what groups such errors; `text` is empty where it is accepted.
+struct Refusal {
+  std::string text;
+  bool is_known = true;  // to pbrt-v4: not rendered yet
+};
+Refusal refusal_of(std::string_view directive, const std::string& name);
 
 /// True if `name` is accepted; otherwise reports that it is unknown, or known and not rendered yet.
 bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics);

@@ -4,19 +4,20 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <unordered_map>
 #include <utility>
 
 #include "import/pbrt_file.h"
 #include "import/pbrt_names.h"
 #include "import/pbrt_spectrum_file.h"
+#include "import/pbrt_v3.h"
 
 namespace caplet::pbrt {
 
 namespace {
 
 struct TypeRow {
-  const char* name;
-  const char* canonical;
+  std::string_view name, canonical;
   std::size_t multiple;  // of the number of values
   bool single;           // exactly that many
 };
@@ -39,9 +40,11 @@ const TypeRow* find_type(std::string_view name) {
 }
 
 std::string unknown_type(std::string_view type) {
+  const std::string unknown = "unknown parameter type " + in_quotes(type);
+  if (const std::string old = v3_name("type", type); !old.empty()) return unknown + ": that is " + old;
   std::vector<std::string> known;
-  for (const TypeRow& row : type_rows()) known.push_back(row.name);
-  return "unknown parameter type " + in_quotes(type) + "; the nearest known type is \"" + nearest_name(type, known) + "\"";
+  for (const TypeRow& row : type_rows()) known.emplace_back(row.name);
+  return unknown + "; the nearest known type is \"" + nearest_name(type, known) + "\"";
 }
 
 /// "type name" -> both; empty when it is not two words.
@@ -109,6 +112,26 @@ void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>
   lexer.next();
 }
 
+/// A texture's refusal without its place.
+std::string kind_of(const std::string& refusal) { return refusal.substr(0, refusal.find(" (")); }
+
+/// Finds a parameter by its name: among the few that a sound statement has one by one, among more by a table.
+class GivenNames {
+ public:
+  const Parameter* find(const std::vector<Parameter>& parameters, const std::string& name) {
+    constexpr std::size_t few = 32;
+    const std::size_t count = parameters.size();
+    for (std::size_t i = 0; i < std::min(count, few); ++i)
+      if (parameters[i].name == name) return &parameters[i];
+    for (std::size_t i = few + table_.size(); i < count; ++i) table_.emplace(parameters[i].name, i);
+    const auto found = table_.find(name);
+    return found == table_.end() ? nullptr : &parameters[found->second];
+  }
+
+ private:
+  std::unordered_map<std::string, std::size_t> table_;
+};
+
 std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
 
 /// The complaint about a parameter's number of values, empty when it is right.
@@ -133,6 +156,7 @@ std::string check_count(const Parameter& parameter, const TypeRow& row) {
 
 std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnostics& diagnostics) {
   std::vector<Parameter> parameters;
+  GivenNames given;
   while (lexer.peek().kind == Token::Kind::string) {
     const Token declaration = lexer.next();
     Parameter parameter;
@@ -141,9 +165,10 @@ std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnost
     const auto [type, name] = split_declaration(declaration.text);
     const TypeRow* row = find_type(type);
     if (type.empty() || !row) {
-      diagnostics.error(parameter.where, type.empty()
-                                             ? "expected a parameter (\"type name\"), found " + in_quotes(declaration.text)
-                                             : unknown_type(type));
+      if (type.empty())
+        diagnostics.error(parameter.where, "expected a parameter (\"type name\"), found " + in_quotes(declaration.text));
+      else
+        diagnostics.error(parameter.where, unknown_type(type), "parameter type " + std::string(type));
       if (lexer.peek().kind == Token::Kind::open || type.empty())
         skip_values(lexer);
       else if (lexer.peek().kind == Token::Kind::word || lexer.peek().kind == Token::Kind::string)
@@ -161,8 +186,7 @@ std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnost
       diagnostics.error(parameter.where, complaint);
       parameter.broken = true;
     }
-    const auto same = [&](const Parameter& other) { return other.name == parameter.name; };
-    if (const auto first = std::find_if(parameters.begin(), parameters.end(), same); first != parameters.end()) {
+    if (const Parameter* first = given.find(parameters, parameter.name)) {
       diagnostics.error(parameter.where,
                         "the parameter \"" + parameter.name + "\" is given twice (first at " + first->where.to_string() + ")");
       continue;
@@ -170,6 +194,15 @@ std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnost
     parameters.push_back(std::move(parameter));
   }
   return parameters;
+}
+
+void add_errors(const InputError& problem, const SourceLocation& where, Diagnostics& diagnostics) {
+  const std::string place = where.to_string();
+  for (const std::string& message : problem.messages())
+    if (message.starts_with(place + ": "))
+      diagnostics.error({}, message);
+    else
+      diagnostics.error(where, message);
 }
 
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file) {
@@ -202,7 +235,8 @@ const Parameter* Parameters::lookup(std::string_view name) const {
 }
 
 Parameter* Parameters::find(std::string_view name) {
-  asked_.emplace_back(name);
+  if (asked_.empty()) asked_.reserve(16);
+  asked_.push_back(name);
   Parameter* found = nullptr;
   for (const auto& attribute : attributes_)
     if (attribute->name == name) {
@@ -222,8 +256,8 @@ SourceLocation Parameters::where(std::string_view name) const {
   return parameter ? parameter->where : where_;
 }
 
-void Parameters::error(std::string_view name, const std::string& message) {
-  diagnostics_->error(where(name), owner_ + ": \"" + std::string(name) + "\" " + message);
+void Parameters::error(std::string_view name, const std::string& message, const std::string& kind) {
+  diagnostics_->error(where(name), owner_ + ": \"" + std::string(name) + "\" " + message, kind);
 }
 
 bool Parameters::has(std::string_view name) { return find(name) != nullptr; }
@@ -295,7 +329,10 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
       return wrong(
           (found == textures->end() ? "names an unknown texture, " : "needs a spectrum texture, not the float texture ") +
           in_quotes(parameter.strings[0]));
-    if (!found->second.refusal.empty()) return wrong("uses " + found->second.refusal);
+    if (!found->second.refusal.empty()) {
+      error(parameter.name, "uses " + found->second.refusal, kind_of(found->second.refusal));
+      return std::nullopt;
+    }
     return found->second.spectrum;
   }
   if (parameter.type == "rgb") {
@@ -320,7 +357,7 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
     try {
       sampled = read_spectrum_file(file, parameter.where);
     } catch (const InputError& problem) {
-      for (const std::string& message : problem.messages()) diagnostics_->error({}, message);
+      add_errors(problem, parameter.where, *diagnostics_);
       return std::nullopt;
     }
   }
@@ -344,14 +381,14 @@ double Parameters::number_or_texture(std::string_view name, double fallback, con
   else if (!found->second.is_float)
     error(name, "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
   else if (!found->second.refusal.empty())
-    error(name, "uses " + found->second.refusal);
+    error(name, "uses " + found->second.refusal, kind_of(found->second.refusal));
   else
     return found->second.number;
   return fallback;
 }
 
 void Parameters::refuse(std::string_view name) {
-  if (find(name)) error(name, "is not rendered yet");
+  if (find(name)) error(name, "is not rendered yet", "not rendered: " + std::string(name));
 }
 
 void Parameters::ignore(std::string_view name) { find(name); }
@@ -360,9 +397,14 @@ void Parameters::finish() {
   for (const auto& attribute : attributes_) attribute->consulted = true;
   for (const Parameter& parameter : own_) {
     if (parameter.used) continue;
-    std::string message = owner_ + ": unknown parameter " + in_quotes(parameter.name);
-    if (!asked_.empty()) message += "; the nearest known name is \"" + nearest_name(parameter.name, asked_) + "\"";
-    diagnostics_->error(parameter.where, message);
+    const std::string directive = owner_.substr(0, owner_.find(' ')),
+                      unknown = ": unknown parameter " + in_quotes(parameter.name);
+    std::string message = owner_ + unknown;
+    if (const std::string old = v3_parameter(directive, parameter.name); !old.empty())
+      message += ": that is " + old;
+    else if (!asked_.empty() && !diagnostics_->is_full())
+      message += "; the nearest known name is \"" + nearest_name(parameter.name, {asked_.begin(), asked_.end()}) + "\"";
+    diagnostics_->error(parameter.where, message, directive + unknown);
   }
 }
 

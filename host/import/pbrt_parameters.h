@@ -28,9 +28,10 @@ struct Parameter {
   std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
   std::vector<bool> bools;
   ColorSpace space = ColorSpace::srgb;
-  bool broken = false;     // reported already; it counts as given, without a value
-  bool used = false;       // something took its value
-  bool consulted = false;  // an Attribute's: a statement of its target followed
+  bool broken = false;                     // reported already; it counts as given, without a value
+  bool used = false;                       // something took its value
+  bool consulted = false;                  // an Attribute's: a statement of its target followed
+  std::shared_ptr<Parameter> replaced_by;  // an Attribute's: a later one of the same name
 };
 
 /// Reads the parameters up to the next directive. Errors of single parameters are reported
@@ -50,11 +51,15 @@ using TextureTable = std::map<std::string, TextureValue>;
 
 using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
 
+/// Adds what is wrong with a file that is named at `where`: each line has both places.
+void add_errors(const InputError& problem, const SourceLocation& where, Diagnostics& diagnostics);
+
 /// Finds files that statements name: beside the file with the statement, else beside the scene's main file.
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
 
 /// One statement's parameters. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). Reading
-/// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback.
+/// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback. Names asked for are literals:
+/// they are kept as they are.
 class Parameters {
  public:
   Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
@@ -78,7 +83,8 @@ class Parameters {
   /// Everything not asked for is an error that lists the nearest name asked for.
   void finish();
 
-  void error(std::string_view name, const std::string& message);
+  /// `kind` as for Diagnostics::error.
+  void error(std::string_view name, const std::string& message, const std::string& kind = {});
   void error(const std::string& message) { diagnostics_->error(where_, owner_ + ": " + message); }
   const SourceLocation& where() const { return where_; }
   SourceLocation where(std::string_view name) const;
@@ -87,6 +93,8 @@ class Parameters {
   /// The colour space at the statement.
   ColorSpace space() const { return space_; }
   Diagnostics& diagnostics() { return *diagnostics_; }
+  /// Errors from now on go there.
+  void report_to(Diagnostics& diagnostics) { diagnostics_ = &diagnostics; }
 
  private:
   Parameter* find(std::string_view name);
@@ -100,7 +108,7 @@ class Parameters {
   const std::string* main_file_;
   ColorSpace space_;
   Diagnostics* diagnostics_;
-  std::vector<std::string> asked_;
+  std::vector<std::string_view> asked_;
 };
 
 }  // namespace caplet::pbrt

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "import/pbrt_file.h"
 #include "import/pbrt_names.h"
+#include "import/pbrt_v3.h"
 #include "import/presentation.h"
 
 namespace caplet::pbrt {
@@ -20,7 +21,10 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t deepest_include = 64;
-}
+// What a tree of files that include each other many times over may come to; scenes stay far below.
+constexpr std::size_t most_included_files = 1 << 16;
+constexpr std::size_t most_included_again = std::size_t{1} << 30;  // bytes of files that were read before
+}  // namespace
 
 const std::vector<Parser::Handler>& Parser::handlers() {
   using enum Handler::Allowed;
@@ -72,12 +76,12 @@ const std::vector<Parser::Handler>& Parser::handlers() {
 Scene Parser::parse(std::string text) {
   scene_.source = main_file_;
   std::error_code ignored;
-  open_files_.push_back(fs::weakly_canonical(main_file_, ignored).string());
+  open_files_.push_back({main_file_, fs::weakly_canonical(main_file_, ignored).string()});
   parse_file(main_file_, std::move(text));
   report_unclosed(0);
   if (!in_world_ && !diagnostics_.has_errors()) diagnostics_.error({main_file_}, "the scene is empty: there is no WorldBegin");
-  finish_attributes();
   resolve_materials();
+  finish_attributes();
   resolve_instances();
   diagnostics_.finish();
   scene_.sampler.seed = sampler_seed_.value_or(option_seed_.value_or(0));
@@ -93,7 +97,7 @@ void Parser::parse_file(const std::string& file, std::string text) {
       more = lexer.peek().kind != Token::Kind::end;
       if (more) parse_statement();
     } catch (const SyntaxError& error) {
-      diagnostics_.error(error.where, error.message);
+      diagnostics_.error(error.where, error.message, error.kind);
       skip_to_directive();
     }
   }
@@ -112,9 +116,14 @@ void Parser::parse_statement() {
     throw SyntaxError{where_, "expected a directive, found " +
                                   std::string(token.kind == Token::Kind::string ? "the string " : "") + in_quotes(token.text)};
   const auto found = by_name.find(token.text);
-  if (found == by_name.end())
-    throw SyntaxError{where_, "unknown directive " + in_quotes(token.text) + "; the nearest known name is \"" +
-                                  nearest_name(token.text, directive_names()) + "\""};
+  if (found == by_name.end()) {
+    const std::string unknown = "unknown directive " + in_quotes(token.text), old = v3_name("", token.text);
+    throw SyntaxError{
+        where_,
+        unknown +
+            (old.empty() ? "; the nearest known name is \"" + nearest_name(token.text, directive_names()) + "\"" : ": " + old),
+        unknown};
+  }
   directive_ = token.text;
   const Handler& handler = *found->second;
   if (handler.allowed == Handler::Allowed::options && in_world_)
@@ -193,12 +202,21 @@ std::string Parser::included_file() {
   std::string file = resolve_file(name, place, main_file_);
   std::error_code ignored;
   const std::string canonical = fs::weakly_canonical(file, ignored).string();
-  if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
-    throw SyntaxError{place, "recursive " + directive_ + " of " + file};
+  const auto open =
+      std::find_if(open_files_.begin(), open_files_.end(), [&](const OpenFile& other) { return other.canonical == canonical; });
+  if (open != open_files_.end()) {
+    std::string chain;
+    for (auto it = open; it != open_files_.end(); ++it) chain += it->name + " includes ";
+    throw SyntaxError{place, "recursive " + directive_ + " of " + file + ": " + chain + open->name};
+  }
   if (open_files_.size() >= deepest_include)
     throw SyntaxError{place, "more than " + std::to_string(deepest_include) + " files within each other"};
+  if (++included_files_ > most_included_files) {
+    diagnostics_.error(place, "more than " + std::to_string(most_included_files) + " files are included, one within the other");
+    diagnostics_.finish();
+  }
   where_ = place;
-  open_files_.push_back(canonical);
+  open_files_.push_back({file, canonical});
   return file;
 }
 
@@ -207,7 +225,12 @@ void Parser::read_included(const std::string& file) {
   try {
     text = read_text(file, where_);
   } catch (const InputError& problem) {
-    for (const std::string& message : problem.messages()) diagnostics_.error({}, message);
+    add_errors(problem, where_, diagnostics_);
+  }
+  if (text && !files_read_.insert(open_files_.back().canonical).second) included_again_ += text->size();
+  if (included_again_ > most_included_again) {
+    diagnostics_.error(where_, "the same files are included over and over: more than 1 GiB of text that was read before");
+    diagnostics_.finish();
   }
   if (text) parse_file(file, std::move(*text));
   open_files_.pop_back();
@@ -286,7 +309,14 @@ void Parser::world_begin() {
 
 // --- The end ---
 
+std::string Parser::nearest(const std::string& name, const std::vector<std::string>& known) const {
+  return known.empty() || diagnostics_.is_full() ? "" : "; the nearest known name is \"" + nearest_name(name, known) + "\"";
+}
+
 void Parser::finish_attributes() {
+  // What a later one of the same name was read for counts for the earlier: later ones are further on in the list.
+  for (auto it = all_attributes_.rbegin(); it != all_attributes_.rend(); ++it)
+    if ((*it)->replaced_by && (*it)->replaced_by->used) (*it)->used = true;
   for (const auto& parameter : all_attributes_)
     if (parameter->consulted && !parameter->used && !parameter->broken)
       diagnostics_.error(parameter->where, "no statement after this Attribute knows the parameter " + in_quotes(parameter->name));
@@ -300,9 +330,7 @@ void Parser::resolve_instances() {
       scene_.instances.push_back({found->second, use.world_from_object, use.where});
       continue;
     }
-    const std::string nearest = nearest_name(use.name, known);
-    diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" +
-                                      (nearest.empty() ? "" : "; the nearest known name is \"" + nearest + "\""));
+    diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" + nearest(use.name, known));
   }
 }
 

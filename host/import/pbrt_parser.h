@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "import/pbrt_lexer.h"
@@ -41,12 +42,21 @@ class Parser {
   struct MaterialStatement {
     std::string type, name;
     Parameters parameters;
+    std::string refusal = {};  // of a type that is not rendered yet: an error only where a shape uses it
+    SourceLocation where = {};
   };
   /// What shapes refer to until all materials are known: the default, a Material statement, or a name.
   struct MaterialUse {
     std::optional<std::size_t> statement;
     std::string name;
     SourceLocation where;
+  };
+  struct Medium {
+    SourceLocation where;
+    std::string type;
+  };
+  struct OpenFile {
+    std::string name, canonical;
   };
   struct InstanceUse {
     std::string name;
@@ -122,7 +132,10 @@ class Parser {
   const Object* finished_object(const std::string& name, std::string& problem) const;
 
   // At the end
+  std::string nearest(const std::string& name, const std::vector<std::string>& known) const;
   void finish_attributes();
+  std::vector<bool> used_materials();
+  std::vector<std::uint32_t> make_materials(const std::vector<bool>& used);
   void resolve_materials();
   void resolve_instances();
   void present();
@@ -135,7 +148,9 @@ class Parser {
   Lexer* lexer_ = nullptr;
   std::string directive_;
   SourceLocation where_;
-  std::vector<std::string> open_files_;  // canonical
+  std::vector<OpenFile> open_files_;
+  std::unordered_set<std::string> files_read_;  // canonical
+  std::size_t included_files_ = 0, included_again_ = 0;
   State state_;
   std::vector<Block> blocks_;
   std::size_t block_floor_ = 0;  // blocks below were opened outside the imported file
@@ -150,7 +165,7 @@ class Parser {
   std::map<std::string, std::size_t> named_materials_;
   std::vector<MaterialUse> uses_{1};
   std::map<std::string, std::uint32_t> uses_by_name_;
-  std::map<std::string, SourceLocation> media_;
+  std::map<std::string, Medium> media_;
   TextureTable textures_;
   SharedParameters all_attributes_;
 };

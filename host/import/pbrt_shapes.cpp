@@ -19,13 +19,13 @@ std::string file_of(Parameters& parameters) {
   return name.empty() ? name : resolve_file(name, parameters.where("filename"), parameters.main_file());
 }
 
-/// Runs a reader of another file; its errors are reported beside ours.
+/// Runs a reader of the file behind "filename"; its errors are reported beside ours.
 template <class Read>
 auto read_other(Parameters& parameters, Read read) -> decltype(read()) {
   try {
     return read();
   } catch (const InputError& problem) {
-    for (const std::string& message : problem.messages()) parameters.diagnostics().error({}, message);
+    add_errors(problem, parameters.where("filename"), parameters.diagnostics());
     return {};
   }
 }

@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 #include "import/ply.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/log.h"
 #include "import/pbrt_file.h"
 
@@ -17,6 +20,20 @@ namespace caplet {
 
 namespace {
 
+/// Files are written with normals that were 0 / 0: what does not hold for all vertices is of no use.
+template <class Vector>
+void drop_unless_finite(std::vector<Vector>& values, const std::string& file, const char* what, const char* instead) {
+  const auto finite = [](const Vector& v) {
+    for (glm::length_t k = 0; k < v.length(); ++k)
+      if (!std::isfinite(v[k])) return false;
+    return true;
+  };
+  const auto bad = values.size() - static_cast<std::size_t>(std::count_if(values.begin(), values.end(), finite));
+  if (bad == 0) return;
+  log::warn("{}: {} of {} {} are not finite: {}", file, bad, values.size(), what, instead);
+  values.clear();
+}
+
 TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const ply::Header& header) {
   const std::uint64_t vertices = header.elements[header.vertex].count, faces = header.elements[header.face].count;
   if (!scene || scene->mNumMeshes != 1 || scene->mMeshes[0]->mNumVertices != vertices || scene->mMeshes[0]->mNumFaces != faces)
@@ -30,6 +47,8 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
     mesh.normals.emplace_back(from.mNormals[i].x, from.mNormals[i].y, from.mNormals[i].z);
   for (std::uint64_t i = 0; from.mTextureCoords[0] && i < vertices; ++i)
     mesh.uvs.emplace_back(from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y);
+  drop_unless_finite(mesh.normals, file, "normals", "geometric normals are used");
+  drop_unless_finite(mesh.uvs, file, "texture coordinates", "those of a mesh without any are used");
   mesh.triangles.reserve(faces);
   std::uint64_t dropped = 0;
   for (std::uint64_t i = 0; i < faces; ++i) {

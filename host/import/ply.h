@@ -16,8 +16,9 @@
 
 namespace caplet {
 
-/// Vertices keep their order and are neither merged nor split; faces keep order and winding. `where` is the statement that names
-/// the file. Throws InputError when the file is missing, broken, or does not hold what its header says.
+/// Vertices keep their order and are neither merged nor split; faces keep order and winding. Normals or texture coordinates that
+/// are not finite at all vertices are left out, with a warning. `where` is the statement that names the file. Throws InputError
+/// when the file is missing, broken, or does not hold what its header says.
 TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where);
 /// The same from bytes; `file` is the name for messages.
 TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes);

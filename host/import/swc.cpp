@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <type_traits>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -49,11 +50,20 @@ std::size_t split(std::string_view line, std::array<Token, kColumns + 1>& tokens
   return count;
 }
 
+/// A whole number, also in a form with a decimal point or an exponent, as programs without integers write ("12.0", "1.2e1").
 template <class Integer>
 bool parse_integer(std::string_view token, Integer& value) {
   const char* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(token.data(), end, value);
-  return error == std::errc() && stop == end;
+  if (error == std::errc() && stop == end) return true;
+  double decimal = 0;
+  const auto [decimal_stop, decimal_error] = std::from_chars(token.data(), end, decimal);
+  constexpr double most =
+      std::is_same_v<Integer, std::int32_t> ? 2147483647.0 : 9007199254740992.0;  // 2^53: every one below is exact
+  if (decimal_error != std::errc() || decimal_stop != end || !(std::abs(decimal) <= most) || decimal != std::floor(decimal))
+    return false;
+  value = static_cast<Integer>(decimal);
+  return true;
 }
 
 class Parser {
@@ -207,6 +217,46 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
                         fmt::format("{} of {} samples have radius 0; they get {:.4g}", missing, samples.size(), filled));
 }
 
+constexpr int kFork = 5, kEnd = 6;
+bool is_mark(int type) { return type == kFork || type == kEnd; }
+
+/// Types 5 and 6 mark fork and end points and say nothing of the neurite: they become the type of the branch, which is that of
+/// the nearest ancestor that has one; at the soma or a root, that of the first descendant (in the order of the file) that has
+/// one; otherwise 0.
+void resolve_marks(std::vector<SwcSample>& samples) {
+  const auto parent_of = [&](std::size_t i) { return samples[i].parent; };
+  const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
+  std::vector<std::size_t> path;
+  // Down from ancestors: each sample is walked over once, as those of a branch without a type stay marked in `open`.
+  std::vector<bool> open(samples.size(), false);
+  const auto from_ancestors = [&] {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      path.clear();
+      auto k = static_cast<std::int32_t>(i);
+      while (k >= 0 && is_mark(samples[at(k)].type) && !open[at(k)]) {
+        path.push_back(at(k));
+        k = parent_of(at(k));
+      }
+      const int type = k >= 0 ? samples[at(k)].type : kSoma;
+      for (const std::size_t one : path)
+        if (type == kSoma || is_mark(type))
+          open[one] = true;
+        else
+          samples[one].type = type;
+    }
+  };
+  from_ancestors();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const int type = samples[i].type;
+    if (type == kSoma || is_mark(type)) continue;
+    for (std::int32_t k = parent_of(i); k >= 0 && is_mark(samples[at(k)].type); k = parent_of(at(k))) samples[at(k)].type = type;
+  }
+  open.assign(samples.size(), false);
+  from_ancestors();
+  for (SwcSample& sample : samples)
+    if (is_mark(sample.type)) sample.type = 0;
+}
+
 /// What a sample is drawn as.
 struct Role {
   bool segment = false;  // to its parent
@@ -316,6 +366,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&) {
   scene.source = path.string();
   std::vector<SwcSample> samples = parse_swc(TextFile(path).text(), scene.source);
   fill_missing_radii(samples, scene.source);
+  resolve_marks(samples);
   const std::vector<Role> roles = roles_of(samples);
 
   TypeMaterials material_of(scene);

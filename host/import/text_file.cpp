@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 namespace caplet {
@@ -69,14 +70,10 @@ NumberError parse_float(std::string_view token, float& value) {
     if (!std::isfinite(value)) return NumberError::not_finite;
     return std::abs(value) <= largest_number ? NumberError::none : NumberError::out_of_range;
   }
-  // from_chars reports too large and too small alike; a double tells them apart.
-  double wide = 0;
-  if (std::from_chars(begin, end, wide).ec == std::errc()) {
-    if (std::abs(wide) > 1) return NumberError::out_of_range;
-    value = 0;
-    return NumberError::none;
-  }
-  return NumberError::out_of_range;
+  // from_chars reports too large and too small alike; strtod tells them apart.
+  if (std::abs(std::strtod(std::string(begin, end).c_str(), nullptr)) > 1) return NumberError::out_of_range;
+  value = 0;
+  return NumberError::none;
 }
 
 std::string quoted(std::string_view token) {

@@ -42,6 +42,13 @@ struct Part {
 std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) { return mesh.triangles; }
 std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) { return mesh.patches; }
 
+/// Room for `count` more; at least doubles what it allocates, so that many small additions move each element a bounded number of
+/// times.
+template <class T>
+void reserve_more(std::vector<T>& values, std::size_t count) {
+  if (values.capacity() - values.size() < count) values.reserve(std::max(values.size() + count, 2 * values.capacity()));
+}
+
 /// The same mesh, each corner of each face a vertex of its own, with the uvs that a mesh without any has. A face that is turned
 /// over keeps them.
 template <class Mesh>
@@ -264,7 +271,7 @@ class GeometryLowering {
     const double scale = similarity_scale(m);
     std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
     const bool identity = m == Matrix(1);
-    part.primitives.reserve(part.primitives.size() + capsules.p0.size());
+    reserve_more(part.primitives, capsules.p0.size());
     for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
       const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
       const int kind = capsules.p0[i] == capsules.p1[i] ? shape_sphere : r0 == r1 ? shape_capsule : shape_tapered_capsule;
@@ -328,7 +335,7 @@ class GeometryLowering {
       return append(with_uvs(mesh), m, record, part);
     }
     const uint geometry = add_geometry(record, shape_triangle);
-    part.primitives.reserve(part.primitives.size() + mesh.triangles.size());
+    reserve_more(part.primitives, mesh.triangles.size());
     for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
       if (turned(triangle)) std::swap(triangle[1], triangle[2]);
       FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);

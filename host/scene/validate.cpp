@@ -132,10 +132,14 @@ class Validator {
     const std::size_t count = mesh.positions.size();
     if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
       return error(where, "the mesh has another number of normals or uvs than of vertices");
-    for (std::size_t i = 0; i < count; ++i)
-      if (!finite(mesh.positions[i]) || (!mesh.normals.empty() && !finite(mesh.normals[i])) ||
-          (!mesh.uvs.empty() && !finite(mesh.uvs[i])))
-        return error(where, "vertex " + std::to_string(i) + " of the mesh is not finite");
+    for (std::size_t i = 0; i < count; ++i) {
+      const char* what = !finite(mesh.positions[i])                          ? "position"
+                         : !mesh.normals.empty() && !finite(mesh.normals[i]) ? "normal"
+                         : !mesh.uvs.empty() && !finite(mesh.uvs[i])         ? "uv"
+                                                                             : nullptr;
+      if (what)
+        return error(where, std::string("the ") + what + " of vertex " + std::to_string(i) + " of the mesh is not finite");
+    }
   }
   template <class Face>
   void indices(const Face& face, std::size_t count, const SourceLocation& where) {

@@ -90,8 +90,11 @@ const Bad bad_scenes[] = {
     {"MissingMesh", "WorldBegin\nShape \"plymesh\" \"string filename\" \"no-such.ply\"",
      "scene.pbrt:2:17: no-such.ply: no such file"},
     {"MissingTexture",
-     "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\nShape \"sphere\"",
-     "scene.pbrt:2:35: Texture \"t\": \"filename\" missing texture: no such file \"no-such.png\""},
+     "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\n"
+     "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"",
+     "scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"imagemap\" (scene.pbrt:2:1), whose file "
+     "\"no-such.png\" "
+     "does not exist, which is not rendered yet"},
     {"MissingEnvironment", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"no-such.exr\"\nShape \"sphere\"",
      "scene.pbrt:2:24: LightSource \"infinite\": \"filename\" no such file \"no-such.exr\""},
     {"UndefinedMaterial",
@@ -128,8 +131,11 @@ const Bad bad_scenes[] = {
      "scene.pbrt:1:12: Film \"rgb\": \"cropwindow\" must be x min, x max, y min, y max within 0 and 1"},
     {"RefusedMaterial", "WorldBegin\nMaterial \"coateddiffuse\" \"float roughness\" 0\nShape \"sphere\"",
      "scene.pbrt:2:1: Material \"coateddiffuse\" is not rendered yet"},
-    {"RefusedMedium", "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\nShape \"sphere\"",
-     "scene.pbrt:1:23: MakeNamedMedium \"homogeneous\" is not rendered yet"},
+    {"RefusedMedium",
+     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\nMediumInterface \"fog\" \"\"\nShape \"sphere\"",
+     "scene.pbrt:3:17: the medium \"fog\" is a MakeNamedMedium \"homogeneous\" (scene.pbrt:1:1), which is not rendered yet"},
+    {"UnknownMedium", "MakeNamedMedium \"fog\" \"string type\" \"homogenous\"\nWorldBegin\nShape \"sphere\"",
+     "scene.pbrt:1:23: unknown MakeNamedMedium \"homogenous\"; the nearest known name is \"homogeneous\""},
     {"RefusedMotion", "ActiveTransform EndTime\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:17: ActiveTransform \"EndTime\" is not rendered yet"},
     {"RefusedSensor", "Film \"rgb\" \"string sensor\" \"nikon_d850\"\nWorldBegin\nShape \"sphere\"",
@@ -143,8 +149,9 @@ INSTANTIATE_TEST_SUITE_P(Import, BadScene, testing::ValuesIn(bad_scenes), [](con
 TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
   EXPECT_EQ(complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"hair\"\nShape \"sphere\"").size(), 3u);
   std::string many = "WorldBegin\n";
-  for (int i = 0; i < 50; ++i) many += "Shape \"nothing\"\n";
-  EXPECT_EQ(complaints(many).size(), 20u);
+  for (int i = 0; i < 50; ++i) many += "Shape \"sphere\" \"float radius\" -1\n";
+  EXPECT_EQ(complaints(many).size(), 21u);
+  EXPECT_EQ(complaints(many).back(), "and 30 more errors");
 }
 
 TEST(BadInput, ReferenceToARefusedTextureNamesIt) {
@@ -176,9 +183,10 @@ TEST(BadInput, Files) {
   EXPECT_EQ(import("empty.pbrt"), at + "empty.pbrt: the file is empty");
   EXPECT_EQ(import("garbage.pbrt"), at + "garbage.pbrt:1:6: this is no text (byte 0x01)");
   EXPECT_EQ(import("scene.blend"), at + "scene.blend: no known scene format (known: .pbrt, .pbrt.gz, .swc, .capsules)");
-  EXPECT_EQ(import("self.pbrt"), at + "self.pbrt:2:9: recursive Include of " + at + "self.pbrt");
+  EXPECT_EQ(import("self.pbrt"),
+            at + "self.pbrt:2:9: recursive Include of " + at + "self.pbrt: " + at + "self.pbrt includes " + at + "self.pbrt");
   EXPECT_EQ(import("a.pbrt"), at + "b.pbrt:2:3: unknown Shape \"cube\"; the nearest known name is \"cone\"");
-  EXPECT_EQ(import("spectrum.pbrt"), at + "bad.spd:2:5: expected a number, found \"x\"");
+  EXPECT_EQ(import("spectrum.pbrt"), at + "spectrum.pbrt:2:20: " + at + "bad.spd:2:5: expected a number, found \"x\"");
   EXPECT_EQ(import("wide.pbrt"), at + "wide.pbrt:2:24: LightSource \"infinite\": \"filename\" " + at +
                                      "b.pbrt is 3 x 2 pixels, neither 1:1 (equal-area) nor 2:1 (latitude-longitude)");
   EXPECT_THAT(import("cut.pbrt.gz"), testing::StartsWith(at + "cut.pbrt.gz: "));

@@ -154,6 +154,51 @@ TEST(Ply, BrokenFiles) {
   EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"), "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
 }
 
+TEST(Ply, NormalsThatAreNoneAreLeftOut) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
+                           "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n"
+                           "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string rest = " .5 .5\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
+  for (const char* bad : {"nan nan nan", "0 -nan 1", "inf 0 0", "1e300 0 0"}) {
+    const std::filesystem::path path = temporary_folder() / "normals.ply";
+    write_file(path, head + "0 0 0 " + bad + rest);
+    const Scene scene = world_of("Shape \"plymesh\" \"string filename\" \"" + path.string() + "\"");
+    Diagnostics diagnostics;
+    validate(scene, diagnostics);
+    EXPECT_FALSE(diagnostics.has_errors()) << bad;
+    const auto& mesh = std::get<TriangleMeshShape>(scene.shapes.at(0).geometry);
+    EXPECT_EQ(mesh.positions.size(), 3u) << bad;
+    EXPECT_TRUE(mesh.normals.empty()) << bad;
+    EXPECT_EQ(mesh.uvs.size(), 3u) << bad;
+  }
+  EXPECT_EQ(parse_ply("m.ply", head + "0 0 0 0 0 1" + rest).normals.size(), 3u);
+  // Positions are another matter.
+  EXPECT_EQ(complaint_of([&] { parse_ply("m.ply", head + "0 0 nan 0 0 1" + rest); }),
+            "m.ply:15: a vertex position is not finite (\"z\")");
+}
+
+TEST(Ply, WarningOfNormalsNamesTheFile) {
+  testing::internal::CaptureStderr();
+  parse_ply(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
+          "property float nx\nproperty float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\n"
+          "end_header\n0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::HasSubstr("m.ply: 1 of 3 normals are not finite: geometric normals are used"));
+}
+
+TEST(Ply, SharedMeshesLoad) {
+  CAPLET_NEEDS_DATA();
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(data_folder()))
+    if (entry.path().extension() == ".ply") {
+      ++files;
+      EXPECT_GT(read_ply(entry.path(), {}).triangles.size(), 0u) << entry.path();
+    }
+  EXPECT_GT(files, 0u);
+}
+
 TEST(Ply, IgnisMeshesHaveTheirCounts) {
   CAPLET_NEEDS_DATA();
   struct Row {

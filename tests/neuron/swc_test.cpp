@@ -138,6 +138,18 @@ TEST(SwcLines, MoreColumnsAreIgnored) {
   expect_same_capsules(import_text(kPlain), import_text("1 1 0 0 0 2 -1 0 7 8\n2 3 3 0 0 1 1 1\n3 3 6 0 0 0.5 2 abc\n"));
 }
 
+TEST(SwcLines, WholeNumbersMayBeWrittenAsDecimals) {
+  expect_same_capsules(import_text(kPlain), import_text("1.0 1. 0 0 0 2 -1.0\n2.000 3.0 3 0 0 1 1.0\n3e0 3 6 0 0 0.5 0.2e1\n"));
+}
+
+TEST(SwcLines, WhatIsTooSmallForANumberIsZero) {
+  // A radius of 0 is a missing one: a quarter of the median.
+  const CapsulesShape capsules =
+      capsules_of(import_text("1 2 0 0 1e-400 1 -1\n2 2 1 -1e-999 0 2 1\n3 2 2 0 0 4 2\n4 2 3 0 0 1e-400 3\n"));
+  EXPECT_EQ(capsules.p0[0], glm::vec3(0));
+  EXPECT_EQ(capsules.radius1.back(), 0.5F);
+}
+
 TEST(SwcLines, ParentsMayFollowAndIdsMayHaveGaps) {
   const Scene scene = import_text("70 3 6 0 0 0.5 50\n50 3 3 0 0 1 9\n9 1 0 0 0 2 -1\n");
   const CapsulesShape capsules = capsules_of(scene);
@@ -263,6 +275,39 @@ TEST(SwcPalette, HasAMaterialForEachTypeThatOccurs) {
   EXPECT_EQ(names, (std::set<std::string>{"soma", "axon", "basal dendrite", "apical dendrite", "undefined", "type 9"}));
 }
 
+// docs/formats/swc.md.
+TEST(SwcPalette, ColoursAreTheDocumentedOnes) {
+  const Scene scene = import_text("1 1 0 0 0 1 -1\n2 2 1 0 0 1 1\n3 3 2 0 0 1 1\n4 4 3 0 0 1 1\n5 0 4 0 0 1 1\n");
+  std::map<std::string, glm::dvec3> colors;
+  for (const Material& material : scene.materials)
+    colors[material.name] = std::get<RgbSpectrum>(std::get<DiffuseMaterial>(material.model).reflectance).rgb;
+  EXPECT_EQ(colors, (std::map<std::string, glm::dvec3>{{"undefined", {0.55, 0.56, 0.52}},
+                                                       {"soma", {0.86, 0.62, 0.22}},
+                                                       {"axon", {0.20, 0.62, 0.95}},
+                                                       {"basal dendrite", {0.95, 0.36, 0.18}},
+                                                       {"apical dendrite", {0.66, 0.22, 0.66}}}));
+}
+
+/// The names of the materials of the segments, in the order of the file.
+std::vector<std::string> segment_materials(const std::string& text) {
+  const Scene scene = import_text(text);
+  std::vector<std::string> names;
+  for (const std::uint32_t material : capsules_of(scene).materials) names.push_back(scene.materials[material].name);
+  return names;
+}
+
+TEST(SwcPalette, ForkAndEndPointsAreOfTheirBranch) {
+  using Names = std::vector<std::string>;
+  // A fork (5) and two ends (6) of a dendrite; an end right at the soma's first sample.
+  EXPECT_EQ(segment_materials("1 1 0 0 0 2 -1\n2 3 3 0 0 1 1\n3 5 4 0 0 1 2\n4 6 5 0 0 1 3\n5 4 5 1 0 1 3\n6 6 6 1 0 1 5\n"),
+            (Names{"basal dendrite", "basal dendrite", "basal dendrite", "apical dendrite", "apical dendrite"}));
+  // A fork at the soma: of what comes after it, children before parents.
+  EXPECT_EQ(segment_materials("4 6 5 0 0 1 2\n3 4 5 1 0 1 2\n2 5 3 0 0 1 1\n1 1 0 0 0 2 -1\n"),
+            (Names{"apical dendrite", "apical dendrite", "apical dendrite"}));
+  // Marks alone.
+  EXPECT_EQ(segment_materials("1 5 0 0 0 2 -1\n2 6 3 0 0 1 1\n"), (Names{"undefined"}));
+}
+
 // --- Bad input ---
 
 struct Bad {
@@ -324,8 +369,9 @@ TEST(BadSwcFiles, ErrorsAreCollected) {
     parse_swc(text, "many.swc");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.messages().size(), 20U);
+    ASSERT_EQ(error.messages().size(), 21U);
     EXPECT_THAT(error.messages()[19], StartsWith("many.swc:20:"));
+    EXPECT_EQ(error.messages()[20], "and 80 more errors");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 
 namespace caplet::test {
@@ -17,6 +18,11 @@ fs::path data_folder() {
   if (const char* named = std::getenv("CAPLET_DATA"); named && fs::is_directory(named)) return named;
   const fs::path beside = source_folder() / ".." / "shared" / "data";
   return fs::is_directory(beside) ? fs::weakly_canonical(beside) : fs::path();
+}
+
+bool data_required() {
+  const char* value = std::getenv("CAPLET_REQUIRE_DATA");
+  return value && *value && std::string_view(value) != "0";
 }
 
 fs::path temporary_folder() {

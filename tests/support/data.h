@@ -13,14 +13,18 @@ namespace caplet::test {
 std::filesystem::path data_folder();
 /// The repository's root.
 std::filesystem::path source_folder();
+/// True where a run without the shared data is a failure (CAPLET_REQUIRE_DATA).
+bool data_required();
 /// A fresh folder that is removed at the end of the process.
 std::filesystem::path temporary_folder();
 
 }  // namespace caplet::test
 
-/// Skips the test, with the reason printed, when the shared data folder is not there.
-#define CAPLET_NEEDS_DATA()                                                                 \
-  do {                                                                                      \
-    if (::caplet::test::data_folder().empty())                                              \
-      GTEST_SKIP() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)"; \
+/// Skips the test, with the reason printed, when the shared data folder is not there; fails it where data_required.
+#define CAPLET_NEEDS_DATA()                                                                                                \
+  do {                                                                                                                     \
+    if (::caplet::test::data_folder().empty()) {                                                                           \
+      if (::caplet::test::data_required()) FAIL() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)"; \
+      GTEST_SKIP() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)";                                \
+    }                                                                                                                      \
   } while (false)
