@@ -15,14 +15,24 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
   return values.size() * sizeof(T);
 }
 
-std::uint64_t bytes_of(const Shape& shape) {
+using Counted = std::set<const void*>;
+
+/// Operands of csg shapes may be shared: each is counted once.
+std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   std::uint64_t out = sizeof(Shape);
   if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
     out += bytes_of(capsules->p0) + bytes_of(capsules->p1) + bytes_of(capsules->radius0) + bytes_of(capsules->radius1) +
            bytes_of(capsules->materials);
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
     out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
-  return out;
+  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
+    out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
+  if (const auto* polyhedron = std::get_if<PolyhedronShape>(&shape.geometry))
+    out += bytes_of(polyhedron->points) + bytes_of(polyhedron->normals);
+  if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
+    for (const auto& operand : csg->operands)
+      if (counted.insert(operand.get()).second) out += bytes_of(*operand, counted);
+  return out + bytes_of(shape.materials);
 }
 
 nlohmann::ordered_json to_json(const glm::dvec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
@@ -31,9 +41,10 @@ nlohmann::ordered_json to_json(const glm::dvec3& v) { return nlohmann::ordered_j
 
 std::uint64_t model_bytes(const Scene& scene) {
   std::uint64_t out = bytes_of(scene.materials) + bytes_of(scene.instances) + bytes_of(scene.lights);
-  for (const Shape& shape : scene.shapes) out += bytes_of(shape);
+  Counted counted;
+  for (const Shape& shape : scene.shapes) out += bytes_of(shape, counted);
   for (const Object& object : scene.objects)
-    for (const Shape& shape : object.shapes) out += bytes_of(shape);
+    for (const Shape& shape : object.shapes) out += bytes_of(shape, counted);
   std::set<const EnvironmentImage*> images;
   for (const Light& light : scene.lights)
     if (const auto* infinite = std::get_if<InfiniteLight>(&light.model); infinite && infinite->image)

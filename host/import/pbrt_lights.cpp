@@ -136,7 +136,6 @@ AreaEmission make_area_emission(Parameters& parameters) {
       }
       emission.surfaces.push_back(static_cast<std::uint32_t>(surface));
     }
-  if (emission.power && !emission.surfaces.empty()) parameters.error("power", "cannot be combined with \"surfaces\"");
   parameters.refuse("filename");
   parameters.finish();
   return emission;

@@ -90,18 +90,7 @@ ConductorMaterial make_conductor(Parameters& parameters, const TextureTable& tex
   const bool has_indices = parameters.has("eta") || parameters.has("k");
   if (parameters.has("reflectance")) {
     if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
-    const Spectrum reflectance =
-        parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
-    // The k for which Fresnel's normal reflectance with eta = 1 is r: r = k^2 / (4 + k^2).
-    const auto k_of = [](double r) {
-      r = std::clamp(r, 0.0, 0.9999);
-      return 2 * std::sqrt(r) / std::sqrt(1 - r);
-    };
-    metal.eta = ConstantSpectrum{1};
-    if (const auto k = map_spectrum(reflectance, k_of))
-      metal.k = *k;
-    else
-      parameters.error("reflectance", "as a blackbody is not rendered yet");
+    metal.reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
   } else {
     const auto indices = [&](const char* name, const char* fallback) {
       if (const auto given = parameters.spectrum(name, SpectrumUse::unbounded, &textures)) return *given;

@@ -56,8 +56,6 @@ double rounded_to_float(double x) {
   return rounded;
 }
 
-double length3(const float* a, const float* b) { return glm::length(dvec3(b[0], b[1], b[2]) - dvec3(a[0], a[1], a[2])); }
-
 struct BakesOf {
   const Matrix& m;
 
@@ -244,122 +242,6 @@ FlatPrimitive flat_primitive(const PartialSphereShape& s, const Matrix&, std::ve
 
 FlatPrimitive flat_primitive(const OpenCylinderShape& c, const Matrix&, std::vector<float>&) {
   return of_quadric(shape_open_cylinder, c.radius, c.z_min, c.z_max, c.phi_max);
-}
-
-namespace {
-
-struct End {
-  double radius;
-  float cap;
-};
-
-/// What a flat end adds. Round ones have no disk, open ones none that is seen.
-double disk_area(const End& end) { return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0; }
-
-/// The hull of a disk (or the rim of an open end) of radius `rim` and a ball at a distance `length` along its axis: tangents from
-/// the rim touch the ball at `angle` to either side of the rim's direction, as seen from the centre.
-double disk_and_ball_area(const End& disk, double length, double ball) {
-  const double rim = disk.radius, apart = std::hypot(rim, length);
-  if (apart <= ball) return 4 * pi * ball * ball;  // the ball holds the disk
-  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart, s = tangent / apart;
-  // Height and distance from the axis of the unit normals where the tangents touch.
-  const double front = (-length * c + rim * s) / apart, front_off = (rim * c + length * s) / apart;
-  double area = pi * (rim + ball * front_off) * tangent + 2 * pi * ball * ball * (1 - front);
-  if (length >= ball) return area + disk_area(disk);
-  // The ball reaches through the disk, which is inside then; behind it the hull has a second cone.
-  const double back = (-length * c - rim * s) / apart, back_off = (rim * c - length * s) / apart;
-  return area + pi * (rim + ball * back_off) * tangent + 2 * pi * ball * ball * (1 + back);
-}
-
-/// The hull of two balls: both caps, and the cone between the circles where it touches them. `s` and `c`: sine and cosine of its
-/// half angle.
-double two_balls_area(double length, double r0, double r1) {
-  const double taper = r0 - r1;
-  if (length <= std::abs(taper)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
-  const double s = taper / length, c = std::sqrt(1 - s * s);
-  return 2 * pi * (r0 * r0 * (1 + s) + r1 * r1 * (1 - s)) + pi * (r0 + r1) * c * length * c;
-}
-
-/// Cylinders and cones.
-double hull_area(double length, const End& end0, const End& end1) {
-  const bool round0 = end0.cap == CAPLET_CAP_ROUND, round1 = end1.cap == CAPLET_CAP_ROUND;
-  if (round0 && round1) return two_balls_area(length, end0.radius, end1.radius);
-  if (round0) return disk_and_ball_area(end1, length, end0.radius);
-  if (round1) return disk_and_ball_area(end0, length, end1.radius);
-  return pi * (end0.radius + end1.radius) * std::hypot(length, end0.radius - end1.radius) + disk_area(end0) + disk_area(end1);
-}
-
-double polygon_area(const std::vector<dvec3>& corners) {
-  dvec3 sum(0);
-  for (std::size_t i = 2; i < corners.size(); ++i) sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
-  return 0.5 * glm::length(sum);
-}
-
-double polyhedron_area(const float* head) {
-  PolyhedronShape planes;
-  const auto count = std::bit_cast<std::uint32_t>(head[3]);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const float* plane = head + 8 + 4 * i;
-    planes.normals.emplace_back(plane[0], plane[1], plane[2]);
-    planes.points.push_back(double(plane[3]) * planes.normals.back());
-  }
-  double area = 0;
-  for (const auto& face : polyhedron_faces(planes)) area += polygon_area(face);
-  return area;
-}
-
-/// dp/du x dp/dv is n0 + u n1 + v n2: its length, summed by Simpson's rule over 32 x 32 cells. Relative error 1e-8 where it
-/// vanishes nowhere near the patch, 1e-3 where the patch is folded or has a corner of 180 degrees.
-double bilinear_area(const float* d) {
-  const dvec3 p00(d[0], d[1], d[2]), p10(d[3], d[4], d[5]), p01(d[6], d[7], d[8]), p11(d[9], d[10], d[11]);
-  const dvec3 u = p10 - p00, v = p01 - p00, twist = p11 - p01 - u;
-  const dvec3 n0 = glm::cross(u, v), n1 = glm::cross(u, twist), n2 = glm::cross(twist, v);
-  constexpr int n = 64;
-  const auto weight = [](int i) { return i == 0 || i == n ? 1.0 : i % 2 == 0 ? 2.0 : 4.0; };
-  double sum = 0;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) sum += weight(i) * weight(j) * glm::length(n0 + (double(i) / n) * n1 + (double(j) / n) * n2);
-  return sum / (9.0 * n * n);
-}
-
-}  // namespace
-
-double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves) {
-  const float* d = p.data;
-  switch (p.shape) {
-    case shape_sphere:
-      return 4 * pi * d[3] * d[3];
-    case shape_capsule:
-      return 2 * pi * d[6] * length3(d, d + 3) + 4 * pi * d[6] * d[6];
-    case shape_tapered_capsule:
-      return two_balls_area(length3(d, d + 3), d[6], d[7]);
-    case shape_cylinder:
-      return hull_area(length3(d, d + 3), {d[6], d[7]}, {d[6], d[8]});
-    case shape_cone:
-      return hull_area(length3(d, d + 3), {d[6], d[8]}, {d[7], d[9]});
-    case shape_polyhedron:
-      return polyhedron_area(&leaves[std::bit_cast<std::uint32_t>(d[0])]);
-    case shape_bilinear:
-      return bilinear_area(d);
-    case shape_triangle: {
-      const dvec3 a(d[0], d[1], d[2]), b(d[3], d[4], d[5]), c(d[6], d[7], d[8]);
-      return 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
-    case shape_disk:
-      return pi * d[6] * d[6];
-    case shape_partial_sphere:
-      return d[3] * d[0] * (std::min(d[2], d[0]) - std::max(d[1], -d[0]));
-    case shape_open_cylinder:
-      return d[3] * d[0] * (d[2] - d[1]);
-    case shape_partial_disk:
-      return 0.5 * d[3] * (d[1] * d[1] - d[2] * d[2]);
-    case shape_box: {
-      const double x = d[3] - d[0], y = d[4] - d[1], z = d[5] - d[2];
-      return 2 * (x * y + y * z + z * x);
-    }
-    default:
-      return 0;
-  }
 }
 
 }  // namespace caplet

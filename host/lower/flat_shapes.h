@@ -38,8 +38,4 @@ FlatPrimitive flat_primitive(const OpenCylinderShape& cylinder, const glm::dmat4
 /// Any m: operands hold their own transforms. In csg.cpp.
 FlatPrimitive flat_primitive(const CsgShape& csg, const glm::dmat4& m, std::vector<float>& leaves);
 
-/// Surface area of a primitive in its tree's space, without open ends; of csg shapes 0. Bilinear patches by a sum (error 1e-8 of
-/// it for patches without folds), all others in closed form.
-double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
-
 }  // namespace caplet

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "lower/area.h"
 #include "lower/encode.h"
 #include "lower/flat_shapes.h"
 
@@ -72,20 +73,6 @@ void write_matrix(float* rows, const Matrix& m) {
     for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
 }
 
-/// Mean factor by which `m` scales areas: the cofactor matrix applied to unit normals, averaged over a spherical Fibonacci set.
-/// Exact for similarities; for others within 1 % for round shapes, and used for powers alone.
-double mean_area_scale(const Matrix& m) {
-  if (const double s = similarity_scale(m); s > 0) return s * s;
-  const glm::dmat3 cofactor = glm::transpose(glm::inverse(glm::dmat3(m))) * std::abs(glm::determinant(glm::dmat3(m)));
-  constexpr int n = 1024;
-  double sum = 0;
-  for (int i = 0; i < n; ++i) {
-    const double z = 1 - (2 * i + 1.0) / n, phi = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-    sum += glm::length(cofactor * dvec3(r * std::cos(phi), r * std::sin(phi), z));
-  }
-  return sum / n;
-}
-
 class GeometryLowering {
  public:
   GeometryLowering(const Scene& scene, SpectrumTable& spectra, FlatScene& out) : scene_(scene), spectra_(spectra), out_(out) {}
@@ -114,11 +101,11 @@ class GeometryLowering {
     if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
-    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, 1, Matrix(1));
+    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, Matrix(1));
     for (const Placed& placed : placed_) {
       if (placed.part->emitter_count == 0) continue;
       out_.instances[placed.instance].light_base = narrow<uint>(emitters.size());
-      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.area_scale, placed.world_from_part);
+      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.world_from_part);
       emitters.insert(emitters.end(), more.begin(), more.end());
     }
     out_.params.root = top.tree.root;
@@ -134,7 +121,6 @@ class GeometryLowering {
   struct Placed {
     const Part* part;
     uint instance;
-    double area_scale;
     Matrix world_from_part;
   };
 
@@ -414,7 +400,7 @@ class GeometryLowering {
       p.data[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
       p.data[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
     }
-    placed_.push_back({&part, index, part.emitter_count > 0 ? mean_area_scale(world_from_part) : 1, world_from_part});
+    placed_.push_back({&part, index, world_from_part});
   }
 
   /// Of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
@@ -437,14 +423,19 @@ class GeometryLowering {
     return box;
   }
 
-  std::vector<Emitter> emitters_of(const Part& part, uint instance, double area_scale, const Matrix& world_from_part) {
+  std::vector<Emitter> emitters_of(const Part& part, uint instance, const Matrix& world_from_part) {
     std::vector<Emitter> out;
+    std::vector<double> areas;
     for (const Part::Emissive& emissive : part.emissive) {
       const AreaEmission& emission = *emissive.shape->emission;
       double total_area = 0;
-      for (std::size_t i = 0; i < emissive.count; ++i)
-        total_area += primitive_area(part.primitives[emissive.first + i], out_.leaves) * area_scale;
+      areas.clear();
+      for (std::size_t i = 0; i < emissive.count; ++i) {
+        areas.push_back(placed_area(part.primitives[emissive.first + i], out_.leaves, world_from_part, emission.surfaces));
+        total_area += areas.back();
+      }
       Emitter emitter{};
+      emitter.group = group_++;
       emitter.instance = instance;
       emitter.two_sided = emission.two_sided;
       emitter.spectrum = spectra_.add_illuminant(emission.radiance);
@@ -460,8 +451,10 @@ class GeometryLowering {
         const std::size_t at = emissive.first + i;
         emitter.slot = part.tree.slots[at];
         emitter.geometry = out_.primitive_geometry[part.primitives[at].id];
-        emitter.area = primitive_area(part.primitives[at], out_.leaves) * area_scale;
+        emitter.area = areas[i];
         set_ball(part.primitives[at], world_from_part, emitter);
+        // For the choice among lights alone: half of the ball's area, whatever is left of the solid in it.
+        if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
         out.push_back(emitter);
       }
     }
@@ -502,6 +495,7 @@ class GeometryLowering {
   FlatScene& out_;
   std::vector<Placed> placed_;
   bool reversed_ = false;  // of the shape being appended
+  std::uint32_t group_ = 0;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "lower/environment.h"
+#include "lower/light_table.h"
 
 namespace caplet {
 
@@ -15,43 +16,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Vose's alias table over `powers` (>= 0); all probabilities 0 when the sum is. M. Vose, "A linear algorithm for generating
-/// random numbers with a given distribution", 1991.
-std::vector<AliasRecord> alias_table(const std::vector<double>& powers) {
-  const std::size_t n = powers.size();
-  double total = 0;
-  for (const double p : powers) total += p;
-  std::vector<AliasRecord> table(n, AliasRecord{});
-  std::vector<double> share(n);
-  std::vector<std::size_t> small, large;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double probability = total > 0 ? powers[i] / total : 0;
-    table[i].probability = static_cast<float>(probability);
-    table[i].keep = 1;
-    table[i].alias = narrow<uint>(i);
-    share[i] = probability * static_cast<double>(n);
-    (share[i] < 1 ? small : large).push_back(i);
-  }
-  while (!small.empty() && !large.empty()) {
-    const std::size_t less = small.back(), more = large.back();
-    small.pop_back();
-    table[less].keep = static_cast<float>(share[less]);
-    table[less].alias = narrow<uint>(more);
-    share[more] -= 1 - share[less];
-    if (share[more] < 1) {
-      large.pop_back();
-      small.push_back(more);
-    }
-  }
-  return table;
-}
-
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
  public:
   LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.params.scene_radius) {}
 
-  void add(const Light& light, std::vector<double>& powers) {
+  void add(const Light& light, std::vector<LightShare>& shares) {
     light_ = &light;
     LightRecord record{};
     record.slot = record.instance = record.geometry = CAPLET_NONE;
@@ -59,7 +29,8 @@ class LightLowering {
     double power = 0;
     std::visit([&](const auto& model) { power = lower(model, record); }, light.model);
     out_.lights.push_back(record);
-    powers.push_back(std::isfinite(power) ? power : 0);
+    const auto group = shares.empty() ? 0 : shares.back().group + 1;
+    shares.push_back({std::isfinite(power) && power > 0 ? power : 0, group});
   }
 
  private:
@@ -100,8 +71,7 @@ class LightLowering {
     if (out_.params.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
     const EnvironmentIntegrals of = lower_environment(*light.image, out_);
     record.kind = light_image;
-    record.spectrum = spectra_.add_unbounded(ConstantSpectrum{1});
-    out_.params.environment_illuminant = spectra_.illuminant_table(light.image->space);
+    record.spectrum = spectra_.add_illuminant(RgbSpectrum{glm::dvec3(1), light.image->space});
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
     record.scale =
         static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
@@ -143,9 +113,9 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.lights.clear();
   out.light_data.clear();
   out.params.environment_width = out.params.environment_height = out.params.environment_square = 0;
-  std::vector<double> powers;
+  std::vector<LightShare> shares;
   out.lights.reserve(emitters.size() + scene.lights.size());
-  powers.reserve(emitters.size() + scene.lights.size());
+  shares.reserve(emitters.size() + scene.lights.size());
   for (const Emitter& emitter : emitters) {
     LightRecord record{};
     record.kind = light_area;
@@ -164,16 +134,16 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     }
     out.lights.push_back(record);
     const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
-    powers.push_back(std::isfinite(power) && power > 0 ? power : 0);
+    shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
   }
   LightLowering lowering(spectra, out);
   for (const Light& light : scene.lights)
-    if (!is_infinite(light)) lowering.add(light, powers);
+    if (!is_infinite(light)) lowering.add(light, shares);
   out.params.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
-    if (is_infinite(light)) lowering.add(light, powers);
+    if (is_infinite(light)) lowering.add(light, shares);
   out.params.light_count = narrow<uint>(out.lights.size());
-  out.light_alias = alias_table(powers);
+  out.light_alias = light_table(shares);
   out.params.sampled_light_count = 0;
   for (const AliasRecord& row : out.light_alias)
     if (row.probability > 0) ++out.params.sampled_light_count;

@@ -14,7 +14,8 @@ namespace caplet {
 /// One emissive primitive as placed in the world.
 struct Emitter {
   std::uint32_t slot, instance, geometry;
-  double area;  // world
+  std::uint32_t group;  // the same for the primitives of one shape as placed
+  double area;          // world, of the surfaces that emit
   std::uint32_t spectrum;
   double scale;      // multiplies the spectrum
   double luminance;  // of the radiance, scale included
@@ -24,7 +25,7 @@ struct Emitter {
 };
 
 /// Fills lights, light_data, light_alias, environment_* and the light fields of params. Light i is emitter i for i <
-/// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. Selection is proportional to power;
+/// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. They are selected by light_table.h;
 /// constant infinite lights are never selected, since BSDF sampling finds them as well. `params.scene_*` must be set. Throws
 /// InputError for more than one image light.
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out);

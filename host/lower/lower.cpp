@@ -31,8 +31,8 @@ class MaterialLowering {
   }
   MaterialRecord operator()(const ConductorMaterial& material) const {
     MaterialRecord record = rough(material_conductor, material.alpha_u, material.alpha_v);
-    record.eta = spectra_.add_unbounded(material.eta);
-    record.k = spectra_.add_unbounded(material.k);
+    record.eta = spectra_.add_unbounded(material.reflectance ? ConstantSpectrum{1} : material.eta);
+    record.k = material.reflectance ? spectra_.add_extinction(*material.reflectance) : spectra_.add_unbounded(material.k);
     return record;
   }
   MaterialRecord operator()(const DielectricMaterial& material) const {

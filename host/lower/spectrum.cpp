@@ -85,7 +85,7 @@ SpectrumTable::SpectrumTable(FlatScene& out, ColorSpace space) : out_(out), spac
     out_.observer.push_back(0);
   }
   out_.wavelength_table = make_wavelength_table();
-  out_.params.illuminant_table = out_.params.environment_illuminant = illuminant_table(space_);
+  out_.params.illuminant_table = illuminant_table(space_);
   std::ranges::transform(rgb_from_xyz(space_), out_.params.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
 }
 
@@ -133,6 +133,23 @@ std::uint32_t SpectrumTable::add_unbounded(const Spectrum& spectrum) {
     return add_record(sigmoid_record(color.rgb, color.scale, rgb->space));
   }
   return add_samples(tabulate(sample(spectrum), positive));
+}
+
+std::uint32_t SpectrumTable::add_extinction(const Spectrum& reflectance) {
+  const auto k_of = [](double r) {
+    r = std::clamp(r, 0.0, 0.9999);
+    return 2 * std::sqrt(r) / std::sqrt(1 - r);
+  };
+  if (is_constant(reflectance)) return add_record(constant_record(k_of(constant_value(reflectance))));
+  const auto* rgb = std::get_if<RgbSpectrum>(&reflectance);
+  if (!rgb) return add_samples(tabulate(sample(reflectance), k_of));
+  const glm::dvec3 color = glm::clamp(rgb->rgb, 0.0, 1.0);
+  if (color.r == color.g && color.g == color.b) return add_record(constant_record(k_of(color.r)));
+  const SigmoidFit fit = fit_sigmoid(color, rgb->space);
+  SpectrumSamples samples;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = sigmoid_value(fit.coefficients, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
+  return add_samples(tabulate(samples, k_of));
 }
 
 std::uint32_t SpectrumTable::add_illuminant(const Spectrum& spectrum) {

@@ -26,6 +26,9 @@ class SpectrumTable {
   std::uint32_t add_reflectance(const Spectrum& spectrum);
   /// For eta and k: RGB scaled to a sigmoid times twice its maximum (as pbrt-v4's RGBUnboundedSpectrum).
   std::uint32_t add_unbounded(const Spectrum& spectrum);
+  /// The k at which a metal of eta = 1 reflects `reflectance` (as add_reflectance takes it) at normal incidence, wavelength by
+  /// wavelength: r = k^2 / (4 + k^2), so k = 2 sqrt(r / (1 - r)); r is at most 0.9999 (as pbrt-v4's ConductorMaterial).
+  std::uint32_t add_extinction(const Spectrum& reflectance);
   /// For emission. RGB: sigmoid times twice the maximum times the illuminant, so that rgb (1 1 1) seen directly is pixel (1 1 1).
   /// Every other form is normalised to luminance 1, as pbrt-v4 does (its magnitude comes from "scale" and "power").
   std::uint32_t add_illuminant(const Spectrum& spectrum);
@@ -33,8 +36,7 @@ class SpectrumTable {
   /// Luminance (CIE Y with the integral of y-bar as unit; 1 for rgb (1 1 1)) of the spectrum that add_illuminant makes.
   double illuminant_luminance(const Spectrum& spectrum) const;
 
-  /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use: an environment whose texels are in
-  /// another space than the film's needs it as params.environment_illuminant.
+  /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use.
   std::uint32_t illuminant_table(ColorSpace space);
 
  private:

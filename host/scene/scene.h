@@ -145,6 +145,7 @@ struct DiffuseMaterial {
 /// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly smooth.
 struct ConductorMaterial {
   Spectrum eta, k;
+  std::optional<Spectrum> reflectance;  // at normal incidence, 0..1; replaces eta and k
   double alpha_u = 0, alpha_v = 0;
 };
 struct DielectricMaterial {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The named spectra: pbrt-v4's names and additions of ours (docs/materials.md lists them with their sources).
+// The named spectra: pbrt-v4's, and additions of ours under names of their own (docs/materials.md lists them with their sources).
 #include "scene/spectrum.h"
 
 #include <array>
@@ -38,13 +38,21 @@ SampledSpectrum sellmeier(const std::vector<double>& terms) {
   });
 }
 
-SampledSpectrum column(std::span<const double> rows, std::size_t index) {
+/// Column `index` of rows of `width` numbers that begin with the wavelength.
+SampledSpectrum column(std::span<const double> rows, std::size_t width, std::size_t index) {
   SampledSpectrum out;
-  for (std::size_t i = 0; i + 2 < rows.size(); i += 3) {
+  for (std::size_t i = 0; i + width <= rows.size(); i += width) {
     out.wavelengths.push_back(rows[i]);
     out.values.push_back(rows[i + index]);
   }
   return out;
+}
+
+/// Who measured the metals of metal_tables.
+std::string source_of(const std::string& metal) {
+  if (metal == "Al") return "Rakic";
+  if (metal == "CuZn") return "Querry";
+  return metal == "Pt" || metal == "W" ? "Werner" : "Johnson";
 }
 
 std::map<std::string, Spectrum> make_all() {
@@ -56,25 +64,31 @@ std::map<std::string, Spectrum> make_all() {
     spectrum.values.assign(table.values.begin(), table.values.end());
     all[table.name] = spectrum;
   }
-  for (const MetalTable& table : metal_tables()) {
-    all[std::string("metal-") + table.name + "-eta"] = column(table.rows, 1);
-    all[std::string("metal-") + table.name + "-k"] = column(table.rows, 2);
-  }
+  for (const MetalTable& table : metal_tables())
+    // A metal that pbrt does not know has the short name as well.
+    for (const std::string& name :
+         {std::string("metal-") + table.name, "metal-" + (table.name + ("-" + source_of(table.name)))}) {
+      all[name + "-eta"] = column(table.rows, 3, 1);
+      all[name + "-k"] = column(table.rows, 3, 2);
+    }
   // pbrt counts these two oxides as metals. Stephens and Malitson 1952; DeVore 1951 (rutile, ordinary ray). Both are clear: k =
   // 0.
-  all["metal-MgO-eta"] =
+  all["metal-MgO-Stephens-eta"] =
       dispersion([](double l2) { return 2.957019 + 0.0216485 / (l2 - 0.0158650) - 0.0101373 * l2; }, 404.7, 767.9);
-  all["metal-TiO2-eta"] = dispersion([](double l2) { return 5.913 + 0.2441 / (l2 - 0.0803); }, 430, 1530);
-  all["metal-MgO-k"] = all["metal-TiO2-k"] = ConstantSpectrum{0};
+  all["metal-TiO2-DeVore-eta"] = dispersion([](double l2) { return 5.913 + 0.2441 / (l2 - 0.0803); }, 430, 1530);
+  all["metal-MgO-Stephens-k"] = all["metal-TiO2-DeVore-k"] = ConstantSpectrum{0};
 
   // Schott's catalogue. pbrt names the three SF glasses F5, F10, F11.
-  all["glass-BK7"] = sellmeier({1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653});
-  all["glass-BAF10"] = sellmeier({1.5851495, 0.00926681282, 0.143559385, 0.0424489805, 1.08521269, 105.613573});
-  all["glass-FK51A"] = sellmeier({0.971247817, 0.00472301995, 0.216901417, 0.0153575612, 0.904651666, 168.68133});
-  all["glass-LASF9"] = sellmeier({2.00029547, 0.0121426017, 0.298926886, 0.0538736236, 1.80691843, 156.530829});
-  all["glass-SF5"] = all["glass-F5"] = sellmeier({1.46141885, 0.0111826126, 0.247713019, 0.0508594669, 0.949995832, 112.041888});
-  all["glass-SF10"] = all["glass-F10"] = sellmeier({1.61625977, 0.0127534559, 0.259229334, 0.0581983954, 1.07762317, 116.60768});
-  all["glass-SF11"] = all["glass-F11"] = sellmeier({1.73848403, 0.0136068604, 0.311168974, 0.0615960463, 1.17490871, 121.922711});
+  const std::pair<const char*, std::vector<double>> schott[] = {
+      {"BK7", {1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653}},
+      {"BAF10", {1.5851495, 0.00926681282, 0.143559385, 0.0424489805, 1.08521269, 105.613573}},
+      {"FK51A", {0.971247817, 0.00472301995, 0.216901417, 0.0153575612, 0.904651666, 168.68133}},
+      {"LASF9", {2.00029547, 0.0121426017, 0.298926886, 0.0538736236, 1.80691843, 156.530829}},
+      {"SF5", {1.46141885, 0.0111826126, 0.247713019, 0.0508594669, 0.949995832, 112.041888}},
+      {"SF10", {1.61625977, 0.0127534559, 0.259229334, 0.0581983954, 1.07762317, 116.60768}},
+      {"SF11", {1.73848403, 0.0136068604, 0.311168974, 0.0615960463, 1.17490871, 121.922711}}};
+  for (const auto& [glass, terms] : schott)
+    for (const char* source : {"", "-Schott"}) all[std::string("glass-") + glass + source] = sellmeier(terms);
 
   // Malitson 1965; Malitson and Dodge 1972 (ordinary ray); Peter 1923; Daimon and Masumura 2007 (20 degrees Celsius).
   all["fused-silica"] =
@@ -84,6 +98,9 @@ std::map<std::string, Spectrum> make_all() {
   all["glass-diamond"] = sellmeier({0.3306, 0.1750 * 0.1750, 4.3356, 0.1060 * 0.1060});
   all["water"] = sellmeier({5.684027565e-1, 5.101829712e-3, 1.726177391e-1, 1.821153936e-2, 2.086189578e-2, 2.620722293e-2,
                             1.130748688e-1, 1.069792721e1});
+
+  // What pbrt names is pbrt's, whatever else has the name.
+  for (const NamedTable& table : pbrt_tables()) all[table.name] = column(table.rows, 2, 1);
   return all;
 }
 

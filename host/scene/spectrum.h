@@ -36,8 +36,8 @@ struct SampledSpectrum {
 
 using Spectrum = std::variant<ConstantSpectrum, RgbSpectrum, BlackbodySpectrum, SampledSpectrum>;
 
-/// The spectrum behind one of pbrt-v4's names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...) or of our own additions; no value
-/// if unknown.
+/// The spectrum behind one of pbrt-v4's names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...), which is pbrt-v4's own table, or
+/// of our additions ("metal-Ag-Johnson-eta", "glass-BK7-Schott", "water"...); no value if unknown.
 std::optional<Spectrum> named_spectrum(const std::string& name);
 /// All names that named_spectrum knows, sorted.
 std::vector<std::string> named_spectrum_names();

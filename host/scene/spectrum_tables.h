@@ -20,8 +20,15 @@ struct MetalTable {
   const char* name;
   std::span<const double> rows;
 };
+/// Rows of wavelength (nm), value.
+struct NamedTable {
+  const char* name;
+  std::span<const double> rows;
+};
 
 const std::vector<IlluminantTable>& illuminant_tables();
 const std::vector<MetalTable>& metal_tables();
+/// pbrt-v4's own (spectrum_tables_pbrt.cpp).
+const std::vector<NamedTable>& pbrt_tables();
 
 }  // namespace caplet

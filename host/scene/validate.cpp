@@ -93,6 +93,7 @@ class Validator {
   void check(const ConductorMaterial& m, const SourceLocation& where) {
     spectrum(m.eta, where, "eta");
     spectrum(m.k, where, "k");
+    if (m.reflectance) spectrum(*m.reflectance, where, "the reflectance");
     roughness(m.alpha_u, m.alpha_v, where);
   }
   void check(const DielectricMaterial& m, const SourceLocation& where) {

@@ -65,15 +65,16 @@ static inline float4 environment_texel(const Globals* g, int x, int y) {
   return vload4((size_t)y * (size_t)width + (size_t)x, g->environment_texels);
 }
 
-// Radiance (before the light's scale) at uv of the image: bilinear between the radiances of texels, which stand at their centres.
-static inline float4 environment_radiance(const Globals* g, float2 uv, float4 lambda) {
+// Radiance (before the light's scale) at uv of the image, whose colours are under `illuminant` (a table): bilinear between the
+// radiances of texels, which stand at their centres.
+static inline float4 environment_radiance(const Globals* g, __global const float* illuminant, float2 uv, float4 lambda) {
   const float2 at = uv * (float2)((float)g->params->environment_width, (float)g->params->environment_height) - 0.5f;
   const float2 low = floor(at), t = at - low;
   const int x = (int)low.x, y = (int)low.y;
-  const float4 r00 = sigmoid_illuminant(g, environment_texel(g, x, y), lambda);
-  const float4 r10 = sigmoid_illuminant(g, environment_texel(g, x + 1, y), lambda);
-  const float4 r01 = sigmoid_illuminant(g, environment_texel(g, x, y + 1), lambda);
-  const float4 r11 = sigmoid_illuminant(g, environment_texel(g, x + 1, y + 1), lambda);
+  const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(g, x, y), lambda);
+  const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(g, x + 1, y), lambda);
+  const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(g, x, y + 1), lambda);
+  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(g, x + 1, y + 1), lambda);
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
 }
 

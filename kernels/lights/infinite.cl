@@ -8,6 +8,10 @@
 #include "lights/environment.cl"
 #include "math/spectrum.cl"
 
+static inline float4 image_texels(const Globals* g, __global const LightRecord* light, float2 uv, float4 lambda) {
+  return environment_radiance(g, g->spectrum_tables + g->spectra[light->spectrum].table, uv, lambda) * light->scale;
+}
+
 // `data`: light_from_world. Direction, radiance and solid-angle density (returned; 0: nothing) of a sample of the image light.
 static inline float image_sample(const Globals* g, __global const LightRecord* light, float4 lambda, float2 u, float3* wi,
                                  float4* radiance) {
@@ -18,7 +22,7 @@ static inline float image_sample(const Globals* g, __global const LightRecord* l
   if (!(pdf > 0.0f)) return 0.0f;
   // A rotation's inverse is its transpose.
   *wi = normalize(load3(m) * d.x + load3(m + 3) * d.y + load3(m + 6) * d.z);
-  *radiance = environment_radiance(g, uv, lambda) * spectrum_eval(g, light->spectrum, lambda) * light->scale;
+  *radiance = image_texels(g, light, uv, lambda);
   return pdf;
 }
 
@@ -27,7 +31,7 @@ static inline float4 image_radiance(const Globals* g, __global const LightRecord
   __global const float* m = g->light_data + light->data;
   const float3 d = (float3)(dot(load3(m), wi), dot(load3(m + 3), wi), dot(load3(m + 6), wi));
   const float2 uv = environment_locate(g, d, pdf);
-  return environment_radiance(g, uv, lambda) * spectrum_eval(g, light->spectrum, lambda) * light->scale;
+  return image_texels(g, light, uv, lambda);
 }
 
 // Sum over infinite lights of radiance times MIS weight, for a ray of direction wi (unit) that left the scene. bsdf_pdf:

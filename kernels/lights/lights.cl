@@ -27,19 +27,19 @@ typedef struct {
   float pdf;
 } LightSample;
 
-// A light with its chance of being chosen; u in [0, 1).
-static inline uint light_select(const Globals* g, float u, float* probability) {
+// A light with its chance of being chosen by the random number u. In whole numbers: row u n >> 32 of n, and the rest of u n
+// within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/light_table.h).
+static inline uint light_select(const Globals* g, uint u, float* probability) {
   const uint count = g->params->light_count;
-  const float x = u * (float)count;
-  const uint i = min((uint)x, count - 1u);
+  const uint i = mul_hi(u, count);
   __global const AliasRecord* row = g->light_alias + i;
-  const uint chosen = x - (float)i < row->keep ? i : row->alias;
+  const uint chosen = u * count < row->keep ? i : row->alias;
   *probability = g->light_alias[chosen].probability;
   return chosen;
 }
 
-// One light sample as seen from p (world). u_select, u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
-static inline int light_sample(const Globals* g, float3 p, float4 lambda, float u_select, float2 u, LightSample* s) {
+// One light sample as seen from p (world). u_select: 32 random bits; u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
+static inline int light_sample(const Globals* g, float3 p, float4 lambda, uint u_select, float2 u, LightSample* s) {
   if (g->params->sampled_light_count == 0u) return 0;
   float chance;
   s->index = light_select(g, u_select, &chance);

@@ -64,10 +64,13 @@ static inline float2 sampler_2d(uint pixel_seed, uint sample, uint dimension_pai
   return (float2)(unit_float(x), unit_float(y));
 }
 
-// The first coordinate of sampler_2d, alone: stratified over any aligned block of 2^m samples.
-static inline float sampler_1d(uint pixel_seed, uint sample, uint dimension_pair) {
+// The first coordinate of sampler_2d, alone, with all of its bits: stratified over any aligned block of 2^m samples.
+static inline uint sampler_bits(uint pixel_seed, uint sample, uint dimension_pair) {
   const uint seed = hash_combine(pixel_seed, dimension_pair);
-  return unit_float(reverse_bits(scramble_reversed(shuffled_index(sample, seed), hash_mix(seed ^ 0x68bc21ebu))));
+  return reverse_bits(scramble_reversed(shuffled_index(sample, seed), hash_mix(seed ^ 0x68bc21ebu)));
+}
+static inline float sampler_1d(uint pixel_seed, uint sample, uint dimension_pair) {
+  return unit_float(sampler_bits(pixel_seed, sample, dimension_pair));
 }
 
 #endif

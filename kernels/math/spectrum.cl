@@ -46,10 +46,9 @@ static inline float4 spectrum_eval(const Globals* g, uint spectrum, float4 lambd
   return sigmoid;
 }
 
-// An environment texel (sigmoid c0 c1 c2 and scale) times its colour space's illuminant at four wavelengths (nm).
-static inline float4 sigmoid_illuminant(const Globals* g, float4 texel, float4 lambda) {
-  return texel.w * sigmoid_polynomial(texel.x, texel.y, texel.z, lambda) *
-         spectrum_table_at4(g->spectrum_tables + g->params->environment_illuminant, lambda);
+// An environment texel (sigmoid c0 c1 c2 and scale) times the illuminant of table `illuminant` at four wavelengths (nm).
+static inline float4 sigmoid_illuminant(__global const float* illuminant, float4 texel, float4 lambda) {
+  return texel.w * sigmoid_polynomial(texel.x, texel.y, texel.z, lambda) * spectrum_table_at4(illuminant, lambda);
 }
 
 // One wavelength (nm) from u in [0, 1) and its density (1/nm): the density is constant between the table's entries, so it is

@@ -29,7 +29,7 @@ static inline void store_first_hit(const Globals* g, uint path, const Surface* s
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Globals* g, uint path, const Surface* s, const Frame* frame, const Bsdf* bsdf, float3 wo_local,
-                                float3 wo, float4 throughput, float4 wavelengths, float u_select, float2 u) {
+                                float3 wo, float4 throughput, float4 wavelengths, uint u_select, float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
   if (!light_sample(g, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
@@ -103,8 +103,8 @@ static void stage_item(const Globals* g, uint item) {
   const PathSample at = path_sample(g, path);
   const float2 choices = sampler_2d(at.seed, at.sample, SAMPLE_CHOICES(depth));
   if (g->params->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths, choices.x,
-                 sampler_2d(at.seed, at.sample, SAMPLE_LIGHT(depth)));
+    sample_light(g, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths,
+                 sampler_bits(at.seed, at.sample, SAMPLE_CHOICES(depth)), sampler_2d(at.seed, at.sample, SAMPLE_LIGHT(depth)));
 
   BsdfSample sample;
   if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SAMPLE_BSDF(depth)), &sample)) return;

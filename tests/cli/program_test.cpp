@@ -51,6 +51,47 @@ TEST(Program, HelpAndVersion) {
   EXPECT_THAT(version.out, testing::StartsWith("caplet "));
 }
 
+// Everything of the model counts: 12 bytes a vertex and 16 a patch, 48 bytes a plane, a Shape (a transform alone is 128) an
+// operand.
+TEST(Program, InfoCountsTheBytesOfEveryShape) {
+  const auto bytes = [](const std::string& shapes) {
+    const auto folder = test::temporary_folder();
+    test::write_file(folder / "scene.pbrt", "WorldBegin\n" + shapes);
+    const Result result = test::run_program({"info", "scene.pbrt", "--json"}, folder);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return nlohmann::json::parse(result.out).at("bytes").at("host").get<std::int64_t>();
+  };
+  const auto patches = [](int count) {
+    std::string points, indices;
+    for (int i = 0; i < count; ++i) {
+      for (const char* corner : {" 0 0", " 1 0", " 0 1", " 1 1"}) points += ' ' + std::to_string(i) + corner;
+      for (int k = 0; k < 4; ++k) indices += ' ' + std::to_string(4 * i + k);
+    }
+    return "Shape \"bilinearmesh\" \"point3 P\" [" + points + "] \"integer indices\" [" + indices + "]\n";
+  };
+  EXPECT_EQ(bytes(patches(101)) - bytes(patches(1)), 100 * (4 * 12 + 16));
+  const auto planes = [](int count) {
+    std::string points, normals;
+    for (int i = 0; i < count; ++i) {
+      const std::string axis[] = {" 1 0 0", " -1 0 0", " 0 1 0", " 0 -1 0", " 0 0 1", " 0 0 -1"};
+      points += axis[i % 6];
+      normals += axis[i % 6];
+    }
+    return "Shape \"polyhedron\" \"point3 P\" [" + points + "] \"normal N\" [" + normals + "]\n";
+  };
+  EXPECT_EQ(bytes(planes(106)) - bytes(planes(6)), 100 * 48);
+  const auto operands = [](int count) {
+    std::string objects, names;
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "\"o" + std::to_string(i) + "\" ";
+      objects += "ObjectBegin " + name + "Shape \"sphere\" \"float radius\" " + std::to_string(i + 1) + " ObjectEnd\n";
+      names += name;
+    }
+    return objects + "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + names + "]\n";
+  };
+  EXPECT_GE(bytes(operands(22)) - bytes(operands(2)), 20 * 128);
+}
+
 TEST(Program, DevicesAsJson) {
   const Result result = test::run_program({"devices", "--json"}, test::temporary_folder());
   EXPECT_EQ(result.code, 0);

@@ -57,7 +57,7 @@ void HOST(offset_origin)(const HostSurface* surface, const float* direction, flo
 
 int HOST(light_sample)(const Globals* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
   LightSample s;
-  if (!light_sample(g, three(p), four(lambda), u[0], (float2)(u[1], u[2]), &s)) return 0;
+  if (!light_sample(g, three(p), four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
   vstore3(s.target, 0, out->target);
   vstore4(s.radiance, 0, out->radiance);

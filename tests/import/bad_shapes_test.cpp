@@ -180,8 +180,6 @@ std::vector<Bad> bad_shapes() {
        "AttributeBegin AreaLightSource 'diffuse' 'integer surfaces' [0 3]\nShape 'cone' " + ends +
            "'float radius' 1 AttributeEnd",
        "scene.pbrt:3:1: the light is on surface 3, but the surfaces are numbered from 0 to 2"},
-      {"PowerOfSomeSurfaces", "AreaLightSource 'diffuse' 'float power' 5 'integer surfaces' 0\nShape 'sphere'",
-       "scene.pbrt:2:27: AreaLightSource 'diffuse': 'power' cannot be combined with 'surfaces'"},
       {"LightOnANegativeSurface", "AreaLightSource 'diffuse' 'integer surfaces' -1\nShape 'sphere'",
        "scene.pbrt:2:27: AreaLightSource 'diffuse': 'surfaces' are numbered from 0 up"},
       // Places.

@@ -52,7 +52,7 @@ __kernel void sample_lights(SCENE, float px, float py, float pz, __global const 
   MAKE_GLOBALS;
   const float3 p = (float3)(px, py, pz);
   LightSample s;
-  const int some = light_sample(&g, p, lambda, u[3 * i], (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
+  const int some = light_sample(&g, p, lambda, (uint)(u[3 * i] * 4294967296.0f), (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
   __global float* o = out + 11 * i;
   for (int k = 0; k < 11; ++k) o[k] = 0.0f;
   if (!some) return;
@@ -90,11 +90,27 @@ __kernel void sky(SCENE, __global const float* directions, __global float* out, 
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
-__kernel void selections(SCENE, __global uint* out, __global float* chances, uint count) {
+// Of the 2^32 numbers, those from i << shift on, 2^shift of them: how many choose each of up to 8 lights, and whether every chance is
+// the light's own.
+__kernel void selections(SCENE, uint shift, __global uint* out, uint count) {
+  MAKE_GLOBALS;
+  uint counts[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+  uint wrong = lambda.x > 0.0f ? 0u : 1u;
+  for (uint k = 0; k < (1u << shift); ++k) {
+    float chance;
+    const uint chosen = light_select(&g, (i << shift) + k, &chance);
+    ++counts[min(chosen, 7u)];
+    wrong += chance != light_alias[chosen].probability;
+  }
+  for (uint k = 0; k < 8; ++k) out[9 * i + k] = counts[k];
+  out[9 * i + 8] = wrong;
+}
+
+// Each of `count` random numbers chooses a light.
+__kernel void select_lights(SCENE, __global const uint* u, __global uint* out, uint count) {
   MAKE_GLOBALS;
   float chance;
-  out[i] = light_select(&g, ((float)i + 0.5f * lambda.x / 450.0f) / (float)count, &chance);
-  chances[i] = chance;
+  out[i] = light_select(&g, u[i], &chance) + (lambda.x > 0.0f ? 0u : 1u);
 }
 )";
 
@@ -198,21 +214,33 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   return found;
 }
 
-std::vector<LightBench::Selection> LightBench::selections(std::size_t count) {
-  Buffer<std::uint32_t> out(device_, count);
-  Buffer<float> chances(device_, count);
+std::vector<std::uint64_t> LightBench::all_selections() {
+  constexpr std::size_t shift = 14, items = std::size_t{1} << (32 - shift);
+  Buffer<std::uint32_t> out(device_, 9 * items);
   cl::Kernel kernel = program(device_).kernel("selections");
   bind_scene(kernel);
   auto at = static_cast<cl_uint>(scene_buffers_.size());
+  kernel.setArg(at++, static_cast<cl_uint>(shift));
   kernel.setArg(at++, out.handle());
-  kernel.setArg(at++, chances.handle());
-  kernel.setArg(at++, static_cast<cl_uint>(count));
-  launch(device_, kernel, count, 1);
-  const std::vector<std::uint32_t> lights = out.read();
-  const std::vector<float> chance = chances.read();
-  std::vector<Selection> found;
-  for (std::size_t i = 0; i < count; ++i) found.push_back({lights[i], chance[i]});
-  return found;
+  kernel.setArg(at++, static_cast<cl_uint>(items));
+  launch(device_, kernel, items, 1);
+  const std::vector<std::uint32_t> values = out.read();
+  std::vector<std::uint64_t> counts(9, 0);
+  for (std::size_t i = 0; i < values.size(); ++i) counts[i % 9] += values[i];
+  return counts;
+}
+
+std::vector<std::uint32_t> LightBench::select(const std::vector<std::uint32_t>& u) {
+  const Buffer<std::uint32_t> numbers(device_, std::span<const std::uint32_t>(u));
+  Buffer<std::uint32_t> out(device_, u.size());
+  cl::Kernel kernel = program(device_).kernel("select_lights");
+  bind_scene(kernel);
+  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  kernel.setArg(at++, numbers.handle());
+  kernel.setArg(at++, out.handle());
+  kernel.setArg(at++, static_cast<cl_uint>(u.size()));
+  launch(device_, kernel, u.size(), 1);
+  return out.read();
 }
 
 std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) {

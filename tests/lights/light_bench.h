@@ -41,12 +41,10 @@ class LightBench {
   std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points);
   /// Radiance of the sky, and its sampling density times the chance of selection, for unit directions.
   std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions);
-  /// What light_select chose, and the chance it gave, for `count` equally spaced numbers.
-  struct Selection {
-    std::uint32_t light;
-    double chance;
-  };
-  std::vector<Selection> selections(std::size_t count);
+  /// How many of all 2^32 random numbers choose each of up to 8 lights; the ninth: how often the chance was not the light's own.
+  std::vector<std::uint64_t> all_selections();
+  /// The light that light_select chooses by each of the numbers.
+  std::vector<std::uint32_t> select(const std::vector<std::uint32_t>& u);
 
  private:
   void bind_scene(cl::Kernel& kernel);

@@ -13,6 +13,7 @@
 #include <optional>
 #include <random>
 
+#include "lower/area.h"
 #include "lower/flat_shapes.h"
 #include "scene/scene.h"
 #include "shared/kinds.h"

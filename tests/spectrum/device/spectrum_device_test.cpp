@@ -37,9 +37,8 @@ __kernel void evaluate(SCENE, __global const float* lambda, __global float* out,
   if (i < count) vstore4(spectrum_eval(&g, i / 64, vload4(i % 64, lambda)), i, out);
 }
 __kernel void texel(SCENE, __global const float* lambda, __global float* out, uint count, float4 value) {
-  const Globals g = scene(spectra, tables, observer, wavelengths, params);
   const uint i = (uint)get_global_id(0);
-  if (i < count) vstore4(sigmoid_illuminant(&g, value, vload4(i, lambda)), i, out);
+  if (i < count) vstore4(sigmoid_illuminant(tables + params->illuminant_table, value, vload4(i, lambda)), i, out);
 }
 // Per u: four wavelengths, four densities, then XYZ of spectrum 0 and what xyz_from_spectrum makes of its first wavelength alone.
 __kernel void wavelengths_at(SCENE, __global const float* u, __global float* out, uint count) {

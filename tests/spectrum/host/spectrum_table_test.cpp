@@ -96,7 +96,7 @@ TEST(SpectrumTable, UnboundedKeepsMagnitude) {
   SpectrumTable table(scene, ColorSpace::srgb);
   EXPECT_EQ(value_of(scene, table.add_unbounded(ConstantSpectrum{3.9}), 5), double{3.9f});
   EXPECT_EQ(value_of(scene, table.add_unbounded(rgb(3, 3, 3)), 5), 3);
-  const std::uint32_t gold = table.add_unbounded(*named_spectrum("metal-Au-k"));
+  const std::uint32_t gold = table.add_unbounded(*named_spectrum("metal-Au-Johnson-k"));
   EXPECT_NEAR(value_of(scene, gold, 290), 3.60244, 1e-5);  // reference/tables/metal_nk_samples.csv: 0.65 um
   const std::uint32_t colored = table.add_unbounded(rgb(0.2, 3, 1));
   EXPECT_LE(value_of(scene, colored, 100), 6);
