@@ -10,6 +10,8 @@
 #include <memory>
 #include <system_error>
 
+#include "base/atomic_file.h"
+
 namespace caplet::pbrt {
 
 namespace fs = std::filesystem;
@@ -34,6 +36,7 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   };
   const std::unique_ptr<gzFile_s, Close> file(gzopen(path.c_str(), "rb"));
   if (!file) fail(where, path, "cannot be read");
+  note_input(path);
   gzbuffer(file.get(), 1 << 18);
   std::string bytes;
   const auto size = fs::file_size(path, error);
