@@ -2,10 +2,21 @@
 // Copyright Caplet authors
 #include "base/atomic_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 
@@ -15,38 +26,321 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// A file's, or of one that is not there yet its folder's with the name in it.
+struct Identity {
+  dev_t device = 0;
+  ino_t inode = 0;
+  std::string name;
+  bool operator==(const Identity&) const = default;
+};
+
+enum class Kind { fresh, file, stream, refused };
+
+struct Place {
+  Kind kind = Kind::refused;
+  fs::path path;             // where links lead
+  struct stat status {};     // unless fresh or refused
+  int descriptor = -1;       // of a standard stream
+  std::string problem = {};  // why it is refused
+};
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int operator()() const { return number_; }
+  /// The result of close(2), which may bring a write's error.
+  int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
+
+ private:
+  int number_;
+};
+
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
+Place refused(const fs::path& path, const std::string& problem) { return {Kind::refused, path, {}, -1, problem}; }
+
+bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
+
+int standard_stream(const struct stat& status) {
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
+    struct stat stream {};
+    if (::fstat(descriptor, &stream) == 0 && same_file(stream, status)) return descriptor;
+  }
+  return -1;
+}
+
+/// What is not there: itself, or where its links lead.
+fs::path end_of_links(fs::path path) {
+  std::error_code error;
+  for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    const fs::path next = fs::read_symlink(path, error);
+    if (error) break;
+    path = next.is_absolute() ? next : folder_of(path) / next;
+  }
+  return path;
+}
+
+Place place_of_new(const fs::path& target) {
+  const fs::path path = end_of_links(target);
+  std::error_code error;
+  if (!path.has_filename()) return refused(path, fmt::format("'{}' names no file", path.string()));
+  if (!fs::is_directory(folder_of(path), error))
+    return refused(path, fmt::format("folder '{}' does not exist", folder_of(path).string()));
+  return {Kind::fresh, path};
+}
+
+Place place_of(const fs::path& target) {
+  if (!target.has_filename()) return refused(target, fmt::format("'{}' names no file", target.string()));
+  Place out{Kind::file, target};
+  if (::stat(target.c_str(), &out.status) != 0) {
+    if (errno == ENOENT) return place_of_new(target);
+    if (errno == ENOTDIR) return refused(target, fmt::format("folder '{}' does not exist", folder_of(target).string()));
+    if (errno == ELOOP) return refused(target, fmt::format("'{}' is a loop of links", target.string()));
+    return refused(target, fmt::format("'{}' cannot be written: {}", target.string(), std::strerror(errno)));
+  }
+  const mode_t mode = out.status.st_mode;
+  if (S_ISDIR(mode)) return refused(target, fmt::format("'{}' is a folder", target.string()));
+  out.descriptor = standard_stream(out.status);
+  if (out.descriptor >= 0 || S_ISFIFO(mode) || S_ISCHR(mode)) {
+    out.kind = Kind::stream;
+    return out;
+  }
+  if (!S_ISREG(mode))
+    return refused(target, fmt::format("'{}' is a {}", target.string(), S_ISBLK(mode) ? "block device" : "socket"));
+  std::error_code error;
+  out.path = fs::canonical(target, error);
+  struct stat there {};
+  if (error || ::stat(out.path.c_str(), &there) != 0 || !same_file(there, out.status))
+    return refused(target, fmt::format("'{}' leads to a file that has no name", target.string()));
+  return out;
+}
+
+/// Nothing when the folder cannot be asked.
+std::optional<Identity> identity_of(const Place& place) {
+  if (place.kind != Kind::fresh) return Identity{place.status.st_dev, place.status.st_ino, {}};
+  struct stat folder {};
+  if (::stat(folder_of(place.path).c_str(), &folder) != 0) return std::nullopt;
+  return Identity{folder.st_dev, folder.st_ino, place.path.filename().string()};
+}
+
+// --- Inputs ---
+
+struct Inputs {
+  std::mutex mutex;
+  std::map<std::pair<dev_t, ino_t>, std::string> names;
+};
+
+Inputs& inputs() {
+  static Inputs all;
+  return all;
+}
+
+/// The name under which a regular file was read.
+std::optional<std::string> input_at(const Place& place) {
+  if (place.kind != Kind::file && place.kind != Kind::stream) return std::nullopt;
+  const std::lock_guard lock(inputs().mutex);
+  const auto found = inputs().names.find({place.status.st_dev, place.status.st_ino});
+  if (found == inputs().names.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string input_text(const fs::path& target, const std::string& input) {
+  return target == input ? fmt::format("'{}' is an input of this run", target.string())
+                         : fmt::format("'{}' is an input of this run ('{}')", target.string(), input);
+}
+
+// --- Writing ---
+
+[[noreturn]] void fail(const fs::path& target, const char* what, int code) {
+  throw RunError(fmt::format("{}: {}: {}", target.string(), what, std::strerror(code)));
+}
+
+void write_all(int to, std::string_view bytes, const fs::path& target) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(to, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) fail(target, "cannot be written", errno);
+    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void copy(int from, int to, const fs::path& target) {
+  std::array<char, 1 << 16> buffer;
+  for (;;) {
+    const ssize_t count = ::read(from, buffer.data(), buffer.size());
+    if (count == 0) return;
+    if (count < 0 && errno != EINTR) fail(target, "cannot be written", errno);
+    if (count > 0) write_all(to, std::string_view(buffer.data(), static_cast<std::size_t>(count)), target);
+  }
+}
+
+/// Into what is no regular file, by way of one that has no name.
+void write_through(const Place& place, const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  std::error_code error;
+  std::string name = (fs::temp_directory_path(error) / "caplet-XXXXXX").string();
+  const Descriptor temporary(::mkostemp(name.data(), O_CLOEXEC));
+  if (temporary() < 0) fail(target, "no temporary file for it", errno);
+  ::unlink(name.c_str());
+  write(fmt::format("/proc/self/fd/{}", temporary()));
+  if (::lseek(temporary(), 0, SEEK_SET) != 0) fail(target, "cannot be written", errno);
+  if (place.descriptor >= 0) {
+    std::fflush(place.descriptor == STDOUT_FILENO ? stdout : stderr);
+    copy(temporary(), place.descriptor, target);
+    return;
+  }
+  Descriptor to(::open(place.path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+  if (to() < 0) fail(target, "cannot be written", errno);
+  copy(temporary(), to(), target);
+  if (to.close() != 0) fail(target, "cannot be written", errno);
+}
+
+/// A file with the mode and, where allowed, the owner of the one it is to replace.
+void create(const fs::path& temporary, const Place& place, const fs::path& target) {
+  const bool fresh = place.kind == Kind::fresh;
+  const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, fresh ? 0666 : 0600));
+  if (file() < 0) fail(target, "cannot be written", errno);
+  if (fresh) return;
+  // Who may not give a file away keeps it; the mode comes last, for a change of the owner takes bits away.
+  if (::fchown(file(), place.status.st_uid, place.status.st_gid) != 0 &&
+      ::fchown(file(), static_cast<uid_t>(-1), place.status.st_gid) != 0)
+    errno = 0;
+  ::fchmod(file(), place.status.st_mode & 07777);
+}
+
+/// Where the target cannot be replaced as a name, as a mount point cannot.
+void copy_over(const fs::path& temporary, const fs::path& target) {
+  const Descriptor from(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
+  Descriptor to(::open(target.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+  if (from() < 0 || to() < 0) fail(target, "cannot be replaced", errno);
+  copy(from(), to(), target);
+  if (to.close() != 0) fail(target, "cannot be written", errno);
+}
+
+/// Names that a handler of signals may read.
+struct Slot {
+  std::atomic<int> state = 0;  // 0 free, 1 being named, 2 in use
+  std::array<char, PATH_MAX> name{};
+};
+std::array<Slot, 8> slots;
+static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
+
+/// A file that remove_temporary_files removes while the object lives. The ninth at a time, and one with a longer name, stay.
+class Listed {
+ public:
+  explicit Listed(const fs::path& path) {
+    if (path.native().size() >= PATH_MAX) return;
+    for (Slot& slot : slots) {
+      int was = 0;
+      if (!slot.state.compare_exchange_strong(was, 1)) continue;
+      std::memcpy(slot.name.data(), path.c_str(), path.native().size() + 1);
+      slot.state = 2;
+      slot_ = &slot;
+      return;
+    }
+  }
+  ~Listed() {
+    if (slot_) slot_->state = 0;
+  }
+  Listed(const Listed&) = delete;
+  Listed& operator=(const Listed&) = delete;
+
+ private:
+  Slot* slot_ = nullptr;
+};
+
+/// In the target's folder, short enough for its file system.
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<int> serial = 0;
+  constexpr std::size_t longest = 100;
+  return folder_of(path) / fmt::format(".{}.{}.{}.part{}", path.stem().string().substr(0, longest), ::getpid(), serial++,
+                                       path.extension().string().substr(0, longest));
+}
 
 }  // namespace
 
 void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
-  static int serial = 0;
-  const fs::path temporary = folder_of(target) / fmt::format(".{}.{}.{}.part{}", target.stem().string(), ::getpid(), serial++,
-                                                             target.extension().string());
+  const Place place = place_of(target);
+  if (place.kind == Kind::refused) throw RunError(place.problem);
+  if (const auto input = input_at(place)) throw RunError(input_text(target, *input));
+  if (place.kind == Kind::stream) {
+    write_through(place, target, write);
+    return;
+  }
+  const fs::path temporary = temporary_beside(place.path);
+  const Listed listed(temporary);
+  create(temporary, place, target);
   std::error_code error;
   try {
     write(temporary);
+    fs::rename(temporary, place.path, error);
+    if (error && place.kind == Kind::file)
+      copy_over(temporary, place.path);
+    else if (error)
+      throw RunError(fmt::format("{}: cannot be written: {}", target.string(), error.message()));
   } catch (...) {
     fs::remove(temporary, error);
     throw;
   }
-  fs::rename(temporary, target, error);
-  if (error) {
-    const std::string why = error.message();
-    fs::remove(temporary, error);
-    throw RunError(fmt::format("{}: cannot be replaced: {}", target.string(), why));
-  }
+  fs::remove(temporary, error);  // is there only after copy_over
+}
+
+void remove_temporary_files() noexcept {
+  for (const Slot& slot : slots)
+    if (slot.state == 2) ::unlink(slot.name.data());
+}
+
+void write_bytes(const fs::path& target, std::string_view bytes) {
+  write_atomically(target, [&](const fs::path& path) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (file() < 0) fail(target, "cannot be written", errno);
+    write_all(file(), bytes, target);
+    if (file.close() != 0) fail(target, "cannot be written", errno);
+  });
 }
 
 void check_writable(const fs::path& target, const std::string& flag) {
-  std::error_code error;
-  const fs::path folder = folder_of(target);
-  if (!target.has_filename()) throw InputError(SourceLocation{flag}, fmt::format("'{}' names no file", target.string()));
-  if (!fs::is_directory(folder, error))
-    throw InputError(SourceLocation{flag}, fmt::format("folder '{}' does not exist", folder.string()));
-  if (fs::is_directory(target, error)) throw InputError(SourceLocation{flag}, fmt::format("'{}' is a folder", target.string()));
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw InputError(SourceLocation{flag}, fmt::format("folder '{}' cannot be written", folder.string()));
+  const auto refuse = [&](const std::string& why) { throw InputError(SourceLocation{flag}, why); };
+  const Place place = place_of(target);
+  if (place.kind == Kind::refused) refuse(place.problem);
+  if (place.kind == Kind::stream) {
+    if (place.descriptor < 0 && ::access(place.path.c_str(), W_OK) != 0)
+      refuse(fmt::format("'{}' cannot be written", target.string()));
+    return;
+  }
+  if (place.kind == Kind::file && ::access(place.path.c_str(), W_OK) != 0)
+    refuse(fmt::format("'{}' cannot be written", target.string()));
+  const fs::path folder = folder_of(place.path);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(fmt::format("folder '{}' cannot be written", folder.string()));
+}
+
+bool is_stream(const fs::path& target) { return place_of(target).kind == Kind::stream; }
+
+void note_input(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !(S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode))) return;
+  const std::lock_guard lock(inputs().mutex);
+  inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
+}
+
+void Outputs::add(const std::string& flag, const fs::path& target) {
+  check_writable(target, flag);
+  const Place place = place_of(target);
+  const auto identity = identity_of(place);
+  for (const Output& other : outputs_) {
+    const Place there = place_of(other.target);
+    // A device takes what several write, as /dev/null does.
+    if (!identity || identity != identity_of(there) || (place.kind == Kind::stream && S_ISCHR(place.status.st_mode))) continue;
+    throw InputError(SourceLocation{flag}, fmt::format("'{}' is the output of {} as well", target.string(), other.flag));
+  }
+  outputs_.push_back({flag, target});
+}
+
+void Outputs::check_inputs() const {
+  for (const Output& output : outputs_)
+    if (const auto input = input_at(place_of(output.target)))
+      throw InputError(SourceLocation{output.flag}, input_text(output.target, *input));
 }
 
 }  // namespace caplet

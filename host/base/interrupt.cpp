@@ -4,15 +4,25 @@
 
 #include <csignal>
 
+#include "base/atomic_file.h"
+
 namespace caplet {
 
 namespace {
 
 volatile std::sig_atomic_t requested = 0;
 
+volatile std::sig_atomic_t asked = 0;  // by SIGINT or SIGTERM
+
 void on_signal(int number) {
   requested = 1;
-  std::signal(number, SIG_DFL);
+  if (number == SIGHUP) return;
+  if (asked) {
+    remove_temporary_files();
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  }
+  asked = 1;
 }
 
 }  // namespace
@@ -20,6 +30,7 @@ void on_signal(int number) {
 void install_interrupt_handlers() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
 }
 bool interrupt_requested() { return requested != 0; }
 void set_interrupt_requested(bool value) { requested = value ? 1 : 0; }

@@ -6,7 +6,8 @@
 
 namespace caplet {
 
-/// Installs handlers for SIGINT and SIGTERM that set the flag; the second signal restores the default action.
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless that is ignored, as nohup asks) that set the flag. After a SIGINT or
+/// SIGTERM the next one has its default action; SIGHUP comes more than once when a terminal goes, and only ever asks.
 void install_interrupt_handlers();
 bool interrupt_requested();
 /// For tests.

@@ -3,12 +3,21 @@
 //
 // The program's door: subcommands in, exit codes out (0 done, 1 failed while working, 2 wrong input or usage, 3 `verify`
 // found disagreement).
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <iostream>
 #include <new>
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "device/second_try.h"
 
 namespace {
 
@@ -32,6 +41,23 @@ int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return exit_wrong_input;
 }
 
+/// What the standard streams lack would be given to the next file that is opened. A closed stdout stays one that cannot be
+/// written, which end() tells.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream) return;
+}
+
+/// Exit code `code`, or that results did not reach stdout.
+int end(int code) {
+  std::cout.flush();
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.good()) return code;
+  print_error(fmt::format("stdout cannot be written: {}", errno ? std::strerror(errno) : "not all of it was taken"));
+  std::clearerr(stdout);
+  return exit_failed;
+}
+
 int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -45,6 +71,9 @@ int run(CLI::App& app, int argc, char** argv) {
   } catch (const caplet::InputError& error) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
+  } catch (const caplet::DriverError& error) {
+    caplet::SecondTry::after(error);
+    print_error(error.what());
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
   } catch (const std::exception& error) {
@@ -56,6 +85,11 @@ int run(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
+  // A reader that goes, and a file that may not grow, are errors of the write: there are other outputs, and files to remove.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  const caplet::SecondTry second_try(argv);
   const caplet::cli::Invocation invocation{{argv, argv + argc}};
   CLI::App app{"Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any OpenCL device.", "caplet"};
   app.set_version_flag("--version", "caplet " CAPLET_VERSION);
@@ -71,5 +105,5 @@ int main(int argc, char** argv) {
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);
-  return run(app, argc, argv);
+  return end(run(app, argc, argv));
 }

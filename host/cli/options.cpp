@@ -59,6 +59,8 @@ std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& 
 
 }  // namespace
 
+std::filesystem::path output_named(const std::string& text) { return text == "-" ? "/dev/stdout" : text; }
+
 ImageSize parse_size(const std::string& text) {
   const std::vector<long long> sides = whole_numbers(text, 'x');
   if (sides.size() != 2) refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 960x540", text));

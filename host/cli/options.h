@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,9 @@ namespace caplet::cli {
 struct ImageSize {
   int width = 0, height = 0;
 };
+
+/// The path of an output: "-" is the standard output.
+std::filesystem::path output_named(const std::string& text);
 
 /// "960x540": two whole numbers from 1, at most 2^28 pixels in all. Throws InputError naming --size.
 ImageSize parse_size(const std::string& text);

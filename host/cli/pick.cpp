@@ -16,6 +16,7 @@
 #include "cli/options.h"
 #include "cli/pick_report.h"
 #include "cli/pick_table.h"
+#include "device/second_try.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/camera.h"
@@ -67,6 +68,7 @@ void pick_one(const Options& options, const Scene& scene, const std::optional<st
   } else if (const PickRecord pick = query.closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
     report.crossings = {pick};
   }
+  SecondTry::driver_works();
   if (options.reference) report.reference = reference_crossings(scene, ray, options.all);
   fmt::print("{}", options.json ? json_text(report, scene) : plain_text(report, scene));
 }
@@ -92,16 +94,21 @@ std::vector<PickRow> answer(Query& query, std::span<const RayRecord> rays, std::
   return rows;
 }
 
-void pick_many(const Options& options, const Scene& scene, RayFile& file, const Device& device) {
+void pick_many(const Options& options, const Scene& scene, RayFile& file, const fs::path& out, const Device& device) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Query query(lower(scene), device);
+  // Kernels are compiled at the first question: before anything is read that may not come twice.
+  const RayRecord any{0, 0, 0, 0, 0, 0, 1, std::numeric_limits<float>::infinity()};
+  std::vector<std::uint64_t> ignored;
+  answer(query, std::span(&any, 1), 0, options, ignored);
+  if (is_stream(options.rays)) SecondTry::driver_works();
   std::uint64_t ray_count = 0, row_count = 0;
   double device_seconds = 0;
   const std::size_t chunk =
       options.all ? std::clamp<std::size_t>(crossings_in_a_chunk / options.limit, 1, rays_in_a_chunk) : rays_in_a_chunk;
-  write_atomically(options.out, [&](const fs::path& temporary) {
-    const std::unique_ptr<PickTable> table = create_pick_table(temporary, scene);
+  write_atomically(out, [&](const fs::path& temporary) {
+    const std::unique_ptr<PickTable> table = create_pick_table(temporary, table_format(out).value(), scene);
     std::vector<std::uint64_t> overflowed;
     for (;;) {
       if (interrupt_requested()) throw RunError("interrupted; nothing is written");
@@ -112,6 +119,7 @@ void pick_many(const Options& options, const Scene& scene, RayFile& file, const 
       const double before = seconds();
       const std::vector<PickRow> rows = answer(query, rays, ray_count, options, overflowed);
       device_seconds += seconds() - before;
+      SecondTry::driver_works();
       if (overflowed.empty()) table->append(rows);  // otherwise only the other rays to blame are looked for
       ray_count += rays.size();
       row_count += rows.size();
@@ -122,7 +130,7 @@ void pick_many(const Options& options, const Scene& scene, RayFile& file, const 
   });
   device_seconds -= query.compile_seconds();
   log::info("{} rays, {} crossings on {}: {:.3g} Mrays/s, {:.1f} s in all; wrote {}", ray_count, row_count, device.info().name,
-            static_cast<double>(ray_count) / 1e6 / std::max(device_seconds, 1e-9), seconds(), options.out);
+            static_cast<double>(ray_count) / 1e6 / std::max(device_seconds, 1e-9), seconds(), out.string());
 }
 
 // --- The command ---
@@ -152,23 +160,28 @@ void run_pick(const Options& options, bool has_limit) {
   if (!options.pixel.empty()) pixel = parse_pixel(options.pixel);
   std::optional<RayRecord> ray;
   if (!options.ray.empty()) ray = to_record(parse_ray(options.ray));
+  const fs::path out = output_named(options.out);
+  Outputs outputs;
   std::optional<RayFile> rays;
   if (!options.rays.empty()) {
-    check_table_format(options.out, "--out");
-    check_writable(options.out, "--out");
+    check_table_format(out, "--out");
+    outputs.add("--out", out);
     rays.emplace(options.rays);
+    outputs.check_inputs();
     install_interrupt_handlers();
   }
   const Device device = Device::choose(options.device);
   Scene scene = import_scene(options.scene, FileImageReader());
+  outputs.check_inputs();
   apply(overrides, scene);
   if (pixel) {
     check_pixel(*pixel, scene.film);
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
+  SecondTry::guard(device);
   self_test(device);
   if (rays)
-    pick_many(options, scene, *rays, device);
+    pick_many(options, scene, *rays, out, device);
   else
     pick_one(options, scene, pixel, *ray, device);
 }
@@ -185,7 +198,8 @@ void add_pick(CLI::App& app) {
       ->type_name("ox,oy,oz,dx,dy,dz");
   command->add_option("--rays", o->rays, "Many rays: text of six numbers a line, or .npy (N x 6, float32 or float64)")
       ->type_name("FILE");
-  command->add_option("--out", o->out, "Table of what --rays hit, a row per crossing: .csv or .npy")->type_name("FILE");
+  command->add_option("--out", o->out, "Table of what --rays hit, a row per crossing: .csv or .npy; -: CSV to stdout")
+      ->type_name("FILE");
   command->add_flag("--all", o->all, "Every crossing in order, not the nearest alone");
   CLI::Option* limit = command->add_option("--limit", o->limit, "Most crossings of a ray for --all; more are an error")
                            ->check(CLI::Range(std::size_t{1}, max_query_capacity))

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "lower/identity.h"
 #include "table/npy.h"
@@ -144,13 +145,18 @@ class NpyTable : public PickTable {
 
 }  // namespace
 
+std::optional<TableFormat> table_format(const fs::path& path) {
+  if (path.extension() == ".npy") return TableFormat::npy;
+  return path.extension() == ".csv" || is_stream(path) ? std::optional(TableFormat::csv) : std::nullopt;
+}
+
 void check_table_format(const fs::path& path, const std::string& flag) {
-  if (path.extension() != ".csv" && path.extension() != ".npy")
+  if (!table_format(path))
     throw InputError(SourceLocation{flag}, fmt::format("'{}': tables are written as .csv or .npy", path.string()));
 }
 
-std::unique_ptr<PickTable> create_pick_table(const fs::path& path, const Scene& scene) {
-  if (path.extension() == ".npy") return std::make_unique<NpyTable>(path, scene);
+std::unique_ptr<PickTable> create_pick_table(const fs::path& path, TableFormat format, const Scene& scene) {
+  if (format == TableFormat::npy) return std::make_unique<NpyTable>(path, scene);
   return std::make_unique<CsvTable>(path, scene);
 }
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "scene/scene.h"
@@ -26,10 +27,14 @@ class PickTable {
   virtual void finish() = 0;
 };
 
-/// Throws InputError naming `flag` unless the extension is .csv or .npy.
+enum class TableFormat { csv, npy };
+
+/// By the extension; a stream (is_stream) that has none takes CSV.
+std::optional<TableFormat> table_format(const std::filesystem::path& path);
+/// Throws InputError naming `flag` when there is no format for it.
 void check_table_format(const std::filesystem::path& path, const std::string& flag);
 
-/// Creates the file, by its extension. Throws RunError, as the table's members do, when it cannot be written.
-std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, const Scene& scene);
+/// Creates the file. Throws RunError, as the table's members do, when it cannot be written.
+std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format, const Scene& scene);
 
 }  // namespace caplet::cli

@@ -6,19 +6,21 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <fstream>
-#include <limits>
+#include <map>
 #include <memory>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "cli/bands.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/summary.h"
-#include "film/develop.h"
+#include "device/second_try.h"
 #include "film/image.h"
+#include "film/preview.h"
 #include "import/import.h"
 #include "lower/lower.h"
 #include "render/render.h"
@@ -51,40 +53,59 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void check_exr(const fs::path& path) {
-  if (path.extension() != ".exr")
+constexpr const char* no_picture = "none";
+
+/// What is written, and where; empty: not.
+struct Files {
+  fs::path picture, preview, stats;
+  Outputs all;
+};
+
+void add_picture(Files& files, const fs::path& path) {
+  if (path.extension() != ".exr" && !is_stream(path))
     throw InputError(SourceLocation{"-o"},
                      fmt::format("'{}': pictures are written as .exr (use --preview for other formats)", path.string()));
+  files.picture = path;
+  files.all.add("-o", path);
 }
 
 /// What can be known to be wrong before anything is loaded.
-Overrides check_options(const Options& options) {
+Overrides check_options(const Options& options, Files& files) {
   Overrides overrides;
   if (!options.size.empty()) overrides.size = parse_size(options.size);
   if (!options.crop.empty()) overrides.crop = parse_crop(options.crop);
   overrides.samples_per_pixel = options.samples_per_pixel;
   overrides.max_depth = options.max_depth;
   overrides.seed = options.seed;
-  if (!options.output.empty()) {
-    check_exr(options.output);
-    check_writable(options.output, "-o");
-  }
+  if (options.output == no_picture && options.preview.empty() && options.stats.empty())
+    throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
+  if (!options.output.empty() && options.output != no_picture) add_picture(files, output_named(options.output));
   if (!options.preview.empty()) {
-    check_preview_format(options.preview, "--preview");
-    check_writable(options.preview, "--preview");
+    files.preview = options.preview;
+    check_preview_format(files.preview, "--preview");
+    files.all.add("--preview", files.preview);
   }
-  if (!options.stats.empty()) check_writable(options.stats, "--stats");
+  if (!options.stats.empty()) {
+    files.stats = output_named(options.stats);
+    files.all.add("--stats", files.stats);
+  }
   return overrides;
 }
 
-/// Where the picture goes: as asked, or by the scene's own film name (else the scene file's) in the current folder.
-fs::path output_path(const Options& options, const Scene& scene) {
-  if (!options.output.empty()) return options.output;
-  fs::path name = fs::path(scene.film.filename).filename();
-  if (name.empty()) name = fs::path(options.scene).filename();
-  name.replace_extension(".exr");
-  check_writable(name, "-o");
-  return name;
+/// What the scene tells of outputs: the picture's name (the scene's own film name, else the scene file's, in the current folder),
+/// its size, and the files that the scene was read from.
+void check_outputs(const Options& options, const Scene& scene, Layers layers, Files& files) {
+  if (options.output.empty()) {
+    fs::path name = fs::path(scene.film.filename).filename();
+    if (name.empty()) name = fs::path(options.scene).filename();
+    add_picture(files, name.replace_extension(".exr"));
+  }
+  files.all.check_inputs();
+  const std::array<int, 4> window = scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
+  const int width = window[1] - window[0], height = window[3] - window[2];
+  const std::string flag = options.crop.empty() ? "--size" : "--crop";
+  if (!files.picture.empty()) check_exr_size(width, height, layers.channels(), flag);
+  if (!files.preview.empty()) check_preview_size(files.preview, width, height, flag);
 }
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
@@ -93,6 +114,7 @@ RenderResult render_with_progress(const FlatScene& flat, const Device& device, c
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return render(flat, device, render_options, [&](const Progress& progress) {
+      if (progress.samples_done > 0 || progress.fraction >= 1) SecondTry::driver_works();
       reporter.update(progress.fraction, progress.samples_per_second,
                       fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
                                   render_options.samples_per_pixel));
@@ -104,36 +126,51 @@ RenderResult render_with_progress(const FlatScene& flat, const Device& device, c
   }
 }
 
-void add_metadata(LayeredImage& image, const Scene& scene, const Options& options, const Invocation& invocation,
-                  const Device& device, const RenderResult& result) {
-  image.metadata["software"] = "Caplet " CAPLET_VERSION;
-  image.metadata["caplet.version"] = CAPLET_VERSION;
-  image.metadata["caplet.scene"] = options.scene;
-  image.metadata["caplet.command"] = invocation.command_line();
-  image.metadata["caplet.samples_per_pixel"] = fmt::format("{}", result.samples_per_pixel);
-  image.metadata["caplet.seed"] = fmt::format("{}", scene.sampler.seed);
-  image.metadata["caplet.max_depth"] = fmt::format("{}", scene.integrator.max_depth);
-  image.metadata["caplet.device"] = device.info().name;
-  image.metadata["caplet.driver"] = device.info().driver;
-  image.metadata["caplet.platform"] = device.info().platform;
-  image.metadata["caplet.render_seconds"] = fmt::format("{:.3f}", result.render_seconds);
-  image.metadata["caplet.interrupted"] = result.interrupted ? "yes" : "no";
+std::map<std::string, std::string> metadata_of(const Scene& scene, const Options& options, const Invocation& invocation,
+                                               const Device& device, const RenderResult& result) {
+  return {{"software", "Caplet " CAPLET_VERSION},
+          {"caplet.version", CAPLET_VERSION},
+          {"caplet.scene", options.scene},
+          {"caplet.command", invocation.command_line()},
+          {"caplet.samples_per_pixel", fmt::format("{}", result.samples_per_pixel)},
+          {"caplet.seed", fmt::format("{}", scene.sampler.seed)},
+          {"caplet.max_depth", fmt::format("{}", scene.integrator.max_depth)},
+          {"caplet.device", device.info().name},
+          {"caplet.driver", device.info().driver},
+          {"caplet.platform", device.info().platform},
+          {"caplet.render_seconds", fmt::format("{:.3f}", result.render_seconds)},
+          {"caplet.interrupted", result.interrupted ? "yes" : "no"}};
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_atomically(path, [&](const fs::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw RunError(fmt::format("{}: cannot be written", path.string()));
-  });
+/// The picture and its preview, developed once, band by band.
+void write_pictures(const Files& files, const BandedImage& picture, std::size_t channels, double render_seconds) {
+  std::vector<std::uint8_t> preview;
+  BandedImage shown = picture;
+  if (!files.preview.empty())
+    shown.band = [&](int first, int rows) {
+      LayeredImage band = picture.band(first, rows);
+      const std::vector<std::uint8_t> rgb = preview_rgb8(band);
+      preview.insert(preview.end(), rgb.begin(), rgb.end());
+      return band;
+    };
+  const LayeredImage& whole = picture.whole;
+  if (!files.picture.empty()) {
+    const std::uint64_t bytes = static_cast<std::uint64_t>(whole.data_width) * static_cast<std::uint64_t>(whole.data_height) *
+                                channels * sizeof(float);
+    write_exr(files.picture, shown, compression_for(bytes, render_seconds, std::thread::hardware_concurrency()));
+  } else if (!files.preview.empty()) {
+    for (int first = 0; first < whole.data_height; first += shown.rows)
+      shown.band(first, std::min(shown.rows, whole.data_height - first));
+  }
+  if (!files.preview.empty()) write_preview(files.preview, whole.data_width, whole.data_height, preview);
 }
 
 void run_render(const Options& options, const Invocation& invocation) {
   Stopwatch total, phase;
   RunSeconds seconds;
   log::set_quiet(options.quiet);
-  const Overrides overrides = check_options(options);
+  Files files;
+  const Overrides overrides = check_options(options, files);
   const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
   const Device device = Device::choose(options.device);
@@ -141,12 +178,13 @@ void run_render(const Options& options, const Invocation& invocation) {
   phase.lap();
   Scene scene = import_scene(options.scene, FileImageReader());
   apply(overrides, scene);
-  const fs::path output = output_path(options, scene);
+  check_outputs(options, scene, layers, files);
   seconds.load = phase.lap();
   const FlatScene flat = lower(scene);
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
+  SecondTry::guard(device);
   self_test(device);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
@@ -156,20 +194,25 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.time_limit = options.time_limit;
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
+  render_options.film_on_device = true;
   const RenderResult result = render_with_progress(flat, device, render_options, options.quiet);
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;
 
-  LayeredImage image = develop(result.film, flat.params, scene, layers);
-  add_metadata(image, scene, options, invocation, device, result);
-  write_exr(output, image);
-  if (!options.preview.empty()) write_preview(options.preview, image);
+  NotFinite not_finite;
+  BandedImage picture = developed_in_bands(result.device_film, flat.params, scene, layers, not_finite);
+  picture.whole.metadata = metadata_of(scene, options, invocation, device, result);
+  phase.lap();
+  write_pictures(files, picture, layers.channels(), result.render_seconds);
+  not_finite.warn();
+  seconds.write = phase.lap();
   seconds.total = total.lap();
-  if (!options.stats.empty()) write_text(options.stats, to_text(run_summary(seconds, result, device)));
+  if (!files.stats.empty()) write_bytes(files.stats, to_text(run_summary(seconds, result, device)));
+  const fs::path& first = files.picture.empty() ? files.preview.empty() ? files.stats : files.preview : files.picture;
   if (result.interrupted)
-    log::warn("interrupted: {} holds {} of {} samples per pixel", output.string(), result.samples_per_pixel,
+    log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(), result.samples_per_pixel,
               scene.sampler.samples_per_pixel);
-  log::info("wrote {}", output.string());
+  log::info("wrote {}", first.string());
 }
 
 }  // namespace
@@ -178,8 +221,8 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a scene file to an OpenEXR picture");
   command->add_option("SCENE", o->scene, "Scene file: .pbrt (pbrt-v4), .capsules or .swc")->required();
-  command->add_option("-o,--output", o->output, "Picture to write, .exr (default: the scene's own name, here)")
-      ->type_name("OUT.exr");
+  command->add_option("-o,--output", o->output, "Picture to write, .exr (default: the scene's own name, here); none: no picture")
+      ->type_name("OUT.exr|none");
   command->add_option("--preview", o->preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
   command->add_option("--spp", o->samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
   command->add_option("--size", o->size, "Picture size in pixels; an automatic camera frames anew")->type_name("WxH");
@@ -202,7 +245,7 @@ void add_render(CLI::App& app, const Invocation& invocation) {
                    "Layers beside R G B A: some of Z,albedo,N,P,object,primitive,variance, or all, or none")
       ->type_name("LIST");
   command->add_flag("--variance", o->variance, "Also write variance.R/G/B: the variance of each pixel's mean");
-  command->add_option("--stats", o->stats, "Write times, ray counts and memory as JSON")->type_name("FILE.json");
+  command->add_option("--stats", o->stats, "Write times, ray counts and memory as JSON; -: to stdout")->type_name("FILE.json");
   command->add_flag("-q,--quiet", o->quiet, "No progress, only warnings and errors");
   command->add_option("--batch", o->batch_paths, "Paths a batch (the picture does not depend on it)")->group("");
   command->footer(

@@ -81,11 +81,8 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
 
 nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result, const Device& device) {
   nlohmann::ordered_json out;
-  out["seconds"] = {{"load", seconds.load},
-                    {"build", seconds.build},
-                    {"compile", seconds.compile},
-                    {"render", seconds.render},
-                    {"total", seconds.total}};
+  out["seconds"] = {{"load", seconds.load},     {"build", seconds.build}, {"compile", seconds.compile},
+                    {"render", seconds.render}, {"write", seconds.write}, {"total", seconds.total}};
   out["first_pass_seconds"] = result.first_pass_seconds;
   out["compile_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [stage, stage_seconds] : result.stage_compile_seconds) out["compile_seconds"][stage] = stage_seconds;

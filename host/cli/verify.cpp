@@ -18,6 +18,7 @@
 #include "cli/heatmap.h"
 #include "cli/options.h"
 #include "cli/verify_report.h"
+#include "device/second_try.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "verify/cases.h"
@@ -43,7 +44,10 @@ std::vector<Device> devices_of(const Options& o) {
     for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index)));
     if (out.empty()) out.push_back(Device::choose(""));  // says what is missing
   }
-  for (const Device& device : out) self_test(device);
+  for (const Device& device : out) {
+    SecondTry::guard(device);
+    self_test(device);
+  }
   return out;
 }
 
@@ -99,15 +103,22 @@ void run_verify(const Options& o) {
     if (!replay(o)) throw CLI::RuntimeError(exit_disagreed);
     return;
   }
+  Outputs outputs;
   if (!o.heatmap.empty()) {
-    if (!o.heatmap.ends_with(".exr")) refuse("--heatmap", "writes EXR: the name must end in .exr");
-    check_writable(o.heatmap, "--heatmap");
+    if (!o.heatmap.ends_with(".exr") && !is_stream(o.heatmap)) refuse("--heatmap", "writes EXR: the name must end in .exr");
+    outputs.add("--heatmap", o.heatmap);
   }
   if (!o.size.empty() && o.heatmap.empty()) refuse("--size", "goes with --heatmap");
   Overrides overrides;
   if (!o.size.empty()) overrides.size = parse_size(o.size);
   std::optional<Scene> scene;
   if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader());
+  outputs.check_inputs();
+  if (!o.heatmap.empty()) {
+    const FilmSettings film = scene ? scene->film : verify::torture_scene(o.seed, 0).film;
+    const ImageSize size = overrides.size.value_or(ImageSize{film.width, film.height});
+    check_exr_size(size.width, size.height, heatmap_channels, "--size");
+  }
   const std::vector<Device> devices = devices_of(o);
   install_interrupt_handlers();
 
@@ -117,6 +128,7 @@ void run_verify(const Options& o) {
   options.rays = o.rays;
   options.seed = o.seed;
   options.progress = [&](std::uint64_t done) {
+    if (done > 0) SecondTry::driver_works();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress.update(static_cast<double>(done) / static_cast<double>(o.rays), 0,
                     fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds));

@@ -79,7 +79,8 @@ std::string cl_error_name(cl_int code) {
 }
 
 void throw_cl_error(const cl::Error& error, const std::string& place, const std::string& device_name) {
-  throw RunError(fmt::format("{}: {}: {} (device '{}')", place, error.what(), cl_error_name(error.err()), device_name));
+  throw DriverError(fmt::format("{}: {}: {} (device '{}')", place, error.what(), cl_error_name(error.err()), device_name),
+                    error.err());
 }
 
 }  // namespace caplet

@@ -22,6 +22,16 @@
 
 namespace caplet {
 
+/// An OpenCL call that failed.
+class DriverError : public RunError {
+ public:
+  DriverError(const std::string& message, cl_int code) : RunError(message), code_(code) {}
+  cl_int code() const { return code_; }
+
+ private:
+  cl_int code_;
+};
+
 struct DeviceInfo {
   int index = 0;  // over all platforms, as `--device` takes it
   std::string name, vendor, driver, version, platform;
@@ -37,8 +47,8 @@ std::vector<DeviceInfo> list_devices();
 class Device {
  public:
   /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
-  /// Throws InputError with place "--device" listing what there is when nothing or more than one name matches, or when there is
-  /// no device.
+  /// Throws InputError with place "--device" listing what there is when nothing or more than one name matches, and RunError when
+  /// there is no device.
   static Device choose(const std::string& choice);
 
   const DeviceInfo& info() const { return info_; }

@@ -50,9 +50,9 @@ std::size_t by_name(const Devices& devices, const std::string& choice) {
 
 std::size_t select_device(const Devices& devices, const std::string& choice) {
   if (devices.empty())
-    throw InputError(SourceLocation{"--device"},
-                     "no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU); "
-                     "`caplet doctor` tells what is missing");
+    throw RunError(
+        "--device: no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU); "
+        "`caplet doctor` tells what is missing");
   if (choice.empty()) return first_of_type(devices, "gpu") % devices.size();
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);

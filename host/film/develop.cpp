@@ -104,7 +104,8 @@ LayeredImage window_of(const ParamsRecord& params, ColorSpace space) {
 
 }  // namespace
 
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers) {
+LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+                     NotFinite& not_finite) {
   const std::size_t pixels = static_cast<std::size_t>(params.crop_width) * params.crop_height;
   CHECK_EQ_(film.size(), pixels);
   const double exposure = scene.film.exposure_time * scene.film.iso / 100;
@@ -121,7 +122,7 @@ LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& pa
   const IdPlane object(image, layers.has(Layer::object), "object.id", pixels);
   const IdPlane primitive(image, layers.has(Layer::primitive), "primitive.id", pixels);
 
-  std::size_t not_finite = 0, first_not_finite = 0;
+  not_finite.of += pixels;
   for (std::size_t i = 0; i < pixels; ++i) {
     const FilmRecord& record = film[i];
     const double per_sample = record.samples > 0 ? 1.0 / record.samples : 0.0;
@@ -150,12 +151,24 @@ LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& pa
     }
     object.set(i, record.object);
     primitive.set(i, record.primitive);
-    if (!finite && not_finite++ == 0) first_not_finite = i;
+    if (!finite && not_finite.count++ == 0) {
+      not_finite.x = params.crop_x + i % params.crop_width;
+      not_finite.y = params.crop_y + i / params.crop_width;
+    }
   }
-  if (not_finite > 0)
-    log::warn("{} of {} pixels are beyond the range of a float and written black (the first: {},{})", not_finite, pixels,
-              params.crop_x + first_not_finite % params.crop_width, params.crop_y + first_not_finite / params.crop_width);
   return image;
+}
+
+LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers) {
+  NotFinite not_finite;
+  LayeredImage image = develop(film, params, scene, layers, not_finite);
+  not_finite.warn();
+  return image;
+}
+
+void NotFinite::warn() const {
+  if (count > 0)
+    log::warn("{} of {} pixels are beyond the range of a float and written black (the first: {},{})", count, of, x, y);
 }
 
 }  // namespace caplet

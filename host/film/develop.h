@@ -16,6 +16,15 @@ namespace caplet {
 /// Z of pixels whose camera rays all missed: Blender's value. Infinity would poison filters and normalising nodes.
 inline constexpr float depth_of_nothing = 1e10f;
 
+/// Developed pixels that are beyond the range of a float.
+struct NotFinite {
+  std::size_t count = 0, of = 0;  // of all that were developed
+  std::size_t x = 0, y = 0;       // the first one
+
+  /// Logs a warning when there are any.
+  void warn() const;
+};
+
 /// R G B A and the layers asked for of the rendered window (docs/output.md), of film records in its scan order, times the film's
 /// exposure:
 /// R G B     mean of the samples, linear in the film's colour space; at most film.max_component_value, the others scaled with it
@@ -26,8 +35,12 @@ inline constexpr float depth_of_nothing = 1e10f;
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
 /// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
 /// Nothing that is written is infinite or not a number: where sums or the exposure went beyond a float, R G B are black and the
-/// variance is the greatest float (other layers: 0), and a warning counts those pixels.
+/// variance is the greatest float (other layers: 0), and `not_finite` counts those pixels.
 /// Throws std::logic_error when the film is not of the window's size.
+LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+                     NotFinite& not_finite);
+
+/// The same, with the warning.
 LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers);
 
 }  // namespace caplet

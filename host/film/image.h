@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -37,16 +38,42 @@ struct LayeredImage {
   const Channel* find(const std::string& name) const;
 };
 
-/// Writes a scanline EXR (ZIP, chromaticities, metadata as attributes) atomically. Throws RunError.
-void write_exr(const std::filesystem::path& path, const LayeredImage& image);
+/// A picture that is made in bands of whole rows, so that it is never in memory as a whole.
+struct BandedImage {
+  LayeredImage whole;  // windows, space and metadata; no channels
+  int rows = 1;        // of a band; the last one may have fewer
+  /// The rows from `first` on, counted from the data window's top, with the same channels each time. Asked for once each, in
+  /// order.
+  std::function<LayeredImage(int first, int rows)> band;
+};
+
+/// Both are without loss. Of 32-bit float layers of noisy pictures ZIP leaves a half, and takes ten times as long as RLE, which
+/// leaves 1.2 to 1.3 times as much as ZIP (docs/output.md).
+enum class ExrCompression { zip, rle };
+
+/// ZIP where it takes at most a tenth of `seconds`, what the picture itself took, on this machine's cores; else RLE.
+/// `bytes`: of all layers.
+ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores);
+
+/// Writes a scanline EXR (chromaticities, metadata as attributes) as write_atomically does. Throws RunError.
+void write_exr(const std::filesystem::path& path, const LayeredImage& image, ExrCompression compression = ExrCompression::zip);
+void write_exr(const std::filesystem::path& path, const BandedImage& image, ExrCompression compression = ExrCompression::zip);
+/// A good BandedImage::rows for that many 32-bit layers: some 32 MiB, and for each core one of the 16 rows that ZIP packs.
+int band_rows(int width, std::size_t channels);
+/// Throws InputError naming `flag` when no EXR of `channels` 32-bit layers can have a data window of that size.
+void check_exr_size(int width, int height, std::size_t channels, const std::string& flag);
 /// Throws InputError when missing or broken. Half and float channels come as floats, uint as uints.
 LayeredImage read_exr(const std::filesystem::path& path);
 
 /// Tone-maps the R G B channels (film/preview.h) and writes the data window with 8 bits a channel, in the format of the
 /// extension, atomically. Throws RunError or InputError.
 void write_preview(const std::filesystem::path& path, const LayeredImage& image);
+/// The same of bytes that preview_rgb8 (film/preview.h) made: 3 a pixel.
+void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
 /// Throws InputError naming `flag` when write_preview could not write a file of that name's extension.
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);
+/// Throws InputError naming `flag` when that format cannot hold a picture of this size.
+void check_preview_size(const std::filesystem::path& path, int width, int height, const std::string& flag);
 /// True when OpenImageIO is built in.
 bool has_image_io();
 

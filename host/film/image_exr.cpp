@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // Layered images as OpenEXR files.
+#include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfCompression.h>
@@ -9,6 +10,7 @@
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
@@ -19,7 +21,13 @@
 #include <ImfThreading.h>
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/check.h"
@@ -34,10 +42,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+unsigned usable_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
+
 /// Compression and decompression use all cores; OpenEXR starts with none of its own.
 int thread_count() {
   static const int count = [] {
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int cores = static_cast<int>(usable_cores());
     Imf::setGlobalThreadCount(cores);
     return cores;
   }();
@@ -60,13 +70,6 @@ Imf::Slice slice(Imf::PixelType type, T* data, std::int64_t x, std::int64_t y, s
   const std::int64_t corner = y * width + x;
   char* base = reinterpret_cast<char*>(data) - corner * static_cast<std::int64_t>(sizeof(T));
   return Imf::Slice(type, base, sizeof(T), sizeof(T) * static_cast<std::size_t>(width));
-}
-
-void check_channels(const LayeredImage& image) {
-  const std::size_t pixels = static_cast<std::size_t>(image.data_width) * static_cast<std::size_t>(image.data_height);
-  CHECK_LT_(std::size_t{0}, pixels);
-  for (const Channel& channel : image.channels)
-    CHECK_EQ_(channel.uints.empty() ? channel.floats.size() : channel.uints.size(), pixels);
 }
 
 std::string attribute_text(const Imf::Attribute& attribute) {
@@ -136,37 +139,139 @@ LayeredImage read_part(const fs::path& path, std::uintmax_t file_bytes, Imf::Mul
   return image;
 }
 
-}  // namespace
-
-void write_exr(const fs::path& path, const LayeredImage& image) {
-  check_channels(image);
-  const Imath::Box2i display({0, 0}, {image.width - 1, image.height - 1});
-  const Imath::Box2i data({image.x, image.y}, {image.x + image.data_width - 1, image.y + image.data_height - 1});
-  Imf::Header header(display, data);
-  header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::addChromaticities(header, to_imf(image.chromaticities ? *image.chromaticities : chromaticities_of(image.space)));
-  for (const auto& [name, value] : image.metadata) header.insert(name, Imf::StringAttribute(value));
-
-  Imf::FrameBuffer frame;
-  for (const Channel& channel : image.channels) {
-    const bool whole = !channel.uints.empty();
-    header.channels().insert(channel.name, Imf::Channel(whole ? Imf::UINT : Imf::FLOAT));
-    // OpenEXR's slices are not const; writing only reads them.
-    frame.insert(channel.name,
-                 whole ? slice(Imf::UINT, const_cast<std::uint32_t*>(channel.uints.data()), image.x, image.y, image.data_width)
-                       : slice(Imf::FLOAT, const_cast<float*>(channel.floats.data()), image.x, image.y, image.data_width));
+/// A file whose every failure to write is told: OpenEXR's own drops those of its last bytes and of its table of rows.
+class CheckedFile : public Imf::OStream {
+ public:
+  /// `name`: for messages.
+  CheckedFile(const fs::path& path, const fs::path& name)
+      : Imf::OStream(path.c_str()), name_(name), file_(std::fopen(path.c_str(), "wb")) {
+    if (!file_) fail(errno);
+    std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 20);
   }
+  ~CheckedFile() override {
+    if (file_) std::fclose(file_);
+  }
+  CheckedFile(const CheckedFile&) = delete;
+  CheckedFile& operator=(const CheckedFile&) = delete;
+
+  void write(const char* bytes, int count) override {
+    if (std::fwrite(bytes, 1, static_cast<std::size_t>(count), file_) != static_cast<std::size_t>(count)) fail(errno);
+  }
+  std::uint64_t tellp() override {
+    const long at = std::ftell(file_);
+    if (at < 0) fail(errno);
+    return static_cast<std::uint64_t>(at);
+  }
+  void seekp(std::uint64_t to) override {
+    if (std::fseek(file_, static_cast<long>(to), SEEK_SET) != 0) fail(errno);
+  }
+  /// Throws for this and for any earlier failure, whoever caught it.
+  void close() {
+    if (std::fclose(std::exchange(file_, nullptr)) != 0 && failure_ == 0) fail(errno);
+    if (failure_ != 0) fail(failure_);
+  }
+
+ private:
+  [[noreturn]] void fail(int code) {
+    failure_ = code;
+    throw RunError(fmt::format("{}: cannot be written: {}", name_.string(), std::strerror(code)));
+  }
+  fs::path name_;
+  std::FILE* file_;
+  int failure_ = 0;
+};
+
+void check_channels(const std::vector<Channel>& channels, int width, int rows) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
+  CHECK_LT_(std::size_t{0}, pixels);
+  for (const Channel& channel : channels) CHECK_EQ_(channel.uints.empty() ? channel.floats.size() : channel.uints.size(), pixels);
+}
+
+Imf::Header header_of(const LayeredImage& whole, const std::vector<Channel>& channels, ExrCompression compression) {
+  const Imath::Box2i display({0, 0}, {whole.width - 1, whole.height - 1});
+  const Imath::Box2i data({whole.x, whole.y}, {whole.x + whole.data_width - 1, whole.y + whole.data_height - 1});
+  Imf::Header header(display, data);
+  header.compression() = compression == ExrCompression::zip ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION;
+  Imf::addChromaticities(header, to_imf(whole.chromaticities ? *whole.chromaticities : chromaticities_of(whole.space)));
+  for (const auto& [name, value] : whole.metadata) header.insert(name, Imf::StringAttribute(value));
+  for (const Channel& channel : channels)
+    header.channels().insert(channel.name, Imf::Channel(channel.uints.empty() ? Imf::FLOAT : Imf::UINT));
+  return header;
+}
+
+/// A band whose first row is `y` of the picture.
+Imf::FrameBuffer frame_of(const LayeredImage& whole, const std::vector<Channel>& channels, std::int64_t y) {
+  Imf::FrameBuffer frame;
+  // OpenEXR's slices are not const; writing only reads them.
+  for (const Channel& channel : channels)
+    frame.insert(channel.name,
+                 channel.uints.empty()
+                     ? slice(Imf::FLOAT, const_cast<float*>(channel.floats.data()), whole.x, y, whole.data_width)
+                     : slice(Imf::UINT, const_cast<std::uint32_t*>(channel.uints.data()), whole.x, y, whole.data_width));
+  return frame;
+}
+
+void write_bands(const fs::path& path, const LayeredImage& whole, int step, ExrCompression compression,
+                 const std::function<const LayeredImage&(int first, int rows)>& band_of) {
   try {
     write_atomically(path, [&](const fs::path& temporary) {
-      Imf::OutputFile file(temporary.c_str(), header, thread_count());
-      file.setFrameBuffer(frame);
-      file.writePixels(image.data_height);
+      CheckedFile stream(temporary, path);
+      std::optional<Imf::OutputFile> file;
+      for (int first = 0; first < whole.data_height; first += step) {
+        const int rows = std::min(step, whole.data_height - first);
+        const std::vector<Channel>& channels = band_of(first, rows).channels;
+        check_channels(channels, whole.data_width, rows);
+        if (!file) file.emplace(stream, header_of(whole, channels, compression), thread_count());
+        file->setFrameBuffer(frame_of(whole, channels, std::int64_t{whole.y} + first));
+        file->writePixels(rows);
+      }
+      file.reset();
+      stream.close();
     });
-  } catch (const RunError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
+  } catch (const Iex::BaseExc& error) {
+    throw RunError(fmt::format("{}: cannot be written: {}", path.string(), first_line(error.what())));
   }
+}
+
+}  // namespace
+
+ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores) {
+  // Of layers as these, OpenEXR 3.1 packs some 60 MB/s on each core of a server of 2020.
+  constexpr double zip_bytes_per_second = 6e7, share = 0.1;
+  const double zip_seconds = static_cast<double>(bytes) / (zip_bytes_per_second * std::max(1u, cores));
+  return zip_seconds <= share * seconds ? ExrCompression::zip : ExrCompression::rle;
+}
+
+int band_rows(int width, std::size_t channels) {
+  constexpr std::size_t wanted_bytes = std::size_t{1} << 25, block_rows = 16;
+  const std::size_t row_bytes = std::max<std::size_t>(1, static_cast<std::size_t>(width) * channels * sizeof(float));
+  const std::size_t blocks = std::max(wanted_bytes / (row_bytes * block_rows), std::min<std::size_t>(16, usable_cores()));
+  return narrow<int>(block_rows * blocks);
+}
+
+void check_exr_size(int width, int height, std::size_t channels, const std::string& flag) {
+  // OpenEXR counts the bytes of a block of rows in an int; and no picture is written that read_exr would not read.
+  const std::uint64_t block_bytes = static_cast<std::uint64_t>(width) * channels * sizeof(float) * 16;
+  if (width > max_image_side || height > max_image_side || block_bytes > std::numeric_limits<int>::max() / 2)
+    throw InputError(SourceLocation{flag},
+                     fmt::format("an EXR of {} x {} pixels in {} layers cannot be written (at most {} a side, "
+                                 "and {} pixels in a row of so many)",
+                                 width, height, channels, max_image_side,
+                                 std::numeric_limits<int>::max() / 2 / (channels * sizeof(float) * 16)));
+}
+
+void write_exr(const fs::path& path, const BandedImage& image, ExrCompression compression) {
+  CHECK_LT_(0, image.rows);
+  LayeredImage band;
+  write_bands(path, image.whole, image.rows, compression, [&](int first, int rows) -> const LayeredImage& {
+    band = LayeredImage();  // before the next one is made
+    return band = image.band(first, rows);
+  });
+}
+
+void write_exr(const fs::path& path, const LayeredImage& image, ExrCompression compression) {
+  check_channels(image.channels, image.data_width, image.data_height);
+  write_bands(path, image, image.data_height, compression, [&](int, int) -> const LayeredImage& { return image; });
 }
 
 LayeredImage read_exr(const fs::path& path) {

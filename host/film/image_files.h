@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace caplet::image_files {
@@ -22,7 +23,9 @@ bool available();
 Pixels read_linear(const std::filesystem::path& path);
 /// Whether a file of that extension can be written.
 bool can_write(const std::filesystem::path& path);
-/// Writes 8-bit sRGB, 3 bytes a pixel. Throws RunError.
-void write_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
+/// Whether a file of that extension, which can be written, can be of that size.
+bool can_hold(const std::filesystem::path& path, int width, int height);
+/// The bytes of a file of 8-bit sRGB, 3 bytes a pixel, in the format of the path's extension. Throws RunError.
+std::string encode_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace caplet::image_files

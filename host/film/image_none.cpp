@@ -21,7 +21,9 @@ Pixels read_linear(const std::filesystem::path& path) { throw InputError(fmt::fo
 
 bool can_write(const std::filesystem::path&) { return false; }
 
-void write_rgb8(const std::filesystem::path& path, int, int, const std::vector<std::uint8_t>&) {
+bool can_hold(const std::filesystem::path&, int, int) { return false; }
+
+std::string encode_rgb8(const std::filesystem::path& path, int, int, const std::vector<std::uint8_t>&) {
   throw RunError(fmt::format("{}: {}", path.string(), reason));
 }
 

@@ -4,10 +4,16 @@
 // Image files other than EXR through OpenImageIO: the one file that knows it.
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "film/image_files.h"
@@ -32,6 +38,48 @@ float decoding_exponent(const OIIO::ImageSpec& spec) {
 float linear(float value, float exponent) {
   if (exponent == 1) return value;
   return exponent == 0 ? linear_from_srgb(value) : std::copysign(std::pow(std::abs(value), exponent), value);
+}
+
+/// A file in memory: the libraries of image formats write files by name, and not all of them tell that a disk is full.
+class MemoryFile {
+ public:
+  MemoryFile() : number_(::memfd_create("caplet picture", MFD_CLOEXEC)) {
+    if (number_ < 0) throw RunError(fmt::format("no file in memory: {}", std::strerror(errno)));
+  }
+  ~MemoryFile() { ::close(number_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return fmt::format("/proc/self/fd/{}", number_); }
+  std::string bytes() const {
+    std::string out(static_cast<std::size_t>(std::max<off_t>(0, ::lseek(number_, 0, SEEK_END))), '\0');
+    for (std::size_t at = 0; at < out.size();) {
+      const ssize_t count = ::pread(number_, out.data() + at, out.size() - at, static_cast<off_t>(at));
+      if (count <= 0) throw RunError(fmt::format("a file in memory cannot be read: {}", std::strerror(errno)));
+      at += static_cast<std::size_t>(count);
+    }
+    return out;
+  }
+
+ private:
+  int number_;
+};
+
+/// Sides that a format's library refuses only when the picture is written, libjpeg by ending the program: JPEG_MAX_DIMENSION,
+/// PNG_USER_WIDTH_MAX, WEBP_MAX_DIMENSION, and the 16 bits that the other formats have for them.
+struct Limit {
+  std::string_view extension;
+  int side;
+};
+constexpr Limit limits[] = {{".jpg", 65500},  {".jpeg", 65500},  {".jpe", 65500},  {".jif", 65500},  {".jfif", 65500},
+                            {".jfi", 65500},  {".png", 1000000}, {".webp", 16383}, {".gif", 65535},  {".tga", 65535},
+                            {".tpic", 65535}, {".sgi", 65535},   {".rgb", 65535},  {".rgba", 65535}, {".ico", 256}};
+
+OIIO::ImageSpec rgb8_spec(int width, int height) {
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("CompressionQuality", 95);
+  return spec;
 }
 
 std::string error_text(const std::string& text) { return text.empty() ? "unknown reason" : first_line(text); }
@@ -82,14 +130,28 @@ bool can_write(const std::filesystem::path& path) {
   return known;
 }
 
-void write_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
+bool can_hold(const std::filesystem::path& path, int width, int height) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Limit& limit : limits)
+    if (limit.extension == extension && (width > limit.side || height > limit.side)) return false;
+  const MemoryFile file;
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
+  const bool opened = output && output->open(file.path(), rgb8_spec(width, height));
+  if (!output) OIIO::geterror();
+  if (output && !opened) (void)output->geterror();
+  return opened;
+}
+
+std::string encode_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   if (!output) throw RunError(fmt::format("{}: {}", path.string(), error_text(OIIO::geterror())));
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("CompressionQuality", 95);
-  if (!output->open(path.string(), spec) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
+  const MemoryFile file;
+  if (!output->open(file.path(), rgb8_spec(width, height)) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) ||
+      !output->close())
     throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error_text(output->geterror())));
+  return file.bytes();
 }
 
 }  // namespace caplet::image_files

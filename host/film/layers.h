@@ -38,6 +38,13 @@ class Layers {
     out.bits_.reset(index(layer));
     return out;
   }
+  /// 32-bit channels of a picture with these layers, R G B A among them.
+  std::size_t channels() const {
+    constexpr std::array<std::size_t, layer_names.size()> of_layer{1, 3, 3, 3, 1, 1, 3};  // in the order of Layer
+    std::size_t count = 4;
+    for (std::size_t i = 0; i < of_layer.size(); ++i) count += bits_[i] ? of_layer[i] : 0;
+    return count;
+  }
   bool operator==(const Layers&) const = default;
 
  private:

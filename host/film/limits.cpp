@@ -7,6 +7,7 @@
 
 #include <system_error>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 
 namespace caplet {
@@ -18,6 +19,7 @@ std::uintmax_t readable_file_bytes(const fs::path& path) {
   if (!fs::exists(path, error)) throw InputError(path.string() + ": no such file");
   if (!fs::is_regular_file(path, error)) throw InputError(path.string() + ": not a file");
   if (::access(path.c_str(), R_OK) != 0) throw InputError(path.string() + ": cannot be read (permission denied)");
+  note_input(path);
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error) throw InputError(fmt::format("{}: {}", path.string(), error.message()));
   return bytes;

@@ -62,9 +62,18 @@ std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image) {
 }
 
 void write_preview(const fs::path& path, const LayeredImage& image) {
-  const std::vector<std::uint8_t> rgb = preview_rgb8(image);
-  write_atomically(
-      path, [&](const fs::path& temporary) { image_files::write_rgb8(temporary, image.data_width, image.data_height, rgb); });
+  write_preview(path, image.data_width, image.data_height, preview_rgb8(image));
+}
+
+void write_preview(const fs::path& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
+  const std::string bytes = image_files::encode_rgb8(path, width, height, rgb);
+  write_bytes(path, bytes);
+}
+
+void check_preview_size(const fs::path& path, int width, int height, const std::string& flag) {
+  if (!image_files::can_hold(path, width, height))
+    throw InputError(SourceLocation{flag}, fmt::format("'{}': a picture of {} x {} pixels is larger than its format can hold",
+                                                       path.string(), width, height));
 }
 
 void check_preview_format(const fs::path& path, const std::string& flag) {

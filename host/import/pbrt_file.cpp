@@ -10,6 +10,8 @@
 #include <memory>
 #include <system_error>
 
+#include "base/atomic_file.h"
+
 namespace caplet::pbrt {
 
 namespace fs = std::filesystem;
@@ -40,6 +42,7 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   const std::unique_ptr<gzFile_s, Close> file(gzopen(path.c_str(), "rb"));
   if (!file) fail(where, path, "cannot be read");
   if (error) fail(where, path, "cannot be read (" + error.message() + ")");
+  note_input(path);
   gzbuffer(file.get(), 1 << 18);
   std::string bytes;
   if (gzdirect(file.get()) && size > limit) fail(where, path, fmt::format("is longer than {} bytes", limit));

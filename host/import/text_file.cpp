@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/atomic_file.h"
+
 namespace caplet {
 
 namespace {
@@ -36,6 +38,7 @@ TextFile::TextFile(const std::filesystem::path& path) {
   struct stat status {};
   if (::fstat(file.number, &status) != 0) cannot_read(path, std::strerror(errno));
   if (!S_ISREG(status.st_mode)) cannot_read(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
+  note_input(path);
   const auto expected = static_cast<std::size_t>(status.st_size);
   data_ = std::make_unique_for_overwrite<char[]>(expected);
   while (size_ < expected) {

@@ -143,7 +143,10 @@ RenderResult render(const FlatScene& scene, const Device& device, const RenderOp
     result.interrupted = interrupt_requested();
     if (result.interrupted || (options.time_limit && seconds_since(start) >= *options.time_limit)) break;
   }
-  result.film = wavefront.stages().read_film();
+  if (options.film_on_device)
+    result.device_film = wavefront.stages().film();
+  else
+    result.film = wavefront.stages().film().read();
   result.render_seconds = seconds_since(start);
   result.samples_per_pixel = done;
   result.camera_rays = wavefront.camera_rays;

@@ -18,6 +18,7 @@ struct RenderOptions {
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::size_t batch_paths = 0;       // 0: chosen for the device
   bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
+  bool film_on_device = false;       // RenderResult::device_film in place of film
   bool gpu_encoding = false;         // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
 };
 
@@ -28,8 +29,9 @@ struct Progress {
 };
 
 struct RenderResult {
-  std::vector<FilmRecord> film;  // of the crop window, row-major
-  int samples_per_pixel = 0;     // finished
+  std::vector<FilmRecord> film;    // of the crop window, row-major
+  Buffer<FilmRecord> device_film;  // the same, to be read in parts
+  int samples_per_pixel = 0;       // finished
   bool interrupted = false;
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;

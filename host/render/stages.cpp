@@ -85,8 +85,11 @@ Stages::Stages(const Device& device, const FlatScene& scene, const StateSize& si
 #undef BUFFER
 #undef STATE
 #undef IN
-  const std::vector<FilmRecord> empty(size.pixels, FilmRecord{});
-  if (!empty.empty()) film_.write(empty);
+  // In pieces: a film is the largest thing there is.
+  const std::vector<FilmRecord> empty(std::min<std::size_t>(size.pixels, 1 << 16), FilmRecord{});
+  for (std::size_t first = 0; first < size.pixels; first += empty.size())
+    film_.RawBuffer::write(empty.data(), first * sizeof(FilmRecord),
+                           std::min(empty.size(), size.pixels - first) * sizeof(FilmRecord));
 }
 
 void Stages::compile(std::span<const Stage> stages, std::size_t most) {
@@ -169,7 +172,5 @@ std::array<uint, 4> Stages::counters() const {
 void Stages::clear_sort_bins(std::size_t bins) {
   device_.queue().enqueueFillBuffer(sort_bins_.handle(), cl_uint{0}, 0, bins * sizeof(uint));
 }
-
-std::vector<FilmRecord> Stages::read_film() const { return film_.Buffer<FilmRecord>::read(); }
 
 }  // namespace caplet

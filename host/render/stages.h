@@ -62,7 +62,7 @@ class Stages {
   void clear_sort_bins(std::size_t bins);
   /// What was queue_next becomes queue, unsorted.
   void swap_queues();
-  std::vector<FilmRecord> read_film() const;
+  const Buffer<FilmRecord>& film() const { return film_; }
 
   void time_stages(bool on) { timed_ = on; }
   /// Seconds each stage took so far, when timing is on.

@@ -8,6 +8,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/atomic_file.h"
+
 namespace caplet {
 
 namespace {
@@ -57,6 +59,7 @@ std::optional<std::string> parse_number(std::string_view token, double& value) {
 }
 
 RayFile::RayFile(const fs::path& path) : path_(path) {
+  note_input(path);
   if (path.extension() == ".npy") {
     npy_.emplace(path, 6);
     return;

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "device/cache.h"
 #include "device/doctor/machine.h"
+#include "device/second_try.h"
 #include "device/select.h"
 
 namespace caplet::doctor {
@@ -50,6 +51,8 @@ std::string remove_text(const Driver& driver) {
   return fmt::format("sudo mv '{0}' '{0}.off'", driver.from);
 }
 
+bool is_pocl(const DeviceInfo& info) { return info.platform.starts_with("Portable Computing Language"); }
+
 std::string title(const DeviceInfo& info) { return fmt::format("device {} {}", info.index, info.name); }
 
 /// Everything that is asked and judged, in its order.
@@ -74,6 +77,11 @@ class Examination {
   }
 
  private:
+  struct Testable {
+    DeviceInfo info;
+    Variables variables;
+  };
+
   void add(Finding finding) {
     tell_(finding);
     out_.findings.push_back(std::move(finding));
@@ -155,6 +163,11 @@ class Examination {
       const ChildEnd end = test_device(device.info.index, device.variables, 4 * options_.seconds);
       if (end.finished)
         add(Finding{State::ok, title(device.info), "passes the self-test", ""});
+      else if (is_pocl(device.info) && passes_with_fresh_cache(device))
+        add(Finding{State::wrong, "PoCL's cache",
+                    fmt::format("{} is damaged: with it, {} fails the self-test ({}{}); with a fresh folder it passes",
+                                pocl_cache_folder(machine_.variable).string(), title(device.info), end.how, printed(end)),
+                    fmt::format("rm -r '{}'", pocl_cache_folder(machine_.variable).string())});
       else
         add(Finding{State::wrong, title(device.info), "fails the self-test: " + end.how + printed(end),
                     fmt::format("update the driver ({}), or use another device (--device); then report it to the driver's makers",
@@ -162,10 +175,10 @@ class Examination {
     }
   }
 
-  struct Testable {
-    DeviceInfo info;
-    Variables variables;
-  };
+  bool passes_with_fresh_cache(const Testable& device) const {
+    const FreshPoclCache fresh;
+    return test_device(device.info.index, device.variables, 4 * options_.seconds).finished;
+  }
 
   const Surroundings& machine_;
   const Options& options_;

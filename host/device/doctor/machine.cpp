@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "device/second_try.h"
+
 namespace caplet::doctor {
 
 namespace fs = std::filesystem;
@@ -196,11 +198,7 @@ Findings check_cache(const Surroundings& machine, const fs::path& folder) {
 }
 
 Findings check_pocl_cache(const Surroundings& machine) {
-  fs::path folder = machine.variable("POCL_CACHE_DIR");
-  if (const std::string base = machine.variable("XDG_CACHE_HOME"); folder.empty() && !base.empty())
-    folder = fs::path(base) / "pocl/kcache";
-  if (const std::string home = machine.variable("HOME"); folder.empty() && !home.empty())
-    folder = fs::path(home) / ".cache/pocl/kcache";
+  const fs::path folder = pocl_cache_folder(machine.variable);
   if (folder.empty()) return {};
   return {check_folder(machine, "PoCL's cache", folder, "POCL_CACHE_DIR", "PoCL then offers no device or cannot compile")};
 }

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "device/second_try.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/log.h"
+
+extern char** environ;
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* marker = "CAPLET_DRIVER_FAILED";  // of the second process: the signal, 0 for an error
+constexpr int signals[] = {SIGABRT, SIGBUS, SIGSEGV, SIGILL};
+
+enum State : int { off, guarded, second, ending };
+std::atomic<int> state{off};
+static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
+
+// What the handler needs, made before.
+char** program_arguments = nullptr;
+bool is_second = false;
+std::string damaged;  // the folder
+std::vector<std::string> variables;
+std::vector<char*> environment;
+char* signal_digits = nullptr;  // two, within `variables`
+sigset_t mask;
+constexpr char in_vain[] =
+    "caplet: error: the driver failed with a fresh cache folder as well, so PoCL's cache is not the reason; `caplet doctor` "
+    "tells "
+    "more\n";
+
+std::string variable_of_process(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
+  return value ? value : "";
+}
+
+/// Replaces the process; returns when that fails. Safe in handlers of signals.
+void run_again(int number) {
+  signal_digits[0] = static_cast<char>('0' + number / 10);
+  signal_digits[1] = static_cast<char>('0' + number % 10);
+  ::sigprocmask(SIG_SETMASK, &mask, nullptr);
+  ::execve("/proc/self/exe", program_arguments, environment.data());
+}
+
+void on_crash(int number) {
+  int was = guarded;
+  if (state.compare_exchange_strong(was, ending)) {
+    remove_temporary_files();
+    run_again(number);
+  } else if (was == ending) {
+    for (;;) ::pause();  // another thread is about to replace the process
+  } else if (was == second) {
+    remove_temporary_files();
+    (void)!::write(STDERR_FILENO, in_vain, sizeof in_vain - 1);
+    ::_exit(1);
+  }
+  ::signal(number, SIG_DFL);
+  ::raise(number);
+}
+
+/// Leaves alone what a sanitizer or a debugger has set.
+void handle_signals(bool on) {
+  for (const int number : signals) {
+    struct sigaction now {};
+    ::sigaction(number, nullptr, &now);
+    if (on && now.sa_handler == SIG_DFL)
+      ::signal(number, on_crash);
+    else if (!on && now.sa_handler == on_crash)
+      ::signal(number, SIG_DFL);
+  }
+}
+
+void prepare() {
+  variables.clear();
+  for (char** one = environ; *one; ++one) variables.emplace_back(*one);
+  variables.push_back(fmt::format("{}=00", marker));
+  environment.clear();
+  for (std::string& one : variables) environment.push_back(one.data());
+  environment.push_back(nullptr);
+  signal_digits = variables.back().data() + variables.back().size() - 2;
+  ::sigprocmask(SIG_SETMASK, nullptr, &mask);
+}
+
+/// Errors that PoCL gives for files of its cache that hold no program, or not this one.
+bool may_be_the_cache(cl_int code) {
+  switch (code) {
+    case CL_INVALID_KERNEL_NAME:
+    case CL_INVALID_BINARY:
+    case CL_INVALID_PROGRAM_EXECUTABLE:
+    case CL_INVALID_KERNEL_DEFINITION:
+    case CL_LINK_PROGRAM_FAILURE:
+    case CL_OUT_OF_RESOURCES:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+fs::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable) {
+  if (const std::string named = variable("POCL_CACHE_DIR"); !named.empty()) return named;
+  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty()) return fs::path(base) / "pocl/kcache";
+  if (const std::string home = variable("HOME"); !home.empty()) return fs::path(home) / ".cache/pocl/kcache";
+  return {};
+}
+
+FreshPoclCache::FreshPoclCache() {
+  std::error_code error;
+  std::string name = (fs::temp_directory_path(error) / "caplet-pocl-XXXXXX").string();
+  if (!::mkdtemp(name.data())) throw RunError(fmt::format("{}: no fresh cache folder: {}", name, std::strerror(errno)));
+  folder_ = name;
+  if (const char* before = std::getenv("POCL_CACHE_DIR")) before_ = before;
+  ::setenv("POCL_CACHE_DIR", name.c_str(), 1);
+}
+
+FreshPoclCache::~FreshPoclCache() {
+  std::error_code error;
+  fs::remove_all(folder_, error);
+  if (before_)
+    ::setenv("POCL_CACHE_DIR", before_->c_str(), 1);
+  else
+    ::unsetenv("POCL_CACHE_DIR");
+}
+
+SecondTry::SecondTry(char** arguments) {
+  program_arguments = arguments;
+  const std::string failed = variable_of_process(marker);
+  is_second = !failed.empty();
+  if (!is_second) return;
+  ::unsetenv(marker);
+  damaged = pocl_cache_folder(variable_of_process).string();
+  fresh_.emplace();
+  const int number = std::atoi(failed.c_str());
+  log::warn("PoCL failed{}: trying once more with a fresh cache folder in place of '{}'",
+            number > 0 ? fmt::format(" with signal {} ({})", number, ::strsignal(number)) : "", damaged);
+}
+
+SecondTry::~SecondTry() {
+  if (state.exchange(off) != off) handle_signals(false);
+  program_arguments = nullptr;
+}
+
+void SecondTry::guard(const Device& device) {
+  if (!program_arguments || !device.is_pocl()) return;
+  prepare();
+  state = is_second ? second : guarded;
+  handle_signals(true);
+}
+
+void SecondTry::driver_works() {
+  const int was = state.exchange(off);
+  if (was == off) return;
+  handle_signals(false);
+  if (was == second) log::warn("PoCL works with a fresh cache folder, so its own is damaged: delete it (rm -r '{}')", damaged);
+}
+
+void SecondTry::after(const DriverError& error) {
+  int was = guarded;
+  if (may_be_the_cache(error.code()) && state.compare_exchange_strong(was, ending)) run_again(0);
+}
+
+}  // namespace caplet

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// PoCL loads compiled kernels from its cache into the process: damaged ones end it with SIGABRT, SIGBUS or SIGSEGV, or are CL
+// errors. The program then runs itself again, once, with a fresh cache folder, and names the one to delete.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "device/device.h"
+
+namespace caplet {
+
+/// Where PoCL keeps compiled kernels: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; empty
+/// when none of them is set. `variable` gives an environment variable, empty when it is not set.
+std::filesystem::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable);
+
+/// A folder of its own for PoCL's cache for as long as the object lives: POCL_CACHE_DIR names it. To be made before any OpenCL
+/// call of the process.
+class FreshPoclCache {
+ public:
+  /// Throws RunError when no folder can be made.
+  FreshPoclCache();
+  ~FreshPoclCache();
+  FreshPoclCache(const FreshPoclCache&) = delete;
+  FreshPoclCache& operator=(const FreshPoclCache&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  std::optional<std::string> before_;
+};
+
+/// In main, before anything else, for as long as the program runs.
+class SecondTry {
+ public:
+  /// `arguments` as main has them. In the second process: makes the fresh cache folder.
+  explicit SecondTry(char** arguments);
+  ~SecondTry();
+  SecondTry(const SecondTry&) = delete;
+  SecondTry& operator=(const SecondTry&) = delete;
+
+  /// From here to driver_works() a crash of PoCL starts the second process. Nothing on other platforms, and without a SecondTry.
+  static void guard(const Device& device);
+  /// The driver has run the kernels: what comes is no fault of its cache. In the second process: says which folder to delete.
+  static void driver_works();
+  /// Starts the second process in place of this one if the driver is guarded and its error may come of its cache. Returns
+  /// otherwise.
+  static void after(const DriverError& error);
+
+ private:
+  std::optional<FreshPoclCache> fresh_;
+};
+
+}  // namespace caplet
