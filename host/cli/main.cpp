@@ -71,5 +71,6 @@ int main(int argc, char** argv) {
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);
+  caplet::cli::add_try_device(app);
   return run(app, argc, argv);
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -110,6 +111,14 @@ RayNumbers parse_ray(const std::string& text) {
   RayNumbers ray{};
   if (const auto bad = to_ray(numbers, ray)) refuse("--ray", bad->message);
   return ray;
+}
+
+void add_encoding(CLI::App& command, Encoding& encoding) {
+  command
+      .add_option_function<std::string>(
+          "--encoding", [&encoding](const std::string& text) { encoding = parse_encoding(text, "--encoding"); },
+          "How kernels go through the tree: wide (eight boxes at a time) or single; automatic: by the device")
+      ->type_name("automatic|wide|single");
 }
 
 void apply(const Overrides& overrides, Scene& scene) {

@@ -4,11 +4,13 @@
 // Options that several values make up, and what they change in a scene.
 #pragma once
 
+#include <CLI/App.hpp>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "device/device.h"
 #include "scene/scene.h"
 #include "table/ray_file.h"
 
@@ -32,6 +34,9 @@ void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film);
 
 /// "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError naming --ray.
 RayNumbers parse_ray(const std::string& text);
+
+/// Adds `--encoding`, which forces the way kernels go through the tree.
+void add_encoding(CLI::App& command, Encoding& encoding);
 
 /// What the command line overrides.
 struct Overrides {

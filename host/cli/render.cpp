@@ -17,6 +17,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/summary.h"
+#include "cli/trial.h"
 #include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
+  Encoding encoding = Encoding::automatic;
   std::string scene, output, preview, stats, device, size, crop;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
@@ -134,7 +136,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   log::set_quiet(options.quiet);
   const Overrides overrides = check_options(options);
   install_interrupt_handlers();
-  const Device device = Device::choose(options.device);
+  const Device device = Device::choose(options.device, options.encoding);
 
   phase.lap();
   Scene scene = import_scene(options.scene, FileImageReader());
@@ -145,7 +147,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
-  self_test(device);
+  try_device_apart(device, {.basic_shapes = flat.basic_shapes(), .render = true});
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
               flat.params.crop_width, flat.params.crop_height, scene.sampler.samples_per_pixel, device.info().name);
@@ -185,6 +187,7 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->type_name("x0,y0,x1,y1");
   command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
       ->type_name("D");
+  add_encoding(*command, o->encoding);
   command->add_option("--seed", o->seed, "Seed of the samples")->type_name("S");
   command->add_option("--max-depth", o->max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))

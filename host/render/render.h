@@ -18,7 +18,6 @@ struct RenderOptions {
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::size_t batch_paths = 0;       // 0: chosen for the device
   bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
-  bool gpu_encoding = false;         // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
 };
 
 struct Progress {
