@@ -24,5 +24,6 @@ void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_verify(CLI::App& app);
+void add_try_device(CLI::App& app);  // hidden: see trial.h
 
 }  // namespace caplet::cli

@@ -23,6 +23,8 @@ nlohmann::ordered_json device_json(const DeviceInfo& device) {
           {"version", device.version},
           {"platform", device.platform},
           {"compute_units", device.compute_units},
+          {"native_float_width", device.native_float_width},
+          {"encoding", name_of(natural_encoding(device))},
           {"global_bytes", device.global_bytes},
           {"max_allocation_bytes", device.max_allocation_bytes}};
 }

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/device_json.h"
 #include "device/doctor/diagnosis.h"
+#include "render/known_answers.h"
 #include "render/render.h"
 
 namespace caplet::cli {
@@ -66,6 +67,7 @@ void add_doctor(CLI::App& app) {
   command->footer("Exit codes: 0 nothing is wrong, 1 something is, 2 the usage is.");
   command->callback([chosen] {
     chosen->options.least_bytes = batch_bytes;
+    chosen->options.test = [](const Device& device) { try_device(device, whole_trial); };
     const bool json = chosen->json;
     const doctor::Diagnosis diagnosis =
         doctor::diagnose(doctor::this_machine(), chosen->options, [json](const doctor::Finding& finding) {

@@ -105,5 +105,6 @@ int main(int argc, char** argv) {
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);
+  caplet::cli::add_try_device(app);
   return end(run(app, argc, argv));
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -130,6 +131,14 @@ Layers parse_layers(const std::optional<std::string>& list, bool variance) {
       rest.remove_prefix(comma + 1);
     }
   return variance ? layers.with(Layer::variance) : layers;
+}
+
+void add_encoding(CLI::App& command, Encoding& encoding) {
+  command
+      .add_option_function<std::string>(
+          "--encoding", [&encoding](const std::string& text) { encoding = parse_encoding(text, "--encoding"); },
+          "How kernels go through the tree: wide (eight boxes at a time) or single; automatic: by the device")
+      ->type_name("automatic|wide|single");
 }
 
 void apply(const Overrides& overrides, Scene& scene) {

@@ -4,12 +4,14 @@
 // Options that several values make up, and what they change in a scene.
 #pragma once
 
+#include <CLI/App.hpp>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "device/device.h"
 #include "film/layers.h"
 #include "scene/scene.h"
 #include "table/ray_file.h"
@@ -41,6 +43,9 @@ RayNumbers parse_ray(const std::string& text);
 /// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_names between commas.
 /// And the variance, when asked for. Throws InputError naming --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
+
+/// Adds `--encoding`, which forces the way kernels go through the tree.
+void add_encoding(CLI::App& command, Encoding& encoding);
 
 /// What the command line overrides.
 struct Overrides {

@@ -16,6 +16,7 @@
 #include "cli/options.h"
 #include "cli/pick_report.h"
 #include "cli/pick_table.h"
+#include "cli/trial.h"
 #include "device/second_try.h"
 #include "film/image.h"
 #include "import/import.h"
@@ -34,6 +35,7 @@ constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
 constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, whatever --limit allows a ray
 
 struct Options {
+  Encoding encoding = Encoding::automatic;
   std::string scene, pixel, ray, rays, out, device, size, crop;
   std::size_t limit = 256;
   bool all = false, json = false, reference = false, quiet = false;
@@ -53,9 +55,9 @@ RayRecord to_record(const RayNumbers& n) {
 
 // --- One ray ---
 
-void pick_one(const Options& options, const Scene& scene, const std::optional<std::array<int, 2>>& pixel, const RayRecord& ray,
-              const Device& device) {
-  Query query(lower(scene), device);
+void pick_one(const Options& options, const Scene& scene, const FlatScene& flat, const std::optional<std::array<int, 2>>& pixel,
+              const RayRecord& ray, const Device& device) {
+  Query query(flat, device);
   PickReport report;
   report.pixel = pixel;
   report.ray = ray;
@@ -94,10 +96,11 @@ std::vector<PickRow> answer(Query& query, std::span<const RayRecord> rays, std::
   return rows;
 }
 
-void pick_many(const Options& options, const Scene& scene, RayFile& file, const fs::path& out, const Device& device) {
+void pick_many(const Options& options, const Scene& scene, const FlatScene& flat, RayFile& file, const fs::path& out,
+               const Device& device) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  Query query(lower(scene), device);
+  Query query(flat, device);
   // Kernels are compiled at the first question: before anything is read that may not come twice.
   const RayRecord any{0, 0, 0, 0, 0, 0, 1, std::numeric_limits<float>::infinity()};
   std::vector<std::uint64_t> ignored;
@@ -170,7 +173,7 @@ void run_pick(const Options& options, bool has_limit) {
     outputs.check_inputs();
     install_interrupt_handlers();
   }
-  const Device device = Device::choose(options.device);
+  const Device device = Device::choose(options.device, options.encoding);
   Scene scene = import_scene(options.scene, FileImageReader());
   outputs.check_inputs();
   apply(overrides, scene);
@@ -178,12 +181,13 @@ void run_pick(const Options& options, bool has_limit) {
     check_pixel(*pixel, scene.film);
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
+  const FlatScene flat = lower(scene);
+  try_device_apart(device, {.basic_shapes = flat.basic_shapes(), .nearest = !options.all, .lists = options.all});
   SecondTry::guard(device);
-  self_test(device);
   if (rays)
-    pick_many(options, scene, *rays, out, device);
+    pick_many(options, scene, flat, *rays, out, device);
   else
-    pick_one(options, scene, pixel, *ray, device);
+    pick_one(options, scene, flat, pixel, *ray, device);
 }
 
 }  // namespace
@@ -209,6 +213,7 @@ void add_pick(CLI::App& app) {
   command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method");
   command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
       ->type_name("D");
+  add_encoding(*command, o->encoding);
   command->add_option("--size", o->size, "Picture size that --pixel counts in, as in `render`")->type_name("WxH");
   command->add_option("--crop", o->crop, "Pixels that may be picked, as in `render`")->type_name("x0,y0,x1,y1");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");

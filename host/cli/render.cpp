@@ -18,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/summary.h"
+#include "cli/trial.h"
 #include "device/second_try.h"
 #include "film/image.h"
 #include "film/preview.h"
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
+  Encoding encoding = Encoding::automatic;
   std::string scene, output, preview, stats, device, size, crop;
   std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
@@ -155,8 +157,8 @@ void write_pictures(const Files& files, const BandedImage& picture, std::size_t 
     };
   const LayeredImage& whole = picture.whole;
   if (!files.picture.empty()) {
-    const std::uint64_t bytes = static_cast<std::uint64_t>(whole.data_width) * static_cast<std::uint64_t>(whole.data_height) *
-                                channels * sizeof(float);
+    const std::uint64_t bytes =
+        static_cast<std::uint64_t>(whole.data_width) * static_cast<std::uint64_t>(whole.data_height) * channels * sizeof(float);
     write_exr(files.picture, shown, compression_for(bytes, render_seconds, std::thread::hardware_concurrency()));
   } else if (!files.preview.empty()) {
     for (int first = 0; first < whole.data_height; first += shown.rows)
@@ -173,7 +175,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   const Overrides overrides = check_options(options, files);
   const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
-  const Device device = Device::choose(options.device);
+  const Device device = Device::choose(options.device, options.encoding);
 
   phase.lap();
   Scene scene = import_scene(options.scene, FileImageReader());
@@ -184,8 +186,8 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
+  try_device_apart(device, {.basic_shapes = flat.basic_shapes(), .render = true});
   SecondTry::guard(device);
-  self_test(device);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
               flat.params.crop_width, flat.params.crop_height, scene.sampler.samples_per_pixel, device.info().name);
@@ -230,6 +232,7 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->type_name("x0,y0,x1,y1");
   command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
       ->type_name("D");
+  add_encoding(*command, o->encoding);
   command->add_option("--seed", o->seed, "Seed of the samples")->type_name("S");
   command->add_option("--max-depth", o->max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))

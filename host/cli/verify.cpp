@@ -17,6 +17,7 @@
 #include "cli/commands.h"
 #include "cli/heatmap.h"
 #include "cli/options.h"
+#include "cli/trial.h"
 #include "cli/verify_report.h"
 #include "device/second_try.h"
 #include "film/image.h"
@@ -31,6 +32,7 @@ namespace {
 constexpr int exit_disagreed = 3;
 
 struct Options {
+  Encoding encoding = Encoding::automatic;
   std::string scene, device, heatmap, failures, replay, size;
   std::uint64_t rays = 1'000'000, seed = 0;
   bool all_devices = false, json = false, quiet = false;
@@ -39,14 +41,14 @@ struct Options {
 std::vector<Device> devices_of(const Options& o) {
   std::vector<Device> out;
   if (!o.all_devices) {
-    out.push_back(Device::choose(o.device));
+    out.push_back(Device::choose(o.device, o.encoding));
   } else {
-    for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index)));
+    for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index), o.encoding));
     if (out.empty()) out.push_back(Device::choose(""));  // says what is missing
   }
   for (const Device& device : out) {
+    try_device_apart(device, {.nearest = true, .lists = true});
     SecondTry::guard(device);
-    self_test(device);
   }
   return out;
 }
@@ -173,6 +175,7 @@ void add_verify(CLI::App& app) {
   command->add_option("--seed", o->seed, "Other rays, and another torture set")->capture_default_str()->type_name("S");
   command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
       ->type_name("D");
+  add_encoding(*command, o->encoding);
   command->add_flag("--all-devices", o->all_devices, "Every device there is, and one against the other");
   command->add_flag("--json", o->json, "Print a JSON object for machines");
   command->add_option("--heatmap", o->heatmap, "Also write a picture of how far off each pixel is, in units of the bounds")

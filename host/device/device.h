@@ -37,22 +37,37 @@ struct DeviceInfo {
   std::string name, vendor, driver, version, platform;
   std::string type;  // "cpu", "gpu", "accelerator", "other"
   unsigned compute_units = 0;
+  unsigned native_float_width = 0;  // floats of a vector as the device computes with them (CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
   std::uint64_t global_bytes = 0, max_allocation_bytes = 0;
 };
 
 /// All OpenCL devices; empty when there is no platform (never throws for that).
 std::vector<DeviceInfo> list_devices();
 
+/// How kernels go through trees and leaf blocks: eight boxes or primitives at a time in vectors of floats, or one after the
+/// other.
+enum class Encoding { automatic, wide, single };
+
+/// "automatic", "wide" or "single". Throws InputError with this place for any other text.
+Encoding parse_encoding(const std::string& text, const char* place);
+std::string name_of(Encoding encoding);
+
+/// What suits a device: wide on CPUs that compute with vectors, single on others: GPUs, and CPUs whose driver runs a work-item in
+/// each lane itself.
+Encoding natural_encoding(const DeviceInfo& info);
+
 /// A chosen device with its context and in-order queue. Copies share them.
 class Device {
  public:
   /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
   /// Throws InputError with place "--device" listing what there is when nothing or more than one name matches, and RunError when
-  /// there is no device.
-  static Device choose(const std::string& choice);
+  /// there is no device. `encoding` automatic: what the environment variable CAPLET_ENCODING says, else natural_encoding.
+  static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
   const DeviceInfo& info() const { return info_; }
   bool is_cpu() const { return info_.type == "cpu"; }
+  /// Wide or single.
+  Encoding encoding() const { return encoding_; }
   /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
   /// keeps the results on disk itself.
   bool is_pocl() const { return info_.platform.starts_with("Portable Computing Language"); }
@@ -68,6 +83,7 @@ class Device {
   friend class RawBuffer;
   struct Accounting;
   DeviceInfo info_;
+  Encoding encoding_ = Encoding::single;
   cl::Device device_;
   cl::Context context_;
   std::shared_ptr<cl::CommandQueue> queue_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include <algorithm>
+#include <cstdlib>
 
 #include "device/accounting.h"
 #include "device/cl_error.h"
@@ -64,6 +65,7 @@ DeviceInfo describe(const cl::Device& device, const std::string& platform) {
   info.platform = platform;
   info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
   info.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   return info;
@@ -75,7 +77,24 @@ std::vector<DeviceInfo> list_devices() {
   return out;
 }
 
-Device Device::choose(const std::string& choice) {
+Encoding natural_encoding(const DeviceInfo& info) {
+  return info.type == "cpu" && info.native_float_width > 1 ? Encoding::wide : Encoding::single;
+}
+
+Encoding parse_encoding(const std::string& text, const char* place) {
+  for (const Encoding encoding : {Encoding::automatic, Encoding::wide, Encoding::single})
+    if (text == name_of(encoding)) return encoding;
+  throw InputError(SourceLocation{place}, "'" + text + "' is not automatic, wide or single");
+}
+
+std::string name_of(Encoding encoding) {
+  return encoding == Encoding::wide ? "wide" : encoding == Encoding::single ? "single" : "automatic";
+}
+
+Device Device::choose(const std::string& choice, Encoding encoding) {
+  constexpr const char* variable = "CAPLET_ENCODING";
+  if (const char* named = std::getenv(variable); encoding == Encoding::automatic && named && *named)
+    encoding = parse_encoding(named, variable);
   const std::vector<Found> devices = find_devices();
   std::vector<DeviceInfo> infos;
   infos.reserve(devices.size());
@@ -83,6 +102,7 @@ Device Device::choose(const std::string& choice) {
   const Found& found = devices[select_device(infos, choice)];
   Device out;
   out.info_ = found.info;
+  out.encoding_ = encoding == Encoding::automatic ? natural_encoding(found.info) : encoding;
   out.device_ = found.device;
   cl_call("opening the device", found.info.name, [&] {
     out.context_ = cl::Context(found.device);

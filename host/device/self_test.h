@@ -17,4 +17,12 @@ namespace caplet {
 /// results are not tested: devices may flush them. Empty when all is well. Throws RunError when it does not build or run.
 std::vector<std::string> self_test_failures(const Device& device, const std::string& source);
 
+/// Whether a test that depends on the device, its driver and these texts is to be made: $CAPLET_SELF_TEST is 1, or unset and
+/// remember_self_test has not been called for them. 0: never.
+bool self_test_is_due(const Device& device, const std::vector<std::string>& texts);
+void remember_self_test(const Device& device, const std::vector<std::string>& texts);
+
+/// Throws RunError that names the device, its driver and what is wrong.
+[[noreturn]] void refuse_device(const Device& device, const std::vector<std::string>& failures);
+
 }  // namespace caplet

@@ -80,7 +80,7 @@ std::array<double, 9> xyz_from_rgb(const Chromaticities& c) {
                                         1 - c.blue[0] - c.blue[1]};
   if (!(c.white[1] > 0)) throw InputError("chromaticities with a white point of no luminance");
   const std::array<double, 3> white{c.white[0] / c.white[1], 1, (1 - c.white[0] - c.white[1]) / c.white[1]};
-  const std::array<double, 3> scale = apply(inverse(primaries), white);
+  const std::array<double, 3> scale = caplet::apply(inverse(primaries), white);
   std::array<double, 9> out = primaries;
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t k = 0; k < 3; ++k) out[3 * r + k] *= scale[k];

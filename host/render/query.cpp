@@ -24,7 +24,7 @@ Query::Query(const FlatScene& scene, const Device& device, const QueryOptions& o
     : params_(scene.params),
       batch_rays_(chosen(options.batch_rays, device.is_cpu() ? cpu_batch_rays : gpu_batch_rays)),
       batch_hits_(chosen(options.batch_hits, batch_hits)),
-      stages_(device, scene, {}, stage_options(scene, device, options.gpu_encoding)) {}
+      stages_(device, scene, {}, stage_options(scene, device)) {}
 
 std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays) {
   const std::size_t batch = std::min(batch_rays_, rays.size());

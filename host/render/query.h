@@ -17,7 +17,6 @@ namespace caplet {
 struct QueryOptions {
   std::size_t batch_rays = 0;  // most rays of a launch; 0: chosen for the device
   std::size_t batch_hits = 0;  // most crossings a launch of `all` has room for; 0: chosen for the device
-  bool gpu_encoding = false;   // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
 };
 
 /// Most crossings a ray can be asked for.

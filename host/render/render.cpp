@@ -47,7 +47,7 @@ class Wavefront {
     sorts_ = scene.bvh_nodes >= sorting_pays_from_nodes;
     params_.sort_bits = sorts_ ? sort_bits_for(batch_paths_) : CAPLET_NONE;
     size.sort_bins = bins();
-    stages_.emplace(device, scene, size, stage_options(scene, device, options.gpu_encoding));
+    stages_.emplace(device, scene, size, stage_options(scene, device));
     stages_->compile(render_stages(), batch_paths_);
   }
 

@@ -19,7 +19,6 @@ struct RenderOptions {
   std::size_t batch_paths = 0;       // 0: chosen for the device
   bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
   bool film_on_device = false;       // RenderResult::device_film in place of film
-  bool gpu_encoding = false;         // force the one-ray-one-box traversal on a CPU device (tests); GPUs always use it
 };
 
 struct Progress {

@@ -2,8 +2,10 @@
 // Copyright Caplet authors
 #include "render/stages.h"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
+#include <numeric>
 #include <span>
 
 #include "base/check.h"
@@ -68,9 +70,8 @@ std::span<const T> contents(const T& value) {
 
 std::span<const Stage> render_stages() { return stages_of_a_render; }
 
-std::string stage_options(const FlatScene& scene, const Device& device, bool gpu_encoding) {
-  const bool eight_wide = device.is_cpu() && !gpu_encoding;
-  std::string options = eight_wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
+std::string stage_options(const FlatScene& scene, const Device& device) {
+  std::string options = device.encoding() == Encoding::wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
   if (scene.basic_shapes()) options += " -DCAPLET_BASIC_SHAPES";
   return options;
 }
@@ -159,6 +160,26 @@ void Stages::run(Stage stage, std::size_t count) {
   if (!timed_) return;
   device_.finish();
   compiled.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TracedPaths Stages::trace(std::span<const RayRecord> rays, std::span<const RayRecord> shadows) {
+  std::vector<uint> all(std::max(rays.size(), shadows.size()));
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<float> light(4 * shadows.size(), 1.0f), seen(light.size(), 0.0f);
+  path_ray_.write(rays);
+  queue_.write(std::span(all).first(rays.size()));
+  path_shadow_.write(shadows);
+  queue_shadow_.write(std::span(all).first(shadows.size()));
+  path_shadow_radiance_.write(light);
+  path_radiance_.write(seen);
+  run(Stage::extend, rays.size());
+  run(Stage::connect, shadows.size());
+  TracedPaths out;
+  out.hits.resize(rays.size());
+  path_hit_.RawBuffer::read(out.hits.data(), 0, std::span(out.hits).size_bytes());
+  path_radiance_.RawBuffer::read(seen.data(), 0, std::span(seen).size_bytes());
+  for (std::size_t i = 0; i < shadows.size(); ++i) out.free.push_back(seen[4 * i] == 1.0f);
+  return out;
 }
 
 void Stages::set_counters(const std::array<uint, 4>& values) { counters_.RawBuffer::write(values.data(), 0, sizeof values); }

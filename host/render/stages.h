@@ -28,14 +28,19 @@ enum class Stage {
 /// The stages of a render: those of stages.def.
 std::span<const Stage> render_stages();
 
-/// Compiler options of all stages: how traversal is shaped, and which shapes it must know. `gpu_encoding` forces the
-/// one-ray-one-box traversal on a CPU; other devices always use it.
-std::string stage_options(const FlatScene& scene, const Device& device, bool gpu_encoding);
+/// Compiler options of all stages: how traversal is shaped (Device::encoding), and which shapes it must know.
+std::string stage_options(const FlatScene& scene, const Device& device);
 
 /// Sizes of what is allocated besides the scene.
 struct StateSize {
   std::size_t paths = 0, pixels = 0, sort_bins = 0;
   std::size_t query_rays = 0, query_hits = 0, picks = 0;
+};
+
+/// What `extend` and `connect` say of rays.
+struct TracedPaths {
+  std::vector<HitRecord> hits;  // of each ray
+  std::vector<bool> free;       // each shadow ray
 };
 
 class Stages {
@@ -52,6 +57,9 @@ class Stages {
   /// The first of them (blocking).
   void read_query_counts(std::span<uint> out) const { query_counts_.RawBuffer::read(out.data(), 0, out.size_bytes()); }
   void read_picks(std::span<PickRecord> out) const { picks_.RawBuffer::read(out.data(), 0, out.size_bytes()); }
+
+  /// Runs `extend` over rays and `connect` over shadow rays, at most as many of each as there are paths. Both are compiled.
+  TracedPaths trace(std::span<const RayRecord> rays, std::span<const RayRecord> shadows);
 
   void set_params(const ParamsRecord& params);
   /// Enqueues a stage over `count` work-items. With timing on, waits for it and adds its seconds.

@@ -217,8 +217,9 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
           real_mask side;
           real_mask ok = shape_hit(kind, &shape, block, lane, &t, &side);
           ok &= lanes_filled(block, lane) & (t > t_min) & (t <= t_best);
-          if ((shape.sees_entering & shape.sees_leaving) == 0)
-            ok &= (side & CAPLET_LEAVING) != 0 ? int_of(shape.sees_leaving) : int_of(shape.sees_entering);
+          // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
+          if (shape.sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
+          if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
           uint bits = mask_bits(ok);
           if (bits == 0) continue;
           float ts[CAPLET_REAL_WIDTH];

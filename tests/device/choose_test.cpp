@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "device/device.h"
+#include "environment.h"
 #include "support/data.h"
 
 namespace caplet {
@@ -31,6 +32,34 @@ TEST(Choose, EveryListedDeviceOpensByItsIndex) {
     EXPECT_EQ(device.is_cpu(), info.type == "cpu");
   }
   EXPECT_THROW(Device::choose(std::to_string(devices.size())), InputError);
+}
+
+TEST(Encodings, WideIsForCpusThatComputeWithVectors) {
+  DeviceInfo info;
+  info.type = "cpu";
+  for (const unsigned width : {4u, 8u, 16u}) {
+    info.native_float_width = width;
+    EXPECT_EQ(natural_encoding(info), Encoding::wide) << width;
+  }
+  info.native_float_width = 1;  // llvmpipe: each work-item is a lane
+  EXPECT_EQ(natural_encoding(info), Encoding::single);
+  info.type = "gpu";
+  info.native_float_width = 8;
+  EXPECT_EQ(natural_encoding(info), Encoding::single);
+}
+
+TEST(Encodings, AreForcedByArgumentThenByTheEnvironment) {
+  const test::ScopedVariable none("CAPLET_ENCODING", std::nullopt);
+  const Device plain = Device::choose("");
+  EXPECT_EQ(plain.encoding(), natural_encoding(plain.info()));
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    EXPECT_EQ(Device::choose("", encoding).encoding(), encoding);
+    const test::ScopedVariable variable("CAPLET_ENCODING", name_of(encoding));
+    EXPECT_EQ(Device::choose("").encoding(), encoding);
+    EXPECT_EQ(Device::choose("", Encoding::single).encoding(), Encoding::single);
+  }
+  const test::ScopedVariable wrong("CAPLET_ENCODING", "narrow");
+  EXPECT_THROW(Device::choose(""), InputError);
 }
 
 TEST(Choose, WithoutAPlatformThereAreNoDevices) {

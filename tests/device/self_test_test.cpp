@@ -60,6 +60,11 @@ TEST(SelfTest, SeesWrongNumbers) {
                                    "popcount(a)", "(int)a >> b", "vload8, select, vstore8", "atomic_inc", "work-group ids"));
 }
 
+TEST(SelfTest, AllowsEitherSignOfAZeroFromFma) {
+  const std::string negated = "fma(a, b, -a) == 0.0f ? -fma(a, b, -a) : fma(a, b, -a)";
+  EXPECT_THAT(self_test_failures(Device::choose(""), changed({{"fma(a, b, -a)", negated}})), IsEmpty());
+}
+
 class SelfTestMemory : public testing::Test {
  protected:
   /// A folder of kernels whose self-test fails.

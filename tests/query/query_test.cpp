@@ -136,8 +136,8 @@ TEST_P(QueryOfScene, NearestCrossingsAreTheWitnesss) {
   std::vector<RayRecord> rays = pixel_rays(scene, 200, 1);
   const auto more = random_rays(scene, 1000, 2);
   rays.insert(rays.end(), more.begin(), more.end());
-  for (const bool gpu_encoding : {false, true}) {
-    Query query(flat, test::test_device(), {.gpu_encoding = gpu_encoding});
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    Query query(flat, test::test_device(encoding));
     const std::vector<PickRecord> picks = query.closest(rays);
     ASSERT_EQ(picks.size(), rays.size());
     Tally tally;
@@ -166,8 +166,8 @@ TEST_P(QueryOfScene, ListsAreTheWitnesss) {
   const reference::SceneWitness witness(scene);
   const FlatScene flat = lower(scene);
   const std::vector<RayRecord> rays = random_rays(scene, 500, 3);
-  for (const bool gpu_encoding : {false, true}) {
-    Query query(flat, test::test_device(), {.gpu_encoding = gpu_encoding});
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    Query query(flat, test::test_device(encoding));
     const HitLists lists = query.all(rays, 64);
     ASSERT_EQ(lists.begin.size(), rays.size() + 1);
     EXPECT_EQ(lists.begin.back(), lists.crossings.size());

@@ -13,8 +13,12 @@
 
 namespace caplet::test {
 
+Device test_device(Encoding encoding) {
+  return Device::choose(std::getenv("CAPLET_TEST_DEVICE") ? std::getenv("CAPLET_TEST_DEVICE") : "", encoding);
+}
+
 const Device& test_device() {
-  static const Device device = Device::choose(std::getenv("CAPLET_TEST_DEVICE") ? std::getenv("CAPLET_TEST_DEVICE") : "");
+  static const Device device = test_device(Encoding::automatic);
   return device;
 }
 
@@ -66,7 +70,8 @@ Picture picture_of(const LayeredImage& image) {
   const auto interleave = [&](const std::string& prefix) {
     std::vector<float> values(3 * pixels);
     for (std::size_t c = 0; c < 3; ++c) {
-      const Channel& from = channel(image, prefix + "RGB"[c]);
+      const std::string name = prefix + "RGB"[c];
+      const Channel& from = channel(image, name);
       for (std::size_t i = 0; i < pixels; ++i) values[3 * i + c] = from.floats[i];
     }
     return values;

@@ -16,6 +16,8 @@ namespace caplet::test {
 
 /// The device that tests run on: $CAPLET_TEST_DEVICE, else the default choice.
 const Device& test_device();
+/// The same with another encoding.
+Device test_device(Encoding encoding);
 
 struct Rendered {
   LayeredImage image;

@@ -85,7 +85,7 @@ std::string last_line(const std::string& text) {
 
 }  // namespace
 
-ChildEnd in_child(const std::function<std::string()>& work, double seconds) {
+ChildEnd in_child(const std::function<std::string()>& work, double seconds, const std::function<bool()>& stop) {
   Pipe answer, noise;
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
@@ -100,11 +100,12 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds) {
   std::string printed;
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   int status = 0;
-  bool late = false;
+  bool late = false, stopped = false;
   constexpr int milliseconds = 20;
   while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (Clock::now() > deadline) {
-      late = true;
+    stopped = stop && stop();
+    if (stopped || Clock::now() > deadline) {
+      late = !stopped;
       ::kill(-child, SIGKILL);
       ::waitpid(child, &status, 0);
       break;
@@ -121,7 +122,10 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds) {
   for (std::size_t before = 0; answer.take(out.answer) && out.answer.size() != before;) before = out.answer.size();
   for (std::size_t before = 0; noise.take(printed) && printed.size() != before;) before = printed.size();
   out.said = last_line(printed);
-  if (late)
+  if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
+  if (stopped)
+    out.how = "was stopped";
+  else if (late)
     out.how = fmt::format("gave no answer in {:g} s", seconds);
   else if (WIFSIGNALED(status))
     out.how = fmt::format("ended with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));

@@ -160,7 +160,7 @@ class Examination {
       chosen = {devices_[select_device(infos, options_.device)]};
     }
     for (const Testable& device : chosen) {
-      const ChildEnd end = test_device(device.info.index, device.variables, 4 * options_.seconds);
+      const ChildEnd end = test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds);
       if (end.finished)
         add(Finding{State::ok, title(device.info), "passes the self-test", ""});
       else if (is_pocl(device.info) && passes_with_fresh_cache(device))

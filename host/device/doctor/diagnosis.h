@@ -30,6 +30,8 @@ struct Options {
   double seconds = 30;  // for an answer of a driver; the self-test, which compiles, has four times as long
   /// Of device memory for a full batch of paths on a CPU or another device.
   std::function<std::uint64_t(bool cpu)> least_bytes = [](bool) { return std::uint64_t{0}; };
+  /// Throws RunError that says what a device gets wrong.
+  std::function<void(const Device&)> test = self_test;
 };
 
 struct Diagnosis {

@@ -13,8 +13,8 @@
 #include "device/describe.h"
 
 namespace caplet {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units, global_bytes,
-                                   max_allocation_bytes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units,
+                                   native_float_width, global_bytes, max_allocation_bytes)
 }
 
 namespace caplet::doctor {
@@ -144,13 +144,13 @@ bool can_load(const std::string& library, double seconds) {
   return in_child([&] { return ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL) ? "yes" : ""; }, seconds).answer == "yes";
 }
 
-ChildEnd test_device(int index, const Variables& variables, double seconds) {
+ChildEnd test_device(int index, const Variables& variables, const std::function<void(const Device&)>& test, double seconds) {
   return in_child(
       [&] {
         set(variables);
         set({{"CAPLET_SELF_TEST", "1"}});
         log::set_quiet(true);
-        self_test(Device::choose(std::to_string(index)));
+        test(Device::choose(std::to_string(index)));
         return std::string();
       },
       seconds);

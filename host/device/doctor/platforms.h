@@ -46,7 +46,7 @@ Answer ask_driver(const Driver& driver, const Loader& loader, double seconds);
 Answer ask_all(const Variables& variables, double seconds);
 /// Whether dlopen finds a library; false also when it crashes.
 bool can_load(const std::string& library, double seconds);
-/// Runs the self-test on the device of this index.
-ChildEnd test_device(int index, const Variables& variables, double seconds);
+/// Runs `test`, with CAPLET_SELF_TEST=1, on the device of this index.
+ChildEnd test_device(int index, const Variables& variables, const std::function<void(const Device&)>& test, double seconds);
 
 }  // namespace caplet::doctor

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "cli/trial.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "device/doctor/child.h"
+#include "device/second_try.h"
+
+namespace caplet::cli {
+
+namespace {
+
+constexpr double most_seconds = 600;  // a slow compiler takes a minute and a half on one core
+constexpr const char* not_started = "not started";
+
+std::string error_text(const std::string& line) {
+  const std::string before = "caplet: error: ";
+  return line.starts_with(before) ? line.substr(before.size()) : line;
+}
+
+}  // namespace
+
+void try_device_apart(const Device& device, const Trial& trial) {
+  if (!needs_trial(device, trial)) return;
+  log::info("testing {} once, and compiling for it", device.info().name);
+  std::vector<std::string> words{
+      "caplet", "try-device", "--device", std::to_string(device.info().index), "--encoding", name_of(device.encoding())};
+  if (trial.basic_shapes) words.push_back("--basic-shapes");
+  if (trial.render) words.push_back("--render");
+  if (trial.nearest) words.push_back("--nearest");
+  if (trial.lists) words.push_back("--lists");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  // This process has threads already: its child may only call exec.
+  const auto in_child = [&] {
+    return doctor::in_child(
+        [&] {
+          ::execv("/proc/self/exe", arguments.data());
+          return std::string(not_started);
+        },
+        most_seconds, interrupt_requested);
+  };
+  doctor::ChildEnd end = in_child();
+  if (!end.finished && device.is_pocl() && !interrupt_requested()) {
+    // It may be PoCL's cache that is broken, which SecondTry deals with.
+    const FreshPoclCache fresh;
+    end = in_child();
+  }
+  if (end.finished && end.answer == not_started) return try_device(device, trial);
+  if (end.finished) return;
+  if (interrupt_requested()) throw RunError("interrupted");
+  if (end.exit_code == 1 || end.exit_code == 2) throw RunError(error_text(end.said));
+  throw RunError(fmt::format(
+      "device '{}' (driver {}): its driver {} while Caplet's kernels were compiled and tried{}; use another device or "
+      "driver (--device; `caplet doctor` tells more), or another --encoding",
+      device.info().name, device.info().driver, end.how, end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said)));
+}
+
+void add_try_device(CLI::App& app) {
+  struct Options {
+    std::string device;
+    Encoding encoding = Encoding::automatic;
+    Trial trial;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("try-device", "Test a device; other commands run this");
+  command->group("");
+  command->add_option("--device", o->device);
+  add_encoding(*command, o->encoding);
+  command->add_flag("--basic-shapes", o->trial.basic_shapes);
+  command->add_flag("--render", o->trial.render);
+  command->add_flag("--nearest", o->trial.nearest);
+  command->add_flag("--lists", o->trial.lists);
+  command->callback([o] {
+    log::set_quiet(true);
+    try_device(Device::choose(o->device, o->encoding), o->trial);
+  });
+}
+
+}  // namespace caplet::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The first use of a device: its self-test in a process of its own, so that a driver that crashes or hangs is told of.
+#pragma once
+
+#include "render/known_answers.h"
+
+namespace caplet::cli {
+
+/// try_device (render/known_answers.h), when it is due, by running this program again. Throws RunError with what the test says,
+/// or with how the driver ended it; also when interrupted.
+void try_device_apart(const Device& device, const Trial& trial);
+
+}  // namespace caplet::cli

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "render/known_answers.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "base/check.h"
+#include "base/log.h"
+#include "device/self_test.h"
+#include "render/known_rays.h"
+#include "render/query.h"
+#include "render/stages.h"
+
+namespace caplet {
+
+namespace {
+
+// Coordinates are at most 100 and directions at least 0.2 long: positions, rounded to 2^-24 of 100 a few times over and seen at
+// 17 degrees or more (and stretched by 2 at most), move t by some 1e-4. Anything larger is a fault, and faults are: this test is
+// of wrong code, not of rounding.
+constexpr double t_tolerance = 2e-3;
+
+/// Wrong rays by check and shape.
+class Tally {
+ public:
+  explicit Tally(const std::vector<KnownRay>& rays) {
+    for (const KnownRay& ray : rays) ++asked_[ray.kind];
+  }
+  void add(const char* check, const KnownRay& ray, const std::string& detail) {
+    Wrong& wrong = wrong_[{ray.kind, check}];
+    if (wrong.rays++ == 0) wrong.first = detail;
+  }
+  std::vector<std::string> lines() const {
+    std::vector<std::string> out;
+    for (const auto& [of, wrong] : wrong_)
+      out.push_back(fmt::format("{}: {}: {} of {} rays are wrong; the first {}", shape_name(of.first), of.second, wrong.rays,
+                                asked_.at(of.first), wrong.first));
+    return out;
+  }
+
+ private:
+  struct Wrong {
+    std::size_t rays = 0;
+    std::string first;
+  };
+  std::map<int, std::size_t> asked_;
+  std::map<std::pair<int, std::string>, Wrong> wrong_;
+};
+
+/// What any of the kernels says of a crossing.
+struct Seen {
+  bool hit = false;
+  double t = 0;
+  std::uint32_t object = CAPLET_NONE;
+  bool leaving = false;
+};
+
+std::string text_of(const KnownRay& ray) {
+  if (ray.crossings.empty()) return "nothing";
+  return fmt::format("t = {:.6g}", ray.crossings.front().t);
+}
+
+/// Empty when it is right.
+std::string difference(const KnownRay& ray, const Seen& seen, std::size_t which) {
+  if (which >= ray.crossings.size()) return seen.hit ? fmt::format("finds t = {:.6g}, not nothing", seen.t) : "";
+  const KnownCrossing& known = ray.crossings[which];
+  if (!seen.hit) return fmt::format("finds nothing, not t = {:.6g}", known.t);
+  if (!(std::abs(seen.t - known.t) <= t_tolerance)) return fmt::format("finds t = {:.6g}, not {:.6g}", seen.t, known.t);
+  if (seen.object != ray.object) return fmt::format("finds object {}, not {}", seen.object, ray.object);
+  if (known.side != KnownCrossing::Side::either && seen.leaving != (known.side == KnownCrossing::Side::leaving))
+    return seen.leaving ? "leaves where it enters" : "enters where it leaves";
+  return "";
+}
+
+Seen seen_of(const FlatScene& flat, const HitRecord& hit) {
+  if (hit.slot == CAPLET_NONE) return {};
+  Seen out{true, static_cast<double>(hit.t), CAPLET_NONE, (hit.surface & CAPLET_LEAVING) != 0};
+  if (hit.slot >= flat.leaves.size()) return out;
+  const auto primitive = std::bit_cast<std::uint32_t>(flat.leaves[hit.slot]);
+  if (primitive >= flat.primitive_geometry.size()) return out;
+  out.object = flat.geometries[flat.primitive_geometry[primitive]].object;
+  if (hit.instance < flat.instances.size() && flat.instances[hit.instance].object != CAPLET_NONE)
+    out.object = flat.instances[hit.instance].object;
+  return out;
+}
+
+/// The normal of a crossing is a unit vector against the ray, and its point lies on the ray.
+std::string record_fault(const RayRecord& ray, const PickRecord& pick) {
+  const std::array<double, 3> o{ray.ox, ray.oy, ray.oz}, d{ray.dx, ray.dy, ray.dz};
+  double off = 0, dd = 0, nn = 0, dn = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double error = o[k] + static_cast<double>(pick.t) * d[k] - static_cast<double>(pick.point[k]);
+    const double n = static_cast<double>(pick.normal[k]);
+    off += error * error;
+    dd += d[k] * d[k];
+    nn += n * n;
+    dn += d[k] * n;
+  }
+  if (!(off <= t_tolerance * t_tolerance * dd)) return fmt::format("has its point {:.3g} away from the ray", std::sqrt(off));
+  if (!(std::abs(nn - 1) < 1e-3)) return fmt::format("has a normal of length {:.6g}", std::sqrt(nn));
+  if (!(dn < 0)) return "has a normal along the ray";
+  return "";
+}
+
+Seen seen_of(const PickRecord& pick) {
+  return {std::isfinite(pick.t), static_cast<double>(pick.t), pick.object, pick.leaving != 0};
+}
+
+void check_render(const KnownScene& known, const FlatScene& flat, const Device& device, Tally& tally) {
+  const std::size_t count = known.rays.size();
+  StateSize size;
+  size.paths = 2 * count;
+  size.pixels = 1;
+  size.sort_bins = 1;
+  Stages stages(device, flat, size, stage_options(flat, device));
+  // Every ray just before its first crossing and just behind it; where there is none, twice to its end.
+  std::vector<RayRecord> rays, shadows;
+  for (const KnownRay& ray : known.rays) {
+    rays.push_back(ray.ray);
+    for (const double share : {0.98, 1.02}) {
+      shadows.push_back(ray.ray);
+      if (!ray.crossings.empty()) shadows.back().t_max = static_cast<float>(share * ray.crossings.front().t);
+    }
+  }
+  stages.compile(std::array{Stage::extend, Stage::connect}, size.paths);
+  stages.set_params(flat.params);
+  const TracedPaths traced = stages.trace(rays, shadows);
+  for (std::size_t i = 0; i < count; ++i) {
+    const KnownRay& ray = known.rays[i];
+    if (const std::string wrong = difference(ray, seen_of(flat, traced.hits[i]), 0); !wrong.empty())
+      tally.add("nearest crossing (extend)", ray, wrong);
+    if (!traced.free[2 * i]) tally.add("any crossing (connect)", ray, "is blocked where it is free");
+    if (traced.free[2 * i + 1] != ray.crossings.empty())
+      tally.add("any crossing (connect)", ray,
+                traced.free[2 * i + 1] ? "is free where " + text_of(ray) + " blocks it" : "is blocked");
+  }
+}
+
+void check_queries(const KnownScene& known, const FlatScene& flat, const Device& device, const Trial& trial, Tally& tally) {
+  std::vector<RayRecord> rays;
+  for (const KnownRay& ray : known.rays) rays.push_back(ray.ray);
+  Query query(flat, device, {.batch_rays = rays.size()});
+  const auto check = [&](const char* name, const KnownRay& ray, const PickRecord& pick, std::size_t which) {
+    std::string wrong = difference(ray, seen_of(pick), which);
+    if (wrong.empty() && seen_of(pick).hit) wrong = record_fault(ray.ray, pick);
+    if (!wrong.empty()) tally.add(name, ray, wrong);
+  };
+  if (trial.nearest) {
+    const std::vector<PickRecord> picks = query.closest(rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) check("nearest crossing (pick)", known.rays[i], picks[i], 0);
+  }
+  if (!trial.lists) return;
+  constexpr const char* name = "all crossings (pick_all)";
+  const HitLists lists = query.all(rays, 8);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const KnownRay& ray = known.rays[i];
+    const std::size_t found = lists.begin[i + 1] - lists.begin[i];
+    if (found != ray.crossings.size())
+      tally.add(name, ray, fmt::format("finds {}, not {}", found, ray.crossings.size()));
+    else
+      for (std::size_t k = 0; k < found; ++k) check(name, ray, lists.crossings[lists.begin[i] + k], k);
+  }
+}
+
+std::string key_of(const Trial& trial) {
+  return fmt::format("known answers {:d}{:d}{:d}{:d}", trial.basic_shapes, trial.render, trial.nearest, trial.lists);
+}
+
+/// What a trial's result depends on beside the device: its kernels and how they are built.
+std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
+  std::vector<std::string> out{key_of(trial), name_of(device.encoding()), kernel_source("probe/self_test.cl"),
+                               kernel_source("probe/layout.cl")};
+  if (trial.render) out.insert(out.end(), {kernel_source("extend"), kernel_source("connect")});
+  if (trial.nearest) out.push_back(kernel_source("pick"));
+  if (trial.lists) out.insert(out.end(), {kernel_source("pick_all"), kernel_source("pick_list")});
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> known_answer_failures(const Device& device, const Trial& trial) {
+  const KnownScene known = known_scene(trial.basic_shapes);
+  const FlatScene flat = lower(known.scene);
+  Tally tally(known.rays);
+  if (trial.render) check_render(known, flat, device, tally);
+  if (trial.nearest || trial.lists) check_queries(known, flat, device, trial, tally);
+  return tally.lines();
+}
+
+bool needs_trial(const Device& device, const Trial& trial) { return self_test_is_due(device, trial_texts(device, trial)); }
+
+void try_device(const Device& device, const Trial& trial) {
+  self_test(device);
+  if (!needs_trial(device, trial)) return;
+  if (const std::vector<std::string> failures = known_answer_failures(device, trial); !failures.empty())
+    refuse_device(device, failures);
+  remember_self_test(device, trial_texts(device, trial));
+}
+
+}  // namespace caplet

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Rays whose crossings are known from how the rays are made. A line through two points of a convex solid's surface crosses it in
+// these two alone; a line that is steeper than a sheet is anywhere crosses it once; one in a plane clear of a solid's supporting
+// plane misses it. No formula of intersection is needed, and so none can be shared with the kernels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shared/kinds.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+struct KnownCrossing {
+  enum class Side { entering, leaving, either };  // either: of sheets it depends on what their normal is
+  double t = 0;                                   // in lengths of the ray's direction
+  Side side = Side::either;
+};
+
+struct KnownRay {
+  int kind = 0;              // shape_sphere, ... (kinds.h)
+  std::uint32_t object = 0;  // as PickRecord.object
+  RayRecord ray{};
+  std::vector<KnownCrossing> crossings;  // in order; at least a tenth of a direction's length apart
+};
+
+/// Shapes of every kind (`basic_shapes`: those alone that CAPLET_BASIC_SHAPES knows, and instances), each turned and some
+/// stretched, mirrored or one-sided, far enough from each other that no ray meets two of them.
+struct KnownScene {
+  Scene scene;
+  std::vector<KnownRay> rays;
+};
+KnownScene known_scene(bool basic_shapes);
+
+/// "sphere" for shape_sphere.
+const char* shape_name(int kind);
+
+}  // namespace caplet
