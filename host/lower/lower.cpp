@@ -16,9 +16,6 @@ namespace caplet {
 
 namespace {
 
-// GGX below this roughness is a mirror in binary32: its lobe is narrower than the rounding of a normal can resolve.
-constexpr double smooth_alpha = 1e-3;
-
 class MaterialLowering {
  public:
   explicit MaterialLowering(SpectrumTable& spectra) : spectra_(spectra) {}
@@ -46,9 +43,8 @@ class MaterialLowering {
   static MaterialRecord rough(int kind, double alpha_u, double alpha_v) {
     MaterialRecord record{};
     record.kind = static_cast<uint>(kind);
-    const bool smooth = alpha_u < smooth_alpha && alpha_v < smooth_alpha;
-    record.alpha_u = smooth ? 0.f : static_cast<float>(std::max(alpha_u, smooth_alpha));
-    record.alpha_v = smooth ? 0.f : static_cast<float>(std::max(alpha_v, smooth_alpha));
+    record.alpha_u = static_cast<float>(alpha_u);
+    record.alpha_v = static_cast<float>(alpha_v);
     return record;
   }
   SpectrumTable& spectra_;

@@ -23,8 +23,8 @@ static inline Bsdf bsdf_make(const Globals* g, uint material, float4 lambda) {
   b.alpha_u = record->alpha_u;
   b.alpha_v = record->alpha_v;
   if (!(b.alpha_u < CAPLET_ALPHA_SMOOTH && b.alpha_v < CAPLET_ALPHA_SMOOTH)) {
-    b.alpha_u = fmax(b.alpha_u, 1e-4f);
-    b.alpha_v = fmax(b.alpha_v, 1e-4f);
+    b.alpha_u = fmax(b.alpha_u, CAPLET_ALPHA_MIN);
+    b.alpha_v = fmax(b.alpha_v, CAPLET_ALPHA_MIN);
   }
   switch (b.kind) {
     case material_diffuse:

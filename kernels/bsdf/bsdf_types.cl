@@ -8,8 +8,6 @@
 #include "math/vector.cl"
 #include "shared/kinds.h"
 
-// Roughness below which a surface is a perfect mirror or a clear interface (both directions).
-#define CAPLET_ALPHA_SMOOTH 1e-3f
 // Relative index so near 1 that an interface bends nothing: it is then smooth whatever its roughness, as the half vector of
 // refraction wo + eta wi vanishes.
 #define CAPLET_ETA_MATCHED 1e-4f

@@ -77,6 +77,10 @@ enum {
 #define CAPLET_CSG_DIFFERENCE 0x102u
 #define CAPLET_CSG_MAX_OPERANDS 32
 #define CAPLET_CSG_SUBTRACTED 0x80000000u  // with an operand's first surface: its normals flip
+// GGX roughness (pbrt-v4's): below the first in both directions a surface is a perfect mirror or a clear interface, as its lobe is
+// narrower than the rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.
+#define CAPLET_ALPHA_SMOOTH 1e-3f
+#define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
 

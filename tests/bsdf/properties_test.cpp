@@ -174,9 +174,9 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
     bsdf.kind = i % 5 == 0 ? material_diffuse : i % 2 == 0 ? material_conductor : material_dielectric;
     bsdf.alpha_u = alphas[random() % 7];
     bsdf.alpha_v = alphas[random() % 7];
-    if (std::max(bsdf.alpha_u, bsdf.alpha_v) >= 1e-3f) {  // as bsdf_make
-      bsdf.alpha_u = std::max(bsdf.alpha_u, 1e-4f);
-      bsdf.alpha_v = std::max(bsdf.alpha_v, 1e-4f);
+    if (std::max(bsdf.alpha_u, bsdf.alpha_v) >= CAPLET_ALPHA_SMOOTH) {  // as bsdf_make
+      bsdf.alpha_u = std::max(bsdf.alpha_u, CAPLET_ALPHA_MIN);
+      bsdf.alpha_v = std::max(bsdf.alpha_v, CAPLET_ALPHA_MIN);
     }
     bsdf.eta = etas[random() % 8];
     bsdf.k = extinctions[random() % 4];
