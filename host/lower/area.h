@@ -18,7 +18,7 @@ double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
 
 /// Area of the primitive's image under the affine map `m`, or of those `surfaces` of it (empty: of all; numbers without a surface
 /// add nothing). An element of area with unit normal n grows by |cof(M) n|, cof(M) = |det M| M^-T. Exact for flat surfaces; round
-/// ones by quadrature that converges geometrically: relative error 1e-9 where m stretches by less than ten to one, and 1e-5
+/// ones by quadrature that converges geometrically: relative error 1e-9 where m stretches by less than ten to one, and 2e-5
 /// however it stretches. 0 for csg shapes.
 double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const glm::dmat4& m,
                    std::span<const std::uint32_t> surfaces);

@@ -87,6 +87,7 @@ VECTORS(VECTOR_3, mix, float, float)
 VECTORS(VECTOR_3_SCALAR, mix, float, float)
 BUILTIN uint popcount(uint x) { return (uint)__builtin_popcount(x); }
 BUILTIN uint clz(uint x) { return x == 0 ? 32u : (uint)__builtin_clz(x); }
+BUILTIN uint mul_hi(uint x, uint y) { return (uint)(((ulong)x * (ulong)y) >> 32); }
 
 // --- Geometry (6.12.5) ---
 

@@ -97,8 +97,8 @@ TEST(ManyLights, ALampInAClosedRoomDoesNotStarve) {
     const auto a = means(alone), b = means(beside);
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(b[c][0], a[c][0], 5 * std::hypot(a[c][1], b[c][1]));
-      // A quarter of the samples go to the lamp: at most four times the variance, and what the sampler's stratification saved.
-      EXPECT_LT(b[c][1], 3 * a[c][1] + 1e-3 * a[c][0]);
+      // A quarter of the samples go to the lamp and count four times: sqrt(3) of themselves, over 256 pixels x 256 samples.
+      EXPECT_LT(b[c][1], 3 * a[c][1] + std::sqrt(3.0) / 256 * a[c][0]);
     }
     int black = 0;
     for (std::size_t i = 1; i < beside.rgb.size(); i += 3) black += beside.rgb[i] == 0;
@@ -160,10 +160,10 @@ TEST(Whites, OfAnImageInAnotherSpace) {
     double sky_sum = 0, albedo_sum = 0;
     int sky_count = 0, sheet_count = 0;
     for (std::size_t i = 0; i < sky.size(); ++i) {
-      if (i % 16 < 6) {
+      if (i % 16 > 9) {
         albedo_sum += albedo[i];
         ++sheet_count;
-      } else if (i % 16 > 9) {
+      } else if (i % 16 < 6) {
         sky_sum += sky[i];
         ++sky_count;
       }

@@ -4,8 +4,12 @@
 // The scenes rendered by Mitsuba 3 (reference/mitsuba of the shared data) and what agreement with them means.
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "scene/scene.h"
 
 namespace caplet::test {
 
@@ -24,6 +28,29 @@ inline const std::vector<ReferenceScene>& reference_scenes() {
   };
   return scenes;
 }
+/// Mitsuba 3 (src/emitters/envmap.cpp) lets the H rows of an image stand at theta = pi j / (H - 1), the first and the last on the
+/// poles; here, as in pbrt-v3, texels stand in the middle of their cells, at pi (j + 1/2) / H. Eight rows for one give the sky
+/// that Mitsuba makes of the image.
+inline void place_rows_as_mitsuba(Scene& scene) {
+  for (Light& light : scene.lights) {
+    auto* sky = std::get_if<InfiniteLight>(&light.model);
+    if (!sky || !sky->image) continue;
+    auto image = std::make_shared<EnvironmentImage>(*sky->image);
+    const std::size_t row = 3 * static_cast<std::size_t>(image->width);
+    const int rows = image->height;
+    image->height *= 8;
+    image->rgb.clear();
+    for (int i = 0; i < image->height; ++i) {
+      const double y = (i + 0.5) / image->height * (rows - 1);
+      const auto low = static_cast<std::size_t>(std::min(static_cast<int>(y), rows - 2));
+      const auto t = static_cast<float>(y - static_cast<double>(low));
+      for (std::size_t x = 0; x < row; ++x)
+        image->rgb.push_back((1 - t) * sky->image->rgb[low * row + x] + t * sky->image->rgb[(low + 1) * row + x]);
+    }
+    sky->image = image;
+  }
+}
+
 inline constexpr double allowed_z_mean = 0.3, allowed_beyond_3 = 0.03;
 
 }  // namespace caplet::test

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   bool all = true;
   for (const ReferenceScene& scene : reference_scenes()) {
     const int effort = samples * scene.effort;
-    const Rendered ours = render_file(folder / (scene.name + ".pbrt"), effort);
+    const Rendered ours = render_file(folder / (scene.name + ".pbrt"), effort, place_rows_as_mitsuba);
     const Picture a = picture_of(ours.image), b = picture_of(read_exr(folder / (scene.name + ".exr")));
     const Figures f = compare(a, b);
     bool within = std::abs(f.mean) < scene.mean && f.blocks < scene.blocks;
