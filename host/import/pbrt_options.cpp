@@ -75,7 +75,10 @@ void set_film(Parameters& parameters, ColorSpace space, Scene& scene) {
   }
   if (const Parameter* window = parameters.values("cropwindow", {"float"})) {
     const auto& v = window->numbers;
-    const auto pixel = [](double fraction, int size) { return static_cast<int>(std::ceil(fraction * size)); };
+    // In 32-bit floats, as pbrt does: 0.07 of 100 is pixel 7, not a little more.
+    const auto pixel = [](double fraction, int size) {
+      return static_cast<int>(std::ceil(static_cast<float>(fraction) * static_cast<float>(size)));
+    };
     if (v.size() != 4)
       parameters.error("cropwindow", "takes 4 values, not " + std::to_string(v.size()));
     else if (!(0 <= v[0] && v[0] < v[1] && v[1] <= 1 && 0 <= v[2] && v[2] < v[3] && v[3] <= 1))

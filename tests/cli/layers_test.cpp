@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `render --layers`: which channels a picture has, and that they are the ones of the whole picture.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "film/image.h"
+#include "program.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::filesystem::path folder_with_scene() {
+  const auto folder = test::temporary_folder();
+  test::write_file(folder / "scene.pbrt",
+                   "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 2\n"
+                   "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6\nWorldBegin\nLightSource \"infinite\"\n"
+                   "Shape \"sphere\"\nShape \"capsule\" \"point3 p0\" [ 1 0 1 ] \"point3 p1\" [ -1 0 1 ] \"float radius\" 0.3\n");
+  return folder;
+}
+
+test::Result render(const std::filesystem::path& folder, std::vector<std::string> options) {
+  std::vector<std::string> arguments = {"render", "scene.pbrt", "-o", "out.exr", "-q"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  return test::run_program(arguments, folder);
+}
+
+TEST(Layers, AreThoseOfTheList) {
+  const auto folder = folder_with_scene();
+  const auto image_with = [&](std::vector<std::string> options) {
+    const test::Result result = render(folder, std::move(options));
+    EXPECT_EQ(result.code, 0) << result.err;
+    return read_exr(folder / "out.exr");
+  };
+  const auto names = [](const LayeredImage& image) {
+    std::vector<std::string> out;
+    for (const Channel& channel : image.channels) out.push_back(channel.name);
+    std::ranges::sort(out);
+    return out;
+  };
+  const LayeredImage all = image_with({"--layers", "all"});
+  EXPECT_EQ(all.channels.size(), 19u);
+  EXPECT_EQ(names(image_with({"--variance"})), names(all));
+  EXPECT_EQ(image_with({}).channels.size(), 16u);
+  const LayeredImage alone = image_with({"--layers", "none"});
+  EXPECT_THAT(names(alone), ElementsAre("A", "B", "G", "R"));
+  EXPECT_EQ(alone.metadata.at("caplet.scene"), "scene.pbrt");
+  EXPECT_THAT(names(image_with({"--layers", "none", "--variance"})),
+              ElementsAre("A", "B", "G", "R", "variance.B", "variance.G", "variance.R"));
+  const LayeredImage some = image_with({"--layers", "Z,N,primitive"});
+  EXPECT_THAT(names(some), ElementsAre("A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "primitive.id"));
+  for (const LayeredImage* image : {&alone, &some})
+    for (const Channel& channel : image->channels) {
+      const Channel* whole = all.find(channel.name);
+      ASSERT_NE(whole, nullptr) << channel.name;
+      EXPECT_EQ(channel.floats, whole->floats) << channel.name;
+      EXPECT_EQ(channel.uints, whole->uints) << channel.name;
+    }
+}
+
+TEST(Layers, UnknownOnesAreRefusedByTheNearestName) {
+  const auto folder = folder_with_scene();
+  for (const auto& [list, wrong, nearest] : {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
+                                             {"Z,objects", "'objects'", "'object'"},
+                                             {"Z,", "''", "--layers"},
+                                             {"all,Z", "'all'", "--layers"}}) {
+    const test::Result result = render(folder, {"--layers", list});
+    EXPECT_EQ(result.code, 2) << list;
+    EXPECT_THAT(result.err, StartsWith("caplet: error: --layers: ")) << list;
+    EXPECT_THAT(result.err, HasSubstr(wrong)) << list;
+    EXPECT_THAT(result.err, HasSubstr(nearest)) << list;
+    EXPECT_THAT(test::names_in(folder), ElementsAre("scene.pbrt")) << list;
+  }
+}
+
+}  // namespace
+}  // namespace caplet

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Colour, albedo and variance of rendered pictures in every colour space of a film, and samples that leave the range of a float.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "scene_text.h"
+
+namespace caplet::test {
+namespace {
+
+using glm::dvec3;
+using Matrix = std::array<double, 9>;
+
+dvec3 times(const Matrix& m, const dvec3& v) {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z, m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+
+struct Space {
+  const char* name;
+  ColorSpace space;
+  Matrix from_srgb;  // linear
+};
+
+// Published: Display P3 and ITU-R BT.2020 (BT.2087) from BT.709; ACES 2065-1 from XYZ (SMPTE ST 2065-1) times XYZ from BT.709
+// (IEC 61966-2-1), for pbrt does not adapt whites.
+const Space spaces[] = {
+    {"srgb", ColorSpace::srgb, {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+    {"dci-p3", ColorSpace::dci_p3, {0.8225, 0.1774, 0, 0.0332, 0.9669, 0, 0.0171, 0.0724, 0.9108}},
+    {"rec2020", ColorSpace::rec2020, {0.6274, 0.3293, 0.0433, 0.0691, 0.9195, 0.0114, 0.0164, 0.0880, 0.8956}},
+    {"aces2065-1", ColorSpace::aces2065_1, {0.4329, 0.3754, 0.1894, 0.0894, 0.8165, 0.1034, 0.0192, 0.1181, 0.9419}},
+};
+
+std::string film_of(const std::string& space, int side) {
+  return "ColorSpace \"" + space + "\"\nIntegrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\n" +
+         "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" " + std::to_string(side) +
+         " \"integer yresolution\" " + std::to_string(side) + "\nWorldBegin\n";
+}
+
+std::string numbers(const dvec3& v) {
+  return "[" + std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z) + "]\n";
+}
+
+/// A plane that fills the view, with this radiance in a space of its own.
+std::string glowing_plane(const std::string& space, const dvec3& radiance) {
+  return "ColorSpace \"" + space + "\"\nAreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" " + numbers(radiance) +
+         "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n";
+}
+
+std::string reflecting_plane(const std::string& space, const dvec3& reflectance) {
+  return "ColorSpace \"" + space + "\"\nMaterial \"diffuse\" \"rgb reflectance\" " + numbers(reflectance) +
+         "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n";
+}
+
+dvec3 mean_rgb(const LayeredImage& image, const std::string& prefix) {
+  return {mean(channel(image, prefix + "R")), mean(channel(image, prefix + "G")), mean(channel(image, prefix + "B"))};
+}
+
+// 4 x 4 pixels of 4,096 stratified wavelengths each: the noise is below 1e-4, the uplift's error 2e-5 of the greatest component,
+// and the matrices are rounded to four digits. Spectra of colours in one space are not exactly the colour under another's white:
+// 2e-3.
+constexpr int many = 4096;
+constexpr double close_enough = 2e-3;
+
+TEST(ColorOfFilm, EmittedColorsAreThoseOfTheFile) {
+  const dvec3 color(0.9, 0.4, 0.15);
+  for (const Space& film : spaces) {
+    const dvec3 own = mean_rgb(render_text(film_of(film.name, 4) + glowing_plane(film.name, color), many).image, "");
+    EXPECT_LT(glm::length(own - color), close_enough) << film.name;
+    const Rendered rendered = render_text(film_of(film.name, 4) + glowing_plane("srgb", color), many);
+    EXPECT_EQ(rendered.image.space, film.space);
+    EXPECT_LT(glm::length(mean_rgb(rendered.image, "") - times(film.from_srgb, color)), close_enough) << film.name;
+  }
+}
+
+// A white surface is 1 1 1 in every space and under every light: also under an image whose texels are in another space, with
+// another white, and of another brightness.
+TEST(ColorOfFilm, AlbedoIsScaleFreeInTheFilmsSpace) {
+  const dvec3 white(1, 1, 1), color(0.7, 0.35, 0.1);
+  for (const Space& film : spaces)
+    for (const Space& light : spaces) {
+      const auto image_light = [&](Scene& scene) {
+        auto image = std::make_shared<EnvironmentImage>();
+        image->width = 4;
+        image->height = 2;
+        image->space = light.space;
+        image->rgb.assign(24, 3.5f);
+        Light sky;
+        sky.model = InfiniteLight{.radiance = ConstantSpectrum{1}, .image = image};
+        scene.lights.push_back(sky);
+      };
+      const auto albedo_of = [&](const std::string& plane) {
+        return mean_rgb(render_text(film_of(film.name, 4) + plane, many, image_light).image, "albedo.");
+      };
+      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, white)) - white), close_enough) << film.name << light.name;
+      if (&light != &spaces[3]) continue;
+      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, color)) - color), close_enough) << film.name;
+    }
+}
+
+// One sample a pixel is independent from pixel to pixel: the pixels' spread is the variance V of a sample. Of n samples in a
+// pixel, stratified so that their mean is nearly exact, the layer is (E[x^2] - mean^2) / (n - 1): V / (n - 1); if they were
+// independent, V / n.
+TEST(ColorOfFilm, VarianceIsThatOfTheFilmsColors) {
+  constexpr int n = 64, side = 128;
+  const dvec3 color(0.9, 0.4, 0.15);
+  for (const Space& film : spaces) {
+    const std::string text = film_of(film.name, side) + glowing_plane(film.name, color);
+    const LayeredImage single = render_text(text, 1).image, many_samples = render_text(text, n, [](Scene&scene) {
+                                                                             scene.film.crop = std::array<int, 4>{0, 32, 0, 32};
+                                                                           }).image;
+    for (const char* name : {"R", "G", "B"}) {
+      const std::vector<float>& values = channel(single, name).floats;
+      const double center = mean(channel(single, name)), pixels = side * side;
+      double second = 0, fourth = 0;
+      for (const float v : values) {
+        const double d = double{v} - center;
+        second += d * d / pixels;
+        fourth += d * d * d * d / pixels;
+      }
+      const double slack = 5 * std::sqrt((fourth - second * second) / pixels);
+      const double layer = mean(channel(many_samples, std::string("variance.") + name)) * (n - 1);
+      EXPECT_GT(layer, second * (n - 1) / n - slack) << film.name << ' ' << name;
+      EXPECT_LT(layer, second + slack) << film.name << ' ' << name;
+      EXPECT_LT(slack, 0.2 * second) << film.name << ' ' << name;
+    }
+  }
+}
+
+/// What a scene's rendering says, and the picture.
+std::pair<std::string, LayeredImage> rendered_aloud(const std::string& radiance, double iso) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  LayeredImage image = render_text(film_of("srgb", 2) + "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [" +
+                                       radiance + "]\nTranslate 0 0 2\nShape \"disk\" \"float radius\" 1000\n",
+                                   64, [&](Scene& scene) { scene.film.iso = iso; })
+                           .image;
+  const std::string said = testing::internal::GetCapturedStderr();
+  return {said + testing::internal::GetCapturedStdout(), std::move(image)};
+}
+
+TEST(ColorOfFilm, WhatIsBeyondAFloatIsSaidAndBlack) {
+  // 1e38 is a float; divided by the densities of wavelengths, below 1e-2, it is not.
+  const auto [too_bright, black] = rendered_aloud("1e38 1e38 1e38", 100);
+  EXPECT_NE(too_bright.find("256 samples were not finite"), std::string::npos) << too_bright;
+  // The film's exposure takes what is a float beyond it.
+  const auto [exposed, also_black] = rendered_aloud("1e30 1e30 1e30", 1e12);
+  EXPECT_NE(exposed.find("4 of 4 pixels are beyond the range of a float"), std::string::npos) << exposed;
+  for (const LayeredImage* image : {&black, &also_black})
+    for (const Channel& channel : image->channels)
+      for (const float v : channel.floats) EXPECT_TRUE(std::isfinite(v)) << channel.name;
+  EXPECT_EQ(at(also_black, "R", 0), 0);
+  // Only the squares are too great: the colour stands, its variance is unknown.
+  const auto [unsure, bright] = rendered_aloud("1e30 1e30 1e30", 100);
+  EXPECT_NE(unsure.find("4 of 4 pixels are beyond the range of a float"), std::string::npos) << unsure;
+  EXPECT_NEAR(at(bright, "G", 0), 1e30, 5e28);
+  EXPECT_EQ(at(bright, "variance.G", 0), double{std::numeric_limits<float>::max()});
+  const auto [nothing, plain] = rendered_aloud("1 1 1", 100);
+  EXPECT_EQ(nothing.find("finite"), std::string::npos);
+  EXPECT_EQ(nothing.find("beyond"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace caplet::test
