@@ -25,13 +25,6 @@ namespace {
 
 constexpr std::size_t most_attributes = 256;  // of different names; no target knows as many
 
-template <class Map>
-std::vector<std::string> names_of(const Map& map) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : map) names.push_back(name);
-  return names;
-}
-
 }  // namespace
 
 // --- Options ---
@@ -138,7 +131,7 @@ void Parser::coord_sys_transform() {
     state_.ctm = found->second;
     return;
   }
-  diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) + nearest(name, names_of(coordinate_systems_)));
+  diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) + nearest(name, coordinate_systems_));
 }
 
 void Parser::look_at() {
@@ -263,7 +256,7 @@ void Parser::medium_interface() {
     const std::string name = string_argument("a medium's name (or \"\")");
     if (name.empty()) continue;
     if (const auto found = media_.find(name); found == media_.end())
-      diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined" + nearest(name, names_of(media_)));
+      diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined" + nearest(name, media_));
     else
       diagnostics_.error(place,
                          "the medium " + in_quotes(name) + " is a MakeNamedMedium \"" + found->second.type + "\" (" +
@@ -325,8 +318,7 @@ void Parser::shape() {
 const Object* Parser::finished_object(const std::string& name, std::string& problem) const {
   const auto found = object_names_.find(name);
   if (found == object_names_.end()) {
-    problem =
-        "names the object " + in_quotes(name) + ", which is not defined before this" + nearest(name, names_of(object_names_));
+    problem = "names the object " + in_quotes(name) + ", which is not defined before this" + nearest(name, object_names_);
     return nullptr;
   }
   const Object& object = scene_.objects[found->second];
@@ -408,7 +400,6 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
 
 void Parser::resolve_materials() {
   const std::vector<std::uint32_t> index_of_statement = make_materials(used_materials());
-  const std::vector<std::string> known = names_of(named_materials_);
   std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
   for (std::size_t i = 1; i < uses_.size(); ++i) {
     const MaterialUse& use = uses_[i];
@@ -416,7 +407,8 @@ void Parser::resolve_materials() {
     if (use.statement || named != named_materials_.end())
       index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
     else
-      diagnostics_.error(use.where, "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, known));
+      diagnostics_.error(use.where,
+                         "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
   }
   bool uses_default = false;
   const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());

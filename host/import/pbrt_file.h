@@ -14,7 +14,7 @@ namespace caplet::pbrt {
 
 /// The bytes of a file, decompressed when it is gzipped. `where` is what names the file (for messages; may be empty). Throws
 /// InputError when the file is missing, no regular file, unreadable, broken, longer than `limit` bytes, or gzipped and unpacking
-/// to more than 64 MiB and 256 times its size.
+/// to more than 64 MiB and 100 times its size.
 std::string read_file(const std::filesystem::path& path, const SourceLocation& where, std::size_t limit = std::size_t{1} << 32);
 
 /// As read_file, for text: bytes that no text has are an error with their place.

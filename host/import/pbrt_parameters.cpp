@@ -353,7 +353,9 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
       return wrong("names neither a known spectrum nor a file, " + in_quotes(parameter.strings[0]) +
-                   "; the nearest known name is \"" + nearest_name(parameter.strings[0], named_spectrum_names()) + "\"");
+                   (diagnostics_->is_full()
+                        ? ""
+                        : "; the nearest known name is \"" + nearest_name(parameter.strings[0], named_spectrum_names()) + "\""));
     try {
       sampled = read_spectrum_file(file, parameter.where);
     } catch (const InputError& problem) {

@@ -309,10 +309,6 @@ void Parser::world_begin() {
 
 // --- The end ---
 
-std::string Parser::nearest(const std::string& name, const std::vector<std::string>& known) const {
-  return known.empty() || diagnostics_.is_full() ? "" : "; the nearest known name is \"" + nearest_name(name, known) + "\"";
-}
-
 void Parser::finish_attributes() {
   // What a later one of the same name was read for counts for the earlier: later ones are further on in the list.
   for (auto it = all_attributes_.rbegin(); it != all_attributes_.rend(); ++it)
@@ -323,14 +319,12 @@ void Parser::finish_attributes() {
 }
 
 void Parser::resolve_instances() {
-  std::vector<std::string> known;
-  for (const auto& [name, index] : object_names_) known.push_back(name);
   for (const InstanceUse& use : instances_) {
     if (const auto found = object_names_.find(use.name); found != object_names_.end()) {
       scene_.instances.push_back({found->second, use.world_from_object, use.where});
       continue;
     }
-    diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" + nearest(use.name, known));
+    diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" + nearest(use.name, object_names_));
   }
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "import/pbrt_lexer.h"
+#include "import/pbrt_names.h"
 #include "import/pbrt_parameters.h"
 #include "scene/image_reader.h"
 #include "scene/scene.h"
@@ -132,7 +133,14 @@ class Parser {
   const Object* finished_object(const std::string& name, std::string& problem) const;
 
   // At the end
-  std::string nearest(const std::string& name, const std::vector<std::string>& known) const;
+  /// "; the nearest known name is ..." for an error that is shown: one among many does without, as it takes time by their number.
+  template <class Map>
+  std::string nearest(const std::string& name, const Map& map) const {
+    if (map.empty() || diagnostics_.is_full()) return {};
+    std::vector<std::string> known;
+    for (const auto& [one, value] : map) known.push_back(one);
+    return "; the nearest known name is \"" + nearest_name(name, known) + "\"";
+  }
   void finish_attributes();
   std::vector<bool> used_materials();
   std::vector<std::uint32_t> make_materials(const std::vector<bool>& used);

@@ -11,6 +11,7 @@ namespace caplet::ply {
 namespace {
 
 constexpr std::size_t longest_header = 1 << 20;
+constexpr std::size_t most_names = 1024;  // of elements, and of properties of one
 
 std::optional<Type> type_of(std::string_view name) {
   static const std::vector<std::pair<std::string_view, Type>> names = {
@@ -95,6 +96,7 @@ class HeaderReader {
     element.name = words[1];
     for (const Element& other : header_.elements)
       if (other.name == element.name) fail("the element \"" + element.name.substr(0, 40) + "\" is declared twice");
+    if (header_.elements.size() == most_names) fail("more than " + std::to_string(most_names) + " elements");
     header_.elements.push_back(element);
   }
 
@@ -115,6 +117,7 @@ class HeaderReader {
     property.name = words.back();
     for (const Property& other : header_.elements.back().properties)
       if (other.name == property.name) fail("the property \"" + property.name.substr(0, 40) + "\" is declared twice");
+    if (header_.elements.back().properties.size() == most_names) fail("more than " + std::to_string(most_names) + " properties");
     header_.elements.back().properties.push_back(property);
   }
 

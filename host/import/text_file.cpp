@@ -33,13 +33,15 @@ struct Descriptor {
 }  // namespace
 
 TextFile::TextFile(const std::filesystem::path& path) {
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  // Not to wait for a writer: what is a fifo is refused below.
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.number < 0) cannot_read(path, std::strerror(errno));
   struct stat status {};
   if (::fstat(file.number, &status) != 0) cannot_read(path, std::strerror(errno));
   if (!S_ISREG(status.st_mode)) cannot_read(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
   note_input(path);
   const auto expected = static_cast<std::size_t>(status.st_size);
+  if (expected > longest_text_file) cannot_read(path, "it is longer than 16 GiB");
   data_ = std::make_unique_for_overwrite<char[]>(expected);
   while (size_ < expected) {
     const ssize_t count = ::read(file.number, data_.get() + size_, expected - size_);

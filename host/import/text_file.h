@@ -14,7 +14,11 @@
 
 namespace caplet {
 
-/// The bytes of a regular file. Throws InputError when it is missing, a folder or unreadable.
+/// More than the layout's number of capsules takes (host/lower/encode.h).
+inline constexpr std::size_t longest_text_file = std::size_t{1} << 34;
+
+/// The bytes of a regular file. Throws InputError when it is missing, no regular file, unreadable or longer than
+/// longest_text_file.
 class TextFile {
  public:
   explicit TextFile(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 // Much that is wrong at once, what is wrong but used nowhere, scenes of pbrt-v3, and files made to take for ever.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include "import_text.h"
@@ -198,6 +199,16 @@ TEST(Files, IncludesInACircleAreShownInOrder) {
   const std::string at = folder.string() + "/";
   EXPECT_THAT(file_complaints(folder / "a.pbrt"), ElementsAre(at + "c.pbrt:1:9: recursive Include of " + at + "b.pbrt: " + at +
                                                               "b.pbrt includes " + at + "c.pbrt includes " + at + "b.pbrt"));
+}
+
+TEST(Files, FifosAreNotWaitedFor) {
+  const fs::path fifo = temporary_folder() / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string statement : {"Include", "Shape \"capsules\" \"string filename\"",
+                                      "Shape \"plymesh\" \"string filename\"", "Material \"diffuse\" \"spectrum reflectance\""})
+    EXPECT_THAT(complaints("WorldBegin\nShape \"sphere\"\n" + statement + " \"" + fifo.string() + "\"\nShape \"sphere\""),
+                ElementsAre(HasSubstr("regular file")))
+        << statement;
 }
 
 // Eight levels of twenty includes each, 20^8 files in all.

@@ -356,8 +356,9 @@ TEST(SharedScenes, LoadWithTheirStatements) {
     import_scene(scenes / "coffee" / "scene-v4.pbrt", StubImages());
     ADD_FAILURE() << "coffee uses a material that is not rendered yet";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.messages(), testing::ElementsAre(testing::EndsWith(
-                                      "Material \"coateddiffuse\" is not rendered yet (and 2 more of this kind)")));
+    EXPECT_THAT(
+        error.messages(),
+        testing::ElementsAre(testing::EndsWith("Material \"coateddiffuse\" is not rendered yet (and 2 more of this kind)")));
   }
 #endif
 }

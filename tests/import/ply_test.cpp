@@ -139,6 +139,9 @@ TEST(Ply, BrokenFiles) {
   const std::string ascii = "ply\nformat ascii 1.0\n", points = "0 0 0\n1 0 0\n0 1 0\n";
   const auto complaint = [](const std::string& bytes) { return complaint_of([&] { parse_ply("m.ply", bytes); }); };
   EXPECT_EQ(complaint("solid"), "m.ply:1: this is no PLY file (it does not start with \"ply\")");
+  std::string many = ascii;
+  for (int i = 0; i < 2000; ++i) many += "element e" + std::to_string(i) + " 0\n";
+  EXPECT_EQ(complaint(many), "m.ply:1027: more than 1024 elements");
   EXPECT_EQ(complaint(ascii + "element vertex 3\n"), "m.ply:4: the PLY header does not end (no end_header)");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 3\n"),
             "m.ply:13: a PLY face has the vertex index 3, but there are 3 vertices");

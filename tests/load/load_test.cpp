@@ -5,30 +5,14 @@
 // moved at each statement would allocate sixteen times as many.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
+#include <cmath>
 #include <functional>
-#include <new>
 #include <string>
 
+#include "counted_new.h"
 #include "import/pbrt.h"
 #include "lower/lower.h"
 #include "scene/image_reader.h"
-
-namespace {
-std::atomic<std::uint64_t> allocated{0};
-}
-
-void* operator new(std::size_t size) {
-  allocated += size;
-  if (void* p = std::malloc(size > 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
 namespace caplet {
 namespace {
@@ -41,16 +25,17 @@ class NoImages : public ImageReader {
 /// Bytes allocated for `count` statements, loaded and lowered.
 std::uint64_t bytes_for(const std::function<std::string(const std::string&)>& statement, int count) {
   std::string text =
-      "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nObjectBegin \"o\" Shape \"sphere\" ObjectEnd\n";
+      "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\nObjectBegin \"o\" Shape \"sphere\" "
+      "ObjectEnd\n";
   for (int i = 0; i < count; ++i) text += statement(std::to_string(i)) + "\n";
-  const std::uint64_t before = allocated;
+  const std::uint64_t before = test::allocated_bytes();
   const Scene scene = pbrt::import_text("scene.pbrt", text, NoImages());
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();
   const FlatScene flat = lower(scene);
   EXPECT_GT(flat.primitive_count, 0u);
-  return allocated - before;
+  return test::allocated_bytes() - before;
 }
 
 struct Kind {
