@@ -177,7 +177,7 @@ class Examination {
 
   bool passes_with_fresh_cache(const Testable& device) const {
     const FreshPoclCache fresh;
-    return test_device(device.info.index, device.variables, 4 * options_.seconds).finished;
+    return test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds).finished;
   }
 
   const Surroundings& machine_;
