@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t deepest_include = 64;
 // What a tree of files that include each other many times over may come to; scenes stay far below.
 constexpr std::size_t most_included_files = 1 << 16;
-constexpr std::size_t most_included_again = std::size_t{1} << 30;  // bytes of files that were read before
+constexpr std::size_t most_included_again = std::size_t{1} << 28;  // bytes of files that were read before
 }  // namespace
 
 const std::vector<Parser::Handler>& Parser::handlers() {
@@ -229,7 +229,7 @@ void Parser::read_included(const std::string& file) {
   }
   if (text && !files_read_.insert(open_files_.back().canonical).second) included_again_ += text->size();
   if (included_again_ > most_included_again) {
-    diagnostics_.error(where_, "the same files are included over and over: more than 1 GiB of text that was read before");
+    diagnostics_.error(where_, "the same files are included over and over: more than 256 MiB of text that was read before");
     diagnostics_.finish();
   }
   if (text) parse_file(file, std::move(*text));

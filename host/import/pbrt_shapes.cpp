@@ -88,7 +88,7 @@ Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t 
   shape.name = parameters.text("name", "");
   shape.one_sided = parameters.boolean("onesided", false);
   if (parameters.number_or_texture("alpha", 1, context.textures) != 1)
-    parameters.error("alpha", "other than 1 is not rendered yet");
+    parameters.error("alpha", "other than 1 is not rendered yet", "alpha");
   // Surfaces first: capsules without a material of their own have the shape's.
   if (type == "capsules") set_materials(parameters, context.material_index, shape);
   const auto material_or_default = [&](const std::string& name, const SourceLocation& where) {

@@ -53,7 +53,7 @@ const Kind kinds[] = {
      }},
     {"Curves",
      [](const std::string& i) {
-       return "Shape \"curve\" \"point3 P\" [" + i + " 0 0 " + i + " 1 0 " + i + " 2 1 " + i + " 3 0] \"float width\" .1";
+       return "Shape \"curve\" \"point3 P\" [" + i + " 0 0 " + i + " 1 0 " + i + " 2 0 " + i + " 3 0] \"float width\" .1";
      }},
     {"Triangles", [](const std::string& i) { return "Shape \"trianglemesh\" \"point3 P\" [" + i + " 0 0 1 0 0 0 1 0]"; }},
     {"Spheres", [](const std::string& i) { return "AttributeBegin Translate " + i + " 0 0 Shape \"sphere\" AttributeEnd"; }},
