@@ -180,6 +180,7 @@ void run_pick(const Options& options, bool has_limit) {
   }
   SecondTry::guard(device);
   self_test(device);
+  SecondTry::guard(device);  // again: what compiled the test may have set handlers
   if (rays)
     pick_many(options, scene, *rays, out, device);
   else

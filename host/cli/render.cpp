@@ -61,11 +61,11 @@ struct Files {
 };
 
 void add_picture(Files& files, const fs::path& path) {
+  files.picture = path;
+  files.all.add("-o", path);
   if (path.extension() != ".exr" && !is_stream(path))
     throw InputError(SourceLocation{"-o"},
                      fmt::format("'{}': pictures are written as .exr (use --preview for other formats)", path.string()));
-  files.picture = path;
-  files.all.add("-o", path);
 }
 
 /// What can be known to be wrong before anything is loaded.
@@ -184,6 +184,7 @@ void run_render(const Options& options, const Invocation& invocation) {
 
   SecondTry::guard(device);
   self_test(device);
+  SecondTry::guard(device);  // again: what compiled the test may have set handlers
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
               flat.params.crop_width, flat.params.crop_height, scene.sampler.samples_per_pixel, device.info().name);

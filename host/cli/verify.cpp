@@ -47,6 +47,7 @@ std::vector<Device> devices_of(const Options& o) {
   for (const Device& device : out) {
     SecondTry::guard(device);
     self_test(device);
+    SecondTry::guard(device);  // again: what compiled the test may have set handlers
   }
   return out;
 }
