@@ -163,8 +163,10 @@ SecondTry::~SecondTry() {
 
 void SecondTry::guard(const Device& device) {
   if (!program_arguments || !device.is_pocl()) return;
-  prepare();
-  state = is_second ? second : guarded;
+  if (state == off) {
+    prepare();
+    state = is_second ? second : guarded;
+  }
   handle_signals(true);
 }
 

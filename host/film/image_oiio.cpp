@@ -155,7 +155,8 @@ std::string encode_rgb8(const std::filesystem::path& path, int width, int height
   };
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  if (output->supports("ioproxy") && output->set_ioproxy(&memory)) {
+  // TIFF's proxy, in OpenImageIO 2.4, loses what is written on closing.
+  if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff" && output->set_ioproxy(&memory)) {
     write_to(path.filename().string());
     return {bytes.begin(), bytes.end()};
   }

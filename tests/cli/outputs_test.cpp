@@ -402,6 +402,21 @@ TEST(StandardStreams, RaysComeFromAFifo) {
 
 // --- Pictures ---
 
+// A pixel's samples are its own, whatever else is rendered.
+TEST(Pictures, BandsAreOfTheirRows) {
+  constexpr std::size_t width = 2600, height = 1300, last = 20;
+  const fs::path folder = folder_with_scene();
+  EXPECT_GT(height - last, static_cast<std::size_t>(band_rows(width, 19))) << "one band is all of it";
+  ASSERT_EQ(render(folder, {"-o", "whole.exr", "--size", "2600x1300", "--spp", "1"}).code, 0);
+  ASSERT_EQ(render(folder, {"-o", "rows.exr", "--size", "2600x1300", "--spp", "1", "--crop", "0,1280,2600,1300"}).code, 0);
+  const LayeredImage whole = read_exr(folder / "whole.exr"), rows = read_exr(folder / "rows.exr");
+  for (const char* name : {"R", "Z"}) {
+    const std::vector<float>& all = whole.find(name)->floats;
+    ASSERT_EQ(all.size(), width * height);
+    EXPECT_TRUE(std::vector<float>(all.end() - width * last, all.end()) == rows.find(name)->floats) << name;
+  }
+}
+
 #ifdef CAPLET_WITH_OIIO
 TEST(Pictures, APreviewAlone) {
   const fs::path folder = folder_with_scene();
