@@ -50,11 +50,9 @@ void open_standard_streams() {
 
 /// Exit code `code`, or that results did not reach stdout.
 int end(int code) {
-  std::cout.flush();
   errno = 0;
-  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.good()) return code;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
   print_error(fmt::format("stdout cannot be written: {}", errno ? std::strerror(errno) : "not all of it was taken"));
-  std::clearerr(stdout);
   return exit_failed;
 }
 

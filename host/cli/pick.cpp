@@ -111,7 +111,7 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
   const std::size_t chunk =
       options.all ? std::clamp<std::size_t>(crossings_in_a_chunk / options.limit, 1, rays_in_a_chunk) : rays_in_a_chunk;
   write_atomically(out, [&](const fs::path& temporary) {
-    const std::unique_ptr<PickTable> table = create_pick_table(temporary, table_format(out).value(), scene);
+    const std::unique_ptr<PickTable> table = create_pick_table(temporary, table_format(out).value(), scene, out);
     std::vector<std::uint64_t> overflowed;
     for (;;) {
       if (interrupt_requested()) throw RunError("interrupted; nothing is written");

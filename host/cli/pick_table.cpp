@@ -43,7 +43,8 @@ std::string csv_text(const std::string& text) {
 
 class CsvTable : public PickTable {
  public:
-  CsvTable(const fs::path& path, const Scene& scene) : path_(path), scene_(scene), file_(path, std::ios::binary) {
+  CsvTable(const fs::path& path, const Scene& scene, const fs::path& name)
+      : path_(name), scene_(scene), file_(path, std::ios::binary) {
     file_ << "ray,t,object,primitive,surface,material,entering,x,y,z,nx,ny,nz,u,v\n";
     check();
   }
@@ -94,25 +95,27 @@ std::size_t longest_material_label(const Scene& scene) {
 
 class NpyTable : public PickTable {
  public:
-  NpyTable(const fs::path& path, const Scene& scene)
+  NpyTable(const fs::path& path, const Scene& scene, const fs::path& name)
       : scene_(scene),
         object_length_(longest_object_label(scene)),
         material_length_(longest_material_label(scene)),
-        writer_(path, {{"ray", "<i8"},
-                       {"t", "<f4"},
-                       {"object", fmt::format("<U{}", object_length_)},
-                       {"primitive", "<i4"},
-                       {"surface", "<i4"},
-                       {"material", fmt::format("<U{}", material_length_)},
-                       {"entering", "|b1"},
-                       {"x", "<f4"},
-                       {"y", "<f4"},
-                       {"z", "<f4"},
-                       {"nx", "<f4"},
-                       {"ny", "<f4"},
-                       {"nz", "<f4"},
-                       {"u", "<f4"},
-                       {"v", "<f4"}}) {}
+        writer_(path,
+                {{"ray", "<i8"},
+                 {"t", "<f4"},
+                 {"object", fmt::format("<U{}", object_length_)},
+                 {"primitive", "<i4"},
+                 {"surface", "<i4"},
+                 {"material", fmt::format("<U{}", material_length_)},
+                 {"entering", "|b1"},
+                 {"x", "<f4"},
+                 {"y", "<f4"},
+                 {"z", "<f4"},
+                 {"nx", "<f4"},
+                 {"ny", "<f4"},
+                 {"nz", "<f4"},
+                 {"u", "<f4"},
+                 {"v", "<f4"}},
+                name) {}
 
   void append(std::span<const PickRow> rows) override {
     for (const std::string& bytes : made_in_slices(rows, [&](const PickRow&row, std::string&out) { add(row, out); }))
@@ -155,9 +158,9 @@ void check_table_format(const fs::path& path, const std::string& flag) {
     throw InputError(SourceLocation{flag}, fmt::format("'{}': tables are written as .csv or .npy", path.string()));
 }
 
-std::unique_ptr<PickTable> create_pick_table(const fs::path& path, TableFormat format, const Scene& scene) {
-  if (format == TableFormat::npy) return std::make_unique<NpyTable>(path, scene);
-  return std::make_unique<CsvTable>(path, scene);
+std::unique_ptr<PickTable> create_pick_table(const fs::path& path, TableFormat format, const Scene& scene, const fs::path& name) {
+  if (format == TableFormat::npy) return std::make_unique<NpyTable>(path, scene, name);
+  return std::make_unique<CsvTable>(path, scene, name);
 }
 
 }  // namespace caplet::cli

@@ -34,7 +34,8 @@ std::optional<TableFormat> table_format(const std::filesystem::path& path);
 /// Throws InputError naming `flag` when there is no format for it.
 void check_table_format(const std::filesystem::path& path, const std::string& flag);
 
-/// Creates the file. Throws RunError, as the table's members do, when it cannot be written.
-std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format, const Scene& scene);
+/// Creates the file; `name` is what messages call it. Throws RunError, as the table's members do, when it cannot be written.
+std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format, const Scene& scene,
+                                             const std::filesystem::path& name);
 
 }  // namespace caplet::cli

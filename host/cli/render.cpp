@@ -64,11 +64,11 @@ struct Files {
 };
 
 void add_picture(Files& files, const fs::path& path) {
+  files.picture = path;
+  files.all.add("-o", path);
   if (path.extension() != ".exr" && !is_stream(path))
     throw InputError(SourceLocation{"-o"},
                      fmt::format("'{}': pictures are written as .exr (use --preview for other formats)", path.string()));
-  files.picture = path;
-  files.all.add("-o", path);
 }
 
 /// What can be known to be wrong before anything is loaded.

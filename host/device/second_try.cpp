@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -31,6 +32,7 @@ std::atomic<int> state{off};
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
 // What the handler needs, made before.
+struct sigaction before[std::size(signals)];
 char** program_arguments = nullptr;
 bool is_second = false;
 std::string damaged;  // the folder
@@ -72,15 +74,19 @@ void on_crash(int number) {
   ::raise(number);
 }
 
-/// Leaves alone what a sanitizer or a debugger has set.
+/// PoCL's LLVM has handlers of its own, which end the process; they are put back where a crash is no longer this program's.
 void handle_signals(bool on) {
-  for (const int number : signals) {
+  struct sigaction ours {};
+  ours.sa_handler = on_crash;
+  sigemptyset(&ours.sa_mask);
+  for (std::size_t i = 0; i < std::size(signals); ++i) {
     struct sigaction now {};
-    ::sigaction(number, nullptr, &now);
-    if (on && now.sa_handler == SIG_DFL)
-      ::signal(number, on_crash);
-    else if (!on && now.sa_handler == on_crash)
-      ::signal(number, SIG_DFL);
+    ::sigaction(signals[i], nullptr, &now);
+    const bool is_ours = (now.sa_flags & SA_SIGINFO) == 0 && now.sa_handler == on_crash;
+    if (on && !is_ours)
+      ::sigaction(signals[i], &ours, &before[i]);
+    else if (!on && is_ours)
+      ::sigaction(signals[i], &before[i], nullptr);
   }
 }
 
@@ -157,8 +163,10 @@ SecondTry::~SecondTry() {
 
 void SecondTry::guard(const Device& device) {
   if (!program_arguments || !device.is_pocl()) return;
-  prepare();
-  state = is_second ? second : guarded;
+  if (state == off) {
+    prepare();
+    state = is_second ? second : guarded;
+  }
   handle_signals(true);
 }
 

@@ -42,7 +42,8 @@ class SecondTry {
   SecondTry(const SecondTry&) = delete;
   SecondTry& operator=(const SecondTry&) = delete;
 
-  /// From here to driver_works() a crash of PoCL starts the second process. Nothing on other platforms, and without a SecondTry.
+  /// From here to driver_works() a crash of PoCL, whatever handlers of signals it has set before, starts the second process.
+  /// Nothing on other platforms, and without a SecondTry.
   static void guard(const Device& device);
   /// The driver has run the kernels: what comes is no fault of its cache. In the second process: says which folder to delete.
   static void driver_works();

@@ -250,14 +250,12 @@ int band_rows(int width, std::size_t channels) {
 }
 
 void check_exr_size(int width, int height, std::size_t channels, const std::string& flag) {
-  // OpenEXR counts the bytes of a block of rows in an int; and no picture is written that read_exr would not read.
+  // OpenEXR counts the bytes of ZIP's 16 rows in an int; and no picture is written that read_exr would not read.
   const std::uint64_t block_bytes = static_cast<std::uint64_t>(width) * channels * sizeof(float) * 16;
-  if (width > max_image_side || height > max_image_side || block_bytes > std::numeric_limits<int>::max() / 2)
+  if (width > max_image_side || height > max_image_side || block_bytes > std::numeric_limits<int>::max())
     throw InputError(SourceLocation{flag},
-                     fmt::format("an EXR of {} x {} pixels in {} layers cannot be written (at most {} a side, "
-                                 "and {} pixels in a row of so many)",
-                                 width, height, channels, max_image_side,
-                                 std::numeric_limits<int>::max() / 2 / (channels * sizeof(float) * 16)));
+                     fmt::format("an EXR of {} x {} pixels in {} layers cannot be written (at most {} a side)", width, height,
+                                 channels, max_image_side));
 }
 
 void write_exr(const fs::path& path, const BandedImage& image, ExrCompression compression) {

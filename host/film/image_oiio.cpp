@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // Image files other than EXR through OpenImageIO: the one file that knows it.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -147,10 +148,20 @@ bool can_hold(const std::filesystem::path& path, int width, int height) {
 std::string encode_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   if (!output) throw RunError(fmt::format("{}: {}", path.string(), error_text(OIIO::geterror())));
+  const auto write_to = [&](const std::string& name) {
+    if (!output->open(name, rgb8_spec(width, height)) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) ||
+        !output->close())
+      throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error_text(output->geterror())));
+  };
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  // TIFF's proxy, in OpenImageIO 2.4, loses what is written on closing.
+  if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff" && output->set_ioproxy(&memory)) {
+    write_to(path.filename().string());
+    return {bytes.begin(), bytes.end()};
+  }
   const MemoryFile file;
-  if (!output->open(file.path(), rgb8_spec(width, height)) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) ||
-      !output->close())
-    throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error_text(output->geterror())));
+  write_to(file.path());
   return file.bytes();
 }
 

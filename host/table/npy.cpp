@@ -230,8 +230,8 @@ void NpyReader::read(std::span<double> out) {
   if (!file_) throw RunError(fmt::format("{}: cannot be read any further", path_.string()));
 }
 
-NpyWriter::NpyWriter(const fs::path& path, std::vector<NpyField> fields)
-    : path_(path), fields_(std::move(fields)), file_(path, std::ios::binary) {
+NpyWriter::NpyWriter(const fs::path& path, std::vector<NpyField> fields, const fs::path& name)
+    : path_(name), fields_(std::move(fields)), file_(path, std::ios::binary) {
   for (const NpyField& field : fields_) row_bytes_ += bytes_of(field.type);
   write_header(0);
 }

@@ -47,8 +47,9 @@ struct NpyField {
 /// Writes a one-dimensional structured array row by row. Elements are little-endian and packed, in the order of the fields.
 class NpyWriter {
  public:
-  /// Creates the file. Throws RunError, as all members do, when it cannot be written.
-  NpyWriter(const std::filesystem::path& path, std::vector<NpyField> fields);
+  /// Creates the file. Throws RunError, as all members do, when it cannot be written. `name`: of the file, for messages.
+  NpyWriter(const std::filesystem::path& path, std::vector<NpyField> fields, const std::filesystem::path& name);
+  NpyWriter(const std::filesystem::path& path, std::vector<NpyField> fields) : NpyWriter(path, std::move(fields), path) {}
   /// Whole rows.
   void append(std::span<const char> bytes);
   /// Completes the header. What is not finished is no .npy file.

@@ -204,9 +204,6 @@ std::vector<BadInput> bad_inputs() {
   std::string many;
   for (int i = 0; i < 300'000; ++i) many += "0 0 5 0 0 -1\n";
   rows.push_back(rays("rays_wrong_at_the_end", "rays.txt", many + "0 0 5 0 0 zero\n", "rays.txt:300001:11", "'zero'"));
-  BadInput no_device = option("no_device", {"-o", "out.exr"}, "--device", "device");
-  no_device.environment = {{"OCL_ICD_VENDORS", "/nonexistent"}, {"OPENCL_VENDOR_PATH", "/nonexistent"}};
-  rows.push_back(no_device);
 #ifdef CAPLET_WITH_PLY
   const std::string mesh = "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
   rows.push_back(scene("ply_missing", head + mesh, "", "mesh.ply"));

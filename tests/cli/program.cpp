@@ -55,13 +55,16 @@ Clock::time_point deadline_in(double seconds) {
 }  // namespace
 
 Running::Running(const std::vector<std::string>& arguments, const fs::path& folder,
-                 const std::map<std::string, std::string>& environment)
+                 const std::map<std::string, std::string>& environment, const std::function<void()>& in_child)
     : streams_(temporary_folder()) {
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("fork failed");
   if (process_ > 0) return;
   redirect(streams_ / "out", STDOUT_FILENO);
   redirect(streams_ / "err", STDERR_FILENO);
+  // What this process may have been told to ignore.
+  for (const int number : {SIGHUP, SIGINT, SIGTERM, SIGPIPE}) ::signal(number, SIG_DFL);
+  if (in_child) in_child();
   become_program(arguments, folder, environment);
 }
 
@@ -103,8 +106,8 @@ Result Running::wait(double seconds) {
 }
 
 Result run_program(const std::vector<std::string>& arguments, const fs::path& folder,
-                   const std::map<std::string, std::string>& environment) {
-  return Running(arguments, folder, environment).wait();
+                   const std::map<std::string, std::string>& environment, const std::function<void()>& in_child) {
+  return Running(arguments, folder, environment, in_child).wait();
 }
 
 Result run_on_terminal(const std::vector<std::string>& arguments, const fs::path& folder) {

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,8 +24,9 @@ struct Result {
 /// The program at work: its streams go to files beside `folder`, so that the folder shows only what the program makes.
 class Running {
  public:
+  /// `in_child`: called in the process before it becomes the program.
   Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-          const std::map<std::string, std::string>& environment = {});
+          const std::map<std::string, std::string>& environment = {}, const std::function<void()>& in_child = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
@@ -45,7 +47,7 @@ class Running {
 
 /// Runs to the end.
 Result run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                   const std::map<std::string, std::string>& environment = {});
+                   const std::map<std::string, std::string>& environment = {}, const std::function<void()>& in_child = {});
 
 /// Runs with a terminal as its stderr and stdout; what it printed there.
 Result run_on_terminal(const std::vector<std::string>& arguments, const std::filesystem::path& folder);

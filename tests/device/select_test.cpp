@@ -30,6 +30,8 @@ std::string refusal(const std::vector<DeviceInfo>& devices, const std::string& c
     select_device(devices, choice);
   } catch (const InputError& error) {
     return error.what();
+  } catch (const RunError& error) {
+    return std::string("failed: ") + error.what();
   }
   return "accepted";
 }
@@ -66,7 +68,7 @@ TEST(Select, RefusalsListTheDevices) {
 }
 
 TEST(Select, NothingToChooseFromNamesThePackage) {
-  EXPECT_THAT(refusal({}, ""), HasSubstr("pocl-opencl-icd"));
+  EXPECT_THAT(refusal({}, ""), AllOf(HasSubstr("failed: --device: "), HasSubstr("pocl-opencl-icd")));
   EXPECT_THAT(refusal({}, "0"), AllOf(HasSubstr("pocl-opencl-icd"), HasSubstr("caplet doctor")));
 }
 

@@ -4,8 +4,10 @@
 // EXR files: round trips, files of other programs, broken files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <random>
 
@@ -113,6 +115,81 @@ TEST(Exr, AFailedWriteLeavesTheOldFile) {
   EXPECT_THROW(write_exr(folder / "missing" / "a.exr", layered_image()), RunError);
   EXPECT_EQ(file_bytes(folder / "a.exr"), before);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(Exr, BandsMakeTheSamePicture) {
+  const LayeredImage image = layered_image();
+  const auto folder = test::temporary_folder();
+  for (const ExrCompression compression : {ExrCompression::zip, ExrCompression::rle})
+    for (const int step : {1, 2, 5, 100}) {
+      BandedImage bands;
+      bands.whole = image;
+      bands.whole.channels.clear();
+      bands.rows = step;
+      bands.band = [&](int first, int rows) {
+        EXPECT_LE(rows, step);
+        LayeredImage band;
+        for (const Channel& channel : image.channels) {
+          const auto part = [&](const auto& values, auto& to) {
+            if (!values.empty()) to.assign(values.begin() + 7 * first, values.begin() + 7 * (first + rows));
+          };
+          Channel& copy = band.channels.emplace_back();
+          copy.name = channel.name;
+          part(channel.floats, copy.floats);
+          part(channel.uints, copy.uints);
+        }
+        return band;
+      };
+      const auto path = folder / ("bands" + std::to_string(step) + (compression == ExrCompression::zip ? "zip.exr" : "rle.exr"));
+      write_exr(path, bands, compression);
+      const LayeredImage back = read_exr(path);
+      EXPECT_EQ(back.x, image.x);
+      EXPECT_EQ(back.y, image.y);
+      EXPECT_EQ(back.data_height, image.data_height);
+      for (const Channel& channel : image.channels) {
+        ASSERT_NE(back.find(channel.name), nullptr) << channel.name;
+        EXPECT_EQ(back.find(channel.name)->floats, channel.floats) << channel.name;
+        EXPECT_EQ(back.find(channel.name)->uints, channel.uints) << channel.name;
+      }
+    }
+}
+
+// In the file, compression is a byte: 1 RLE, 3 ZIP of 16 rows (OpenEXR's file layout).
+TEST(Exr, SaysItsCompression) {
+  const auto path = test::temporary_folder() / "packed.exr";
+  const auto entry = [](char kind) { return std::string("compression\0compression\0\1\0\0\0", 28) + kind; };
+  write_exr(path, layered_image(), ExrCompression::rle);
+  EXPECT_THAT(file_bytes(path), HasSubstr(entry(1)));
+  write_exr(path, layered_image());
+  EXPECT_THAT(file_bytes(path), HasSubstr(entry(3)));
+}
+
+TEST(Exr, PackingTakesATenthOfTheRenderAtMost) {
+  constexpr std::uint64_t bytes = 600'000'000;  // ten seconds of one core
+  EXPECT_EQ(compression_for(bytes, 99, 1), ExrCompression::rle);
+  EXPECT_EQ(compression_for(bytes, 101, 1), ExrCompression::zip);
+  EXPECT_EQ(compression_for(bytes, 26, 4), ExrCompression::zip);
+  EXPECT_EQ(compression_for(bytes, 24, 4), ExrCompression::rle);
+}
+
+// As a quota does; OpenEXR itself says nothing when the last bytes or the table of rows do not fit.
+TEST(Exr, EveryByteThatIsNotWrittenIsTold) {
+  const auto path = test::temporary_folder() / "out.exr";
+  write_exr(path, layered_image());
+  const auto whole = std::filesystem::file_size(path);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const std::uintmax_t most : {whole - 1, whole / 2, std::uintmax_t{10}}) {
+    write_bytes(path, "what was there");
+    const rlimit limit{most, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(write_exr(path, layered_image()), RunError) << most;
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(file_bytes(path), "what was there");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 struct KnownFile {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Each option does what it says: what would be the same if it were passed over.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "film/image.h"
+#include "program.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Result;
+using testing::HasSubstr;
+using Names = std::vector<std::string>;
+
+class Options : public testing::Test {
+ protected:
+  void SetUp() override {
+    test::write_file(folder_ / "scene.pbrt",
+                     "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
+                     "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
+                     "Sampler \"independent\" \"integer pixelsamples\" 4\nWorldBegin\nLightSource \"infinite\"\n"
+                     "Shape \"capsule\" \"point3 p0\" [-.5 0 0] \"point3 p1\" [.5 0 0] \"float radius\" 0.6\n");
+    test::write_file(folder_ / "rays.txt", "0 0 5 0 0 -1\n");
+  }
+  Result run(Names arguments, const std::map<std::string, std::string>& environment = {}) const {
+    const Result result = test::run_program(arguments, folder_, environment);
+    EXPECT_EQ(result.code, 0) << testing::PrintToString(arguments) << result.err;
+    return result;
+  }
+  LayeredImage picture(Names more) const {
+    more.insert(more.begin(), {"render", "scene.pbrt", "-q", "-o", "out.exr"});
+    run(more);
+    return read_exr(folder_ / "out.exr");
+  }
+  nlohmann::json json(const Names& arguments, const std::map<std::string, std::string>& environment = {}) const {
+    return nlohmann::json::parse(run(arguments, environment).out);
+  }
+
+  const fs::path folder_ = test::temporary_folder();
+};
+
+TEST_F(Options, SeedMakesOtherSamples) {
+  const LayeredImage one = picture({"--seed", "1"}), again = picture({"--seed", "1"}), two = picture({"--seed", "2"});
+  EXPECT_EQ(one.find("R")->floats, again.find("R")->floats);
+  EXPECT_NE(one.find("R")->floats, two.find("R")->floats);
+}
+
+// Without scattering no light comes from a surface that does not emit; the sky is seen all the same.
+TEST_F(Options, MaxDepthLimitsScattering) {
+  const auto center = [](const LayeredImage& image) { return image.find("R")->floats[8 * 24 + 12]; };
+  const LayeredImage none = picture({"--max-depth", "0"});
+  EXPECT_EQ(center(none), 0);
+  EXPECT_GT(none.find("R")->floats[0], 0);
+  EXPECT_GT(center(picture({"--max-depth", "1"})), 0);
+}
+
+TEST_F(Options, BatchTakesLessMemory) {
+  const auto peak = [&](const Names& more) {
+    picture(more);
+    return nlohmann::json::parse(test::read_file(folder_ / "stats.json")).at("peak_device_bytes").get<double>();
+  };
+  EXPECT_LT(peak({"--stats", "stats.json", "--batch", "64", "--size", "100x100"}),
+            peak({"--stats", "stats.json", "--size", "100x100"}));
+}
+
+TEST_F(Options, VarianceIsWrittenWhenAsked) {
+  EXPECT_EQ(picture({}).find("variance.R"), nullptr);
+  EXPECT_NE(picture({"--variance"}).find("variance.R"), nullptr);
+}
+
+// PoCL shows one device for each name in POCL_DEVICES.
+TEST_F(Options, DeviceIsTheOneThatIsNamed) {
+  const std::map<std::string, std::string> two = {{"POCL_DEVICES", "basic pthread"}};
+  const auto devices = json({"devices", "--json"}, two);
+  if (devices.size() != 2) GTEST_SKIP() << "needs PoCL, with its devices 'basic' and 'pthread'";
+  for (const char* index : {"0", "1"}) {
+    const std::string name = devices[static_cast<std::size_t>(index[0] - '0')].at("name");
+    run({"render", "scene.pbrt", "-q", "-o", "out.exr", "--spp", "1", "--device", index}, two);
+    EXPECT_EQ(read_exr(folder_ / "out.exr").metadata.at("caplet.device"), name);
+    run({"render", "scene.pbrt", "-q", "-o", "out.exr", "--spp", "1", "--device", name}, two);
+    EXPECT_EQ(read_exr(folder_ / "out.exr").metadata.at("caplet.device"), name);
+    EXPECT_EQ(json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--device", index}, two).at("device"), name);
+    const auto verified = json({"verify", "scene.pbrt", "--rays", "100", "--json", "--device", index}, two);
+    EXPECT_EQ(verified.at("devices")[0].at("name"), name);
+  }
+}
+
+TEST_F(Options, TheHeatmapsSize) {
+  run({"verify", "scene.pbrt", "-q", "--rays", "10", "--heatmap", "heat.exr", "--size", "30x20"});
+  EXPECT_EQ(read_exr(folder_ / "heat.exr").data_width, 30);
+  EXPECT_EQ(read_exr(folder_ / "heat.exr").data_height, 20);
+}
+
+TEST_F(Options, SeedOfVerifyMakesOtherRays) {
+  const auto kinds = [&](const char* seed) {
+    return json({"verify", "scene.pbrt", "--rays", "2000", "--seed", seed, "--json"}).at("kinds");
+  };
+  EXPECT_EQ(kinds("1"), kinds("1"));
+  EXPECT_NE(kinds("1"), kinds("2"));
+}
+
+TEST_F(Options, QuietCommandsSayNothing) {
+  for (const Names& arguments :
+       {Names{"verify", "scene.pbrt", "--rays", "100"}, Names{"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv"},
+        Names{"render", "scene.pbrt", "-o", "out.exr"}}) {
+    Names quiet = arguments;
+    quiet.push_back("--quiet");
+    EXPECT_EQ(run(quiet).err, "") << arguments[0];
+    EXPECT_NE(run(arguments).err, "") << arguments[0];
+  }
+}
+
+TEST_F(Options, PickedPixelsAreOfTheCrop) {
+  EXPECT_EQ(json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--crop", "12,8,13,9"}).at("hit"), true);
+  const Result outside = test::run_program({"pick", "scene.pbrt", "--pixel", "12,9", "--crop", "12,8,13,9"}, folder_);
+  EXPECT_EQ(outside.code, 2);
+  EXPECT_THAT(outside.err, HasSubstr("--pixel: 12,9 is outside of the crop"));
+}
+
+TEST_F(Options, StatsTellHowLongWritingTook) {
+  picture({"--stats", "stats.json"});
+  const auto seconds = nlohmann::json::parse(test::read_file(folder_ / "stats.json")).at("seconds");
+  EXPECT_GT(seconds.at("write").get<double>(), 0);
+  EXPECT_LE(seconds.at("write").get<double>() + seconds.at("render").get<double>(), seconds.at("total").get<double>());
+}
+
+}  // namespace
+}  // namespace caplet
