@@ -222,6 +222,10 @@ TEST_F(Machine, Drivers) {
   EXPECT_THAT(judge_driver(driver, broken, machine_, false).what, HasSubstr("no such file"));
   EXPECT_THAT(judge_driver(driver, broken, machine_, false).fix, HasSubstr("sudo mv '/v/a.icd' '/v/a.icd.off'"));
   EXPECT_THAT(judge_driver({"OCL_ICD_VENDORS", "liba.so", ""}, broken, machine_, false).fix, HasSubstr("unset OCL_ICD_VENDORS"));
+  broken.load_error =
+      "libi.so: undefined symbol: _ZN3tbb6detail2r127get_thread_reference_vertexEPNS0_2d126wait_tree_vertex_interfaceE";
+  EXPECT_THAT(judge_driver(driver, broken, machine_, true).what, HasSubstr("needs a newer libtbb.so.12"));
+  EXPECT_THAT(judge_driver(driver, broken, machine_, true).fix, HasSubstr("LD_LIBRARY_PATH=FOLDER"));
   broken.end = {false, "", "ended with signal 11 (Segmentation fault)", "last words"};
   EXPECT_THAT(judge_driver(driver, broken, machine_, false).what,
               testing::AllOf(HasSubstr("signal 11"), HasSubstr("last words")));

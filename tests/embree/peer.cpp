@@ -113,8 +113,10 @@ std::string Peer::version() {
 template <class Store>
 void Peer::trace_with(std::span<const RayRecord> rays, const Store& store) const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+#if CAPLET_EMBREE_MAJOR == 3
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
+#endif
     for (std::size_t i = range.begin(); i < range.end(); i++) {
       const RayRecord& r = rays[i];
       RTCRayHit hit{};
@@ -128,7 +130,11 @@ void Peer::trace_with(std::span<const RayRecord> rays, const Store& store) const
       hit.ray.tfar = r.t_max;
       hit.ray.mask = ~0u;
       hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if CAPLET_EMBREE_MAJOR == 3
       rtcIntersect1(scene_, &context, &hit);
+#else
+      rtcIntersect1(scene_, &hit);
+#endif
       store(i, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PeerHit{} : PeerHit{hit.hit.primID, hit.ray.tfar});
     }
   });

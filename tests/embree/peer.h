@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Embree 3 on the same primitives and rays: single rays, all cores.
+// Embree, 3 or 4, on the same primitives and rays: single rays, all cores.
 #pragma once
 
+#if CAPLET_EMBREE_MAJOR == 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <array>
 #include <limits>

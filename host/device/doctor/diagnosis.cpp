@@ -199,6 +199,13 @@ Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundi
             fmt::format("the driver {} {}{}; so does every program that uses OpenCL", driver.library, answer.end.how,
                         printed(answer.end)),
             "update or reinstall this driver, or take it out: " + remove_text(driver)};
+  // Names of C++ functions in the namespace tbb begin so.
+  if (answer.load_error.find("undefined symbol: _ZN3tbb") != std::string::npos)
+    return {State::wrong, driver.from,
+            fmt::format("the driver {} needs a newer libtbb.so.12 than the one that Caplet has loaded: {}", driver.library,
+                        answer.load_error),
+            "make a folder that holds nothing but the libtbb.so.12 that came with the driver, and name it: "
+            "LD_LIBRARY_PATH=FOLDER caplet ..."};
   if (!answer.load_error.empty())
     return {State::wrong, driver.from, fmt::format("the driver {} cannot be loaded: {}", driver.library, answer.load_error),
             "reinstall the package of this driver, or take it out: " + remove_text(driver)};

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The first use of a device: what its driver does then is told. A driver that aborts is played by a kernel that does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "program.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A folder with kernels in which `from` of a file became `to`.
+fs::path changed_kernels(const char* file, const std::string& from, const std::string& to) {
+  const fs::path folder = test::temporary_folder();
+  fs::copy(test::source_folder() / "kernels", folder, fs::copy_options::recursive);
+  std::string text = test::read_file(folder / file);
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("no '" + from + "' in " + file);
+  text.replace(at, from.size(), to);
+  std::ofstream(folder / file) << text;
+  return folder;
+}
+
+test::Result render(const fs::path& kernels, const std::vector<std::string>& more = {}) {
+  const fs::path folder = test::temporary_folder();
+  std::vector<std::string> words{
+      "render", (test::source_folder() / "scenes" / "capsules.pbrt").string(), "-o", "out.exr", "--size", "16x16", "--spp", "1"};
+  words.insert(words.end(), more.begin(), more.end());
+  std::map<std::string, std::string> environment{{"CAPLET_CACHE", (folder / "cache").string()}};
+  if (!kernels.empty()) environment["CAPLET_KERNELS"] = kernels.string();
+  return test::run_program(words, folder, environment);
+}
+
+TEST(Trial, ADriverThatAbortsIsToldOf) {
+  const test::Result result = render(changed_kernels("stages/extend.cl", "const uint path = g->queue[item];",
+                                                     "const uint path = g->queue[item]; __builtin_trap();"));
+  EXPECT_EQ(result.code, 1) << result.err;
+  EXPECT_EQ(result.signal, 0);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("its driver ended with signal"), HasSubstr("caplet doctor")));
+}
+
+TEST(Trial, WrongKernelsAreRefusedByShape) {
+  const test::Result result = render(changed_kernels("trace/trace.cl", "hit.instance = best_instance;\n          hit.surface",
+                                                     "hit.t *= 2.0f;\n          hit.surface"));
+  EXPECT_EQ(result.code, 1) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("computes wrongly"), HasSubstr("capsule: nearest crossing (extend)"),
+                                HasSubstr("sphere: nearest crossing (extend)")));
+}
+
+TEST(Trial, IsMadeOnceForEachEncoding) {
+  const test::Result wrong = render({}, {"--encoding", "narrow"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, AllOf(HasSubstr("--encoding"), HasSubstr("'narrow' is not automatic, wide or single")));
+  const fs::path cache = test::temporary_folder();
+  const auto tested = [&](const std::string& encoding) {
+    const test::Result result = test::run_program(
+        {"pick", (test::source_folder() / "scenes" / "capsules.pbrt").string(), "--pixel", "3,3", "--encoding", encoding},
+        test::temporary_folder(), {{"CAPLET_CACHE", cache.string()}});
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err.find("once, and compiling for it") != std::string::npos;
+  };
+  EXPECT_TRUE(tested("wide"));
+  EXPECT_FALSE(tested("wide"));
+  EXPECT_TRUE(tested("single"));
+  EXPECT_FALSE(tested("single"));
+}
+
+}  // namespace
+}  // namespace caplet

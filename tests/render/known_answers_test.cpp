@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The known answers are the witness's too; kernels that are right give them, and a fault in any shape, side or stage is seen.
+#include "render/known_answers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "reference/scene_witness.h"
+#include "render/known_rays.h"
+#include "render_scene.h"
+#include "support/data.h"
+
+namespace caplet::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// While it lives, kernels come from a copy in which each `from` of a file is replaced by `to`.
+class ChangedKernels {
+ public:
+  struct Change {
+    const char *file, *from, *to;
+  };
+  explicit ChangedKernels(const std::vector<Change>& changes) {
+    const fs::path folder = temporary_folder();
+    fs::copy(source_folder() / "kernels", folder, fs::copy_options::recursive);
+    for (const Change& change : changes) {
+      std::ifstream in(folder / change.file);
+      std::string text{std::istreambuf_iterator<char>(in), {}};
+      const std::size_t at = text.find(change.from);
+      if (at == std::string::npos) throw std::logic_error(std::string(change.file) + " has no '" + change.from + "'");
+      text.replace(at, std::string(change.from).size(), change.to);
+      std::ofstream(folder / change.file) << text;
+    }
+    ::setenv("CAPLET_KERNELS", folder.c_str(), 1);
+  }
+  ~ChangedKernels() { ::unsetenv("CAPLET_KERNELS"); }
+  ChangedKernels(const ChangedKernels&) = delete;
+  ChangedKernels& operator=(const ChangedKernels&) = delete;
+};
+
+constexpr Trial rendering{false, true, false, false}, nearest{false, false, true, false}, lists{false, false, false, true};
+constexpr Trial rendering_basic{true, true, false, false};
+
+std::vector<std::string> names(bool basic_shapes) {
+  if (basic_shapes) return {"sphere", "capsule", "tapered_capsule", "triangle", "disk", "instance"};
+  return {
+#define SHAPE(name, rows) #name,
+#include "shared/shapes.def"
+#undef SHAPE
+  };
+}
+
+TEST(KnownRays, AreOfEveryShape) {
+  for (const bool basic : {false, true}) {
+    std::set<std::string> seen;
+    for (const KnownRay& ray : known_scene(basic).rays) seen.insert(shape_name(ray.kind));
+    const std::vector<std::string> all = names(basic);
+    EXPECT_EQ(seen, std::set<std::string>(all.begin(), all.end()));
+  }
+}
+
+TEST(KnownRays, CrossingsAreTheWitnesss) {
+  const KnownScene known = known_scene(false);
+  const reference::SceneWitness witness(known.scene);
+  std::size_t crossings = 0;
+  for (std::size_t i = 0; i < known.rays.size(); ++i) {
+    const KnownRay& ray = known.rays[i];
+    SCOPED_TRACE(testing::Message() << i << ": " << shape_name(ray.kind));
+    std::vector<reference::SceneHit> found;
+    for (const reference::SceneHit& hit :
+         witness.all({{ray.ray.ox, ray.ray.oy, ray.ray.oz}, {ray.ray.dx, ray.ray.dy, ray.ray.dz}}))
+      if (hit.t < static_cast<double>(ray.ray.t_max)) found.push_back(hit);
+    ASSERT_EQ(found.size(), ray.crossings.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      // The ray's floats: 2^-24 of coordinates up to 100, at 17 degrees or more and directions of 0.2 or more.
+      EXPECT_NEAR(found[k].t, ray.crossings[k].t, 1e-3);
+      if (ray.crossings[k].side != KnownCrossing::Side::either) {
+        EXPECT_EQ(found[k].leaving, ray.crossings[k].side == KnownCrossing::Side::leaving);
+      }
+      ++crossings;
+    }
+  }
+  EXPECT_GT(crossings, 1500u);
+}
+
+TEST(KnownAnswers, AreGivenHere) {
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    EXPECT_THAT(known_answer_failures(test_device(encoding), whole_trial), IsEmpty());
+    EXPECT_THAT(known_answer_failures(test_device(encoding), {.basic_shapes = true, .render = true}), IsEmpty());
+  }
+}
+
+/// A line for each shape that begins with its name and this check.
+void expect_all(const std::vector<std::string>& failures, const std::string& check) {
+  for (const std::string& name : names(false)) EXPECT_THAT(failures, Contains(StartsWith(name + ": " + check))) << name;
+}
+
+TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
+  const ChangedKernels changed({{"trace/trace.cl", "real_mask ok = shape_hit(kind, &shape, block, lane, &t, &side);",
+                                 "real_mask ok = shape_hit(kind, &shape, block, lane, &t, &side); t *= 1.05f;"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), rendering);
+  expect_all(failures, "nearest crossing (extend)");
+  expect_all(failures, "any crossing (connect)");
+}
+
+TEST(KnownAnswers, SeeCrossingsThatAreMissedByShadowRaysAlone) {
+  const ChangedKernels changed({{"trace/trace.cl", "if (any && found) {", "if (any) found = 0;\n          if (any && found) {"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), rendering_basic);
+  ASSERT_EQ(failures.size(), names(true).size());
+  for (const std::string& name : names(true))
+    EXPECT_THAT(failures, Contains(StartsWith(name + ": any crossing (connect)"))) << name;
+}
+
+TEST(KnownAnswers, SeeWrongRecordsOfCrossings) {
+  // The normal of one shape alone turned around, and the object of all counted from 1.
+  const ChangedKernels normals({{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
+                                 "vstore3(geometry->shape == shape_cone ? -normal : normal, 0, out.normal);"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), nearest);
+  ASSERT_EQ(failures.size(), 1u);
+  EXPECT_THAT(failures[0], AllOf(StartsWith("cone: nearest crossing (pick)"), HasSubstr("a normal along the ray")));
+}
+
+TEST(KnownAnswers, SeeWrongLists) {
+  const ChangedKernels changed({{"trace/list.cl", "(uint)exit_surface[i] | CAPLET_LEAVING", "(uint)exit_surface[i]"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), lists);
+  for (const char* solid : {"sphere", "capsule", "tapered_capsule", "cylinder", "cone", "box", "polyhedron", "instance"})
+    EXPECT_THAT(failures, Contains(AllOf(StartsWith(solid), HasSubstr("enters where it leaves")))) << solid;
+}
+
+TEST(KnownAnswers, SeeTheSidesOfOneSidedShapesSwapped) {
+  const ChangedKernels changed({{"trace/trace.cl", "if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;",
+                                 "if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), rendering_basic);
+  for (const char* solid : {"sphere", "capsule", "tapered_capsule"})
+    EXPECT_THAT(failures, Contains(StartsWith(std::string(solid) + ": nearest crossing (extend)"))) << solid;
+}
+
+TEST(KnownAnswers, AreRememberedByKernelsAndEncoding) {
+  ::setenv("CAPLET_CACHE", temporary_folder().c_str(), 1);
+  const Trial& trial = rendering_basic;
+  const Device wide = test_device(Encoding::wide), single = test_device(Encoding::single);
+  EXPECT_TRUE(needs_trial(wide, trial));
+  try_device(wide, trial);
+  EXPECT_FALSE(needs_trial(wide, trial));
+  EXPECT_TRUE(needs_trial(wide, rendering));
+  EXPECT_TRUE(needs_trial(single, trial));
+  {
+    const ChangedKernels changed({{"trace/trace.cl", "int found = 0, best_side = 0;", "int found = 0, best_side = 1;"}});
+    EXPECT_TRUE(needs_trial(wide, trial));
+  }
+  const ChangedKernels wrong({{"trace/trace.cl", "t_best = ts[i];", "t_best = ts[i] * 1.1f;"}});
+  EXPECT_THROW(try_device(wide, trial), RunError);
+  EXPECT_THROW(try_device(wide, trial), RunError);
+  ::unsetenv("CAPLET_CACHE");
+}
+
+}  // namespace
+}  // namespace caplet::test
