@@ -116,7 +116,10 @@ RenderResult render_with_progress(const FlatScene& flat, const Device& device, c
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return render(flat, device, render_options, [&](const Progress& progress) {
-      if (progress.samples_done > 0 || progress.fraction >= 1) SecondTry::driver_works();
+      if (progress.samples_done > 0 || progress.fraction >= 1)
+        SecondTry::driver_works();
+      else
+        SecondTry::guard(device);  // again: what compiled the kernels may have set handlers
       reporter.update(progress.fraction, progress.samples_per_second,
                       fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
                                   render_options.samples_per_pixel));
