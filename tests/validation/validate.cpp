@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
       "ask no question of spectra: image mean within 0.3 %, means of 8 x 8 blocks within 1 % root mean square (mis-grey 2 %), z "
       "= (ours - theirs) / "
       "sqrt(both variances) with a mean within 0.3 and under 3 % of the pixels beyond 3. The spectral ones: image mean within "
-      "0.5 %, blocks within 1 %. "
+      "0.5 %, blocks within 1 %. The rows of an image stand where Mitsuba puts them (docs/lights.md, \"Image light\"). "
       "Our variance is that of independent samples, an upper bound for ours, so z comes out narrower than a normal "
       "distribution.\n\n"
       "| scene | samples | image mean | blocks rms | z mean | z sd | beyond 3 | seconds | within "
