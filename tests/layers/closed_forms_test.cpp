@@ -56,6 +56,21 @@ TEST_P(LayersAtSamples, OfAPlaneAreThoseOfThePixelsMiddle) {
   }
 }
 
+// Its normal is no dyadic fraction either: (sin 40, 0, -cos 40) degrees, whichever way a disk turned about y faces.
+TEST_P(LayersAtSamples, NormalOfATiltedPlane) {
+  const Rendered rendered = render_text(
+      head +
+          "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 40\nFilm \"rgb\" \"integer xresolution\" 2 "
+          "\"integer yresolution\" 2\nWorldBegin\nTranslate 0 0 3\nRotate -40 0 1 0\nShape \"disk\" \"float radius\" 9\n",
+      GetParam());
+  const double angle = 40 * std::acos(-1) / 180;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const dvec3 n = at3(rendered.image, "N", "XYZ", i);
+    EXPECT_LT(glm::length(n - dvec3(std::sin(angle), 0, -std::cos(angle))), 4 * 0x1p-24);
+    EXPECT_LE(glm::length(n), 1);
+  }
+}
+
 struct PixelMeans {
   double coverage = 0, depth = 0;
   dvec3 position{0}, normal{0};
