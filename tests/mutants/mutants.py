@@ -186,11 +186,13 @@ def program_path(name):
 
 
 def outcome(program, test_filter, kernels, folder):
-    """Runs the tests in an own folder with own caches. One of PASSED, CAUGHT, or why neither can be said; and the output."""
+    """Runs the tests in an own folder. One of PASSED, CAUGHT, or why neither can be said; and the output."""
     env = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "CAPLET_TEST_", "CAPLET_KERNELS"))}
-    for name in ("CAPLET_CACHE", "POCL_CACHE_DIR", "TMPDIR"):
+    for name in ("CAPLET_CACHE", "TMPDIR"):
         env[name] = str(folder / name.lower())
         pathlib.Path(env[name]).mkdir(parents=True, exist_ok=True)
+    # PoCL finds compiled kernels by their text: those that a mutant leaves alone are compiled once for all.
+    env["POCL_CACHE_DIR"] = str(folder.parent / "pocl")
     if kernels:
         env["CAPLET_KERNELS"] = str(kernels)
     try:
