@@ -89,7 +89,7 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
   // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
   EXPECT_LE(different, a.film.size() / 1000);
   const Figures figures =
-      compare(picture_of(develop(a.film, flat.params, scene, true)), picture_of(develop(b.film, flat.params, scene, true)));
+      compare(picture_of(develop(a.film, flat.params, scene, Layers::all())), picture_of(develop(b.film, flat.params, scene, true)));
   EXPECT_LT(std::abs(figures.mean), 2e-3);
   // PoCL's compiler rounds every operation of both as it is written.
   if (test_device().is_pocl()) {
@@ -122,8 +122,8 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   const RenderResult a = render(flat, test_device(Encoding::wide), options, {});
   options.batch_paths = std::size_t{1} << 20;
   const RenderResult b = render(flat, test_device(Encoding::single), options, {});
-  const Picture wide = picture_of(develop(a.film, flat.params, scene, true)),
-                single = picture_of(develop(b.film, flat.params, scene, true));
+  const Picture wide = picture_of(develop(a.film, flat.params, scene, Layers::all())),
+                single = picture_of(develop(b.film, flat.params, scene, Layers::all()));
   EXPECT_LT(std::abs(compare(wide, single).mean), 2e-3);
   if (test_device().is_pocl()) {
     EXPECT_TRUE(same_bits(a.film, b.film));

@@ -105,7 +105,7 @@ TEST(ShadingNormals, LetNoScatteredRayThrough) {
   flat.params.sampled_light_count = 0;
   RenderOptions options;
   options.samples_per_pixel = 64;
-  EXPECT_EQ(mean_of(develop(render(flat, test_device(), options, {}).film, flat.params, scene, true), "G").value, 0);
+  EXPECT_EQ(mean_of(develop(render(flat, test_device(), options, {}).film, flat.params, scene, Layers::all()), "G").value, 0);
 }
 
 // --- Shadows ---

@@ -33,7 +33,7 @@ Mean light_of(const Scene& scene, int samples, bool sampled) {
   RenderOptions options;
   options.samples_per_pixel = samples;
   const RenderResult result = render(flat, test_device(), options, {});
-  return mean_of(develop(result.film, flat.params, scene, true), "G");
+  return mean_of(develop(result.film, flat.params, scene, Layers::all()), "G");
 }
 
 struct Case {
