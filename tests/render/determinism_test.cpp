@@ -88,8 +88,8 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
     different += a.film[i].object != b.film[i].object || a.film[i].primitive != b.film[i].primitive;
   // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
   EXPECT_LE(different, a.film.size() / 1000);
-  const Figures figures =
-      compare(picture_of(develop(a.film, flat.params, scene, Layers::all())), picture_of(develop(b.film, flat.params, scene, true)));
+  const Figures figures = compare(picture_of(develop(a.film, flat.params, scene, Layers::all())),
+                                  picture_of(develop(b.film, flat.params, scene, Layers::all())));
   EXPECT_LT(std::abs(figures.mean), 2e-3);
   // PoCL's compiler rounds every operation of both as it is written.
   if (test_device().is_pocl()) {
