@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "base/interrupt.h"
@@ -14,6 +15,7 @@
 #include "cli/options.h"
 #include "device/doctor/child.h"
 #include "device/second_try.h"
+#include "device/self_test.h"
 
 namespace caplet::cli {
 
@@ -21,6 +23,7 @@ namespace {
 
 constexpr double most_seconds = 600;  // a slow compiler takes a minute and a half on one core
 constexpr const char* not_started = "not started";
+constexpr int exit_wrong_device = 3;
 
 std::string error_text(const std::string& line) {
   const std::string before = "caplet: error: ";
@@ -51,7 +54,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
         most_seconds, interrupt_requested);
   };
   doctor::ChildEnd end = in_child();
-  if (!end.finished && device.is_pocl() && !interrupt_requested()) {
+  if (!end.finished && end.exit_code != exit_wrong_device && device.is_pocl() && !interrupt_requested()) {
     // It may be PoCL's cache that is broken, which SecondTry deals with.
     const FreshPoclCache fresh;
     end = in_child();
@@ -59,6 +62,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
   if (end.finished && end.answer == not_started) return try_device(device, trial);
   if (end.finished) return;
   if (interrupt_requested()) throw RunError("interrupted");
+  if (end.exit_code == exit_wrong_device) throw WrongDevice(error_text(end.said));
   if (end.exit_code == 1 || end.exit_code == 2) throw RunError(error_text(end.said));
   throw RunError(fmt::format(
       "device '{}' (driver {}): its driver {} while Caplet's kernels were compiled and tried{}; use another device or "
@@ -83,7 +87,14 @@ void add_try_device(CLI::App& app) {
   command->add_flag("--lists", o->trial.lists);
   command->callback([o] {
     log::set_quiet(true);
-    try_device(Device::choose(o->device, o->encoding), o->trial);
+    try {
+      try_device(Device::choose(o->device, o->encoding), o->trial);
+    } catch (const WrongDevice& wrong) {
+      std::string message = wrong.what();
+      std::ranges::replace(message, '\n', ' ');
+      fmt::print(stderr, "caplet: error: {}\n", message);
+      throw CLI::RuntimeError(exit_wrong_device);
+    }
   });
 }
 

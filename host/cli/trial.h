@@ -8,8 +8,8 @@
 
 namespace caplet::cli {
 
-/// try_device (render/known_answers.h), when it is due, by running this program again. Throws RunError with what the test says,
-/// or with how the driver ended it; also when interrupted.
+/// try_device (render/known_answers.h), when it is due, by running this program again. Throws WrongDevice with what the test
+/// says, or RunError with how the driver ended it; also when interrupted.
 void try_device_apart(const Device& device, const Trial& trial);
 
 }  // namespace caplet::cli

@@ -20,6 +20,7 @@
 #include "cli/trial.h"
 #include "cli/verify_report.h"
 #include "device/second_try.h"
+#include "device/self_test.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "verify/cases.h"
@@ -47,7 +48,11 @@ std::vector<Device> devices_of(const Options& o) {
     if (out.empty()) out.push_back(Device::choose(""));  // says what is missing
   }
   for (const Device& device : out) {
-    try_device_apart(device, {.nearest = true, .lists = true});
+    try {
+      try_device_apart(device, {.nearest = true, .lists = true});
+    } catch (const WrongDevice& wrong) {
+      log::warn("{}", wrong.what());  // how wrong, and where, is what was asked
+    }
     SecondTry::guard(device);
   }
   return out;

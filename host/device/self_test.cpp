@@ -272,7 +272,7 @@ void refuse_device(const Device& device, const std::vector<std::string>& failure
   std::string message =
       fmt::format("device '{}' (driver {}) computes wrongly, so that pictures would be wrong:", info.name, info.driver);
   for (const std::string& failure : failures) message += "\n  " + failure;
-  throw RunError(message + "\nCAPLET_SELF_TEST=0 leaves this test out");
+  throw WrongDevice(message + "\nCAPLET_SELF_TEST=0 leaves this test out");
 }
 
 void self_test(const Device& device) {

@@ -11,6 +11,12 @@
 
 namespace caplet {
 
+/// The device computes wrongly, as its self-test says.
+class WrongDevice : public RunError {
+ public:
+  using RunError::RunError;
+};
+
 /// Builds `source` (the text of kernels/probe/self_test.cl, or a variant of it) and compares what it computes with the host:
 /// sums, products and fma correctly rounded; quotients within 2.5 ulp and square roots within 3 ulp (OpenCL 1.2, section 7.4);
 /// NaN, infinities and comparisons; integer functions; vload8, vstore8 and select; atomics; work-group ids. Denormal inputs and
@@ -22,7 +28,7 @@ std::vector<std::string> self_test_failures(const Device& device, const std::str
 bool self_test_is_due(const Device& device, const std::vector<std::string>& texts);
 void remember_self_test(const Device& device, const std::vector<std::string>& texts);
 
-/// Throws RunError that names the device, its driver and what is wrong.
+/// Throws WrongDevice that names the device, its driver and what is wrong.
 [[noreturn]] void refuse_device(const Device& device, const std::vector<std::string>& failures);
 
 }  // namespace caplet

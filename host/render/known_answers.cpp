@@ -35,7 +35,9 @@ class Tally {
   }
   void add(const char* check, const KnownRay& ray, const std::string& detail) {
     Wrong& wrong = wrong_[{ray.kind, check}];
-    if (wrong.rays++ == 0) wrong.first = detail;
+    if (wrong.rays == 0) wrong.first = detail;
+    if (wrong.last != &ray) ++wrong.rays;
+    wrong.last = &ray;
   }
   std::vector<std::string> lines() const {
     std::vector<std::string> out;
@@ -49,6 +51,7 @@ class Tally {
   struct Wrong {
     std::size_t rays = 0;
     std::string first;
+    const KnownRay* last = nullptr;  // a ray has several crossings
   };
   std::map<int, std::size_t> asked_;
   std::map<std::pair<int, std::string>, Wrong> wrong_;

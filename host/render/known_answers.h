@@ -30,7 +30,7 @@ std::vector<std::string> known_answer_failures(const Device& device, const Trial
 bool needs_trial(const Device& device, const Trial& trial);
 
 /// self_test(), then known_answer_failures(); remembered when all is well, so that the next needs_trial() says no. Throws
-/// RunError that says what is wrong. A driver may end the process here: see host/cli/trial.h.
+/// WrongDevice that says what is wrong. A driver may end the process here: see host/cli/trial.h.
 void try_device(const Device& device, const Trial& trial);
 
 }  // namespace caplet

@@ -10,7 +10,7 @@ int main() {
   std::cout << caplet::list_devices().size() << " devices\n";
   try {
     std::cout << caplet::Device::choose("").info().name << "\n";
-  } catch (const caplet::InputError& error) {
+  } catch (const caplet::RunError& error) {
     std::cout << error.what() << "\n";
   }
 }
