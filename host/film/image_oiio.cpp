@@ -136,7 +136,8 @@ bool can_hold(const std::filesystem::path& path, int width, int height) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const Limit& limit : limits)
-    if (limit.extension == extension && (width > limit.side || height > limit.side)) return false;
+    if (limit.extension == extension) return width <= limit.side && height <= limit.side;
+  // Others tell when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
   const MemoryFile file;
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   const bool opened = output && output->open(file.path(), rgb8_spec(width, height));
