@@ -28,7 +28,8 @@ namespace {
                                  const std::map<std::string, std::string>& environment) {
   if (::chdir(folder.c_str()) != 0) ::_exit(126);
   for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-  std::vector<std::string> owned{CAPLET_PROGRAM};
+  const char* other = std::getenv("CAPLET_TEST_PROGRAM");  // a mutant's
+  std::vector<std::string> owned{other ? other : CAPLET_PROGRAM};
   owned.insert(owned.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& argument : owned) argv.push_back(argument.data());

@@ -182,6 +182,13 @@ def program_path(name):
     return next(BUILD.glob(f"tests/*/{name}"))
 
 
+def take(name, folder):
+    """Copies a test program and the program that it may run."""
+    shutil.copy2(program_path(name), folder / name)
+    if (BUILD / "bin/caplet").exists():
+        shutil.copy2(BUILD / "bin/caplet", folder / "caplet")
+
+
 # --- Running a test ---
 
 
@@ -193,6 +200,8 @@ def outcome(program, test_filter, kernels, folder):
         pathlib.Path(env[name]).mkdir(parents=True, exist_ok=True)
     # PoCL finds compiled kernels by their text: those that a mutant leaves alone are compiled once for all.
     env["POCL_CACHE_DIR"] = str(folder.parent / "pocl")
+    # The built program that tests run is the one beside them: another mutant may be built meanwhile.
+    env["CAPLET_TEST_PROGRAM"] = str(program.with_name("caplet"))
     if kernels:
         env["CAPLET_KERNELS"] = str(kernels)
     try:
@@ -248,7 +257,7 @@ class Run:
         self.plain = self.temporary / "plain"
         self.plain.mkdir()
         for name in programs:
-            shutil.copy2(program_path(name), self.plain / name)
+            take(name, self.plain)
 
     def unmutated(self, pool):
         """Every named test must pass as it is, and every program that runs kernels must see what CAPLET_KERNELS names."""
@@ -302,7 +311,7 @@ class Run:
             mutate(path, m)
             failed = build([m.program], self.jobs)
             if not failed:
-                shutil.copy2(program_path(m.program), folder / m.program)
+                take(m.program, folder)
         finally:
             path.write_bytes(original)
         if failed:
