@@ -275,7 +275,7 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
   try {
     write(temporary);
     fs::rename(temporary, place.path, error);
-    if (error && place.kind == Kind::file)
+    if (error == std::errc::device_or_resource_busy && place.kind == Kind::file)
       copy_over(temporary, place.path);
     else if (error)
       throw RunError(fmt::format("{}: cannot be written: {}", target.string(), error.message()));
