@@ -19,7 +19,7 @@ struct Moments {
 };
 
 Moments moments_of(const LayeredImage& image) {
-  const Channel& coverage = channel(image, "A");
+  const Channel& coverage = *image.find("A");
   Moments out;
   double total = 0;
   for (int y = 0; y < image.data_height; ++y)

@@ -4,6 +4,7 @@
 // Boxes, polyhedra, pbrt's partial shapes and bilinear patches: how they relate to each other and to their closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>

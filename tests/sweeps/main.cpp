@@ -5,6 +5,7 @@
 // caplet_sweeps RAYS OUT.md PLOT_FOLDER: fails when a cell is beyond the stated bound or differs from the witness.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -4,6 +4,7 @@
 // math/spectrum.cl on the device against the host's double precision.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
