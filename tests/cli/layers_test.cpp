@@ -67,6 +67,20 @@ TEST(Layers, AreThoseOfTheList) {
     }
 }
 
+TEST(Layers, PixelsBeyondAFloatAreSaidOnceForThePicture) {
+  const auto folder = test::temporary_folder();
+  // Radiance 10^4 at an exposure of 10^36; enough rows for several bands.
+  test::write_file(folder / "scene.pbrt",
+                   "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 1\n"
+                   "Film \"rgb\" \"integer xresolution\" 2600 \"integer yresolution\" 1300 \"float iso\" 1e38\nWorldBegin\n"
+                   "LightSource \"infinite\" \"rgb L\" [ 10000 10000 10000 ]\nShape \"sphere\" \"float radius\" 0.01\n");
+  const test::Result result = render(folder, {"--layers", "none"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err,
+              HasSubstr("3380000 of 3380000 pixels are beyond the range of a float and written black (the first: 0,0)"));
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+}
+
 TEST(Layers, UnknownOnesAreRefusedByTheNearestName) {
   const auto folder = folder_with_scene();
   for (const auto& [list, wrong, nearest] : {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
