@@ -12,9 +12,9 @@
 
 namespace caplet::cli {
 
-/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `params`, `scene` and
+/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `view`, `scene` and
 /// `not_finite`.
-BandedImage developed_in_bands(const Buffer<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+BandedImage developed_in_bands(const Buffer<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
                                NotFinite& not_finite);
 
 }  // namespace caplet::cli

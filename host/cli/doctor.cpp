@@ -12,7 +12,7 @@
 #include "cli/device_json.h"
 #include "device/doctor/diagnosis.h"
 #include "render/known_answers.h"
-#include "render/render.h"
+#include "render/renderer.h"
 
 namespace caplet::cli {
 

@@ -36,9 +36,9 @@ Color color_of(const verify::HeatPixel& pixel) {
 }  // namespace
 
 void write_heatmap(const std::filesystem::path& path, const Scene& scene, const std::vector<verify::HeatPixel>& pixels) {
-  FlatScene frame;
+  FlatView frame;
   lower_camera(scene, frame);
-  const ParamsRecord& p = frame.params;
+  const ViewRecord& p = frame.view;
   LayeredImage image;
   image.width = static_cast<int>(p.width);
   image.height = static_cast<int>(p.height);

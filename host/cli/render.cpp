@@ -112,10 +112,10 @@ void check_outputs(const Options& options, const Scene& scene, Layers layers, Fi
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
 
-RenderResult render_with_progress(const FlatScene& flat, const Device& device, const RenderOptions& render_options, bool quiet) {
+RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const Device& device, const RenderOptions& render_options, bool quiet) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
-    return render(flat, device, render_options, [&](const Progress& progress) {
+    return render(flat, view, device, render_options, [&](const Progress& progress) {
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
@@ -186,6 +186,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   check_outputs(options, scene, layers, files);
   seconds.load = phase.lap();
   const FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
@@ -193,19 +194,19 @@ void run_render(const Options& options, const Invocation& invocation) {
   SecondTry::guard(device);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
-              flat.params.crop_width, flat.params.crop_height, scene.sampler.samples_per_pixel, device.info().name);
+              view.view.crop_width, view.view.crop_height, scene.sampler.samples_per_pixel, device.info().name);
   RenderOptions render_options;
   render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
   render_options.time_limit = options.time_limit;
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
   render_options.film_on_device = true;
-  const RenderResult result = render_with_progress(flat, device, render_options, options.quiet);
+  const RenderResult result = render_with_progress(flat, view, device, render_options, options.quiet);
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;
 
   NotFinite not_finite;
-  BandedImage picture = developed_in_bands(result.device_film, flat.params, scene, layers, not_finite);
+  BandedImage picture = developed_in_bands(result.device_film, view.view, scene, layers, not_finite);
   picture.whole.metadata = metadata_of(scene, options, invocation, device, result);
   phase.lap();
   write_pictures(files, picture, layers.channels(), result.render_seconds);

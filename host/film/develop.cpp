@@ -90,29 +90,29 @@ class IdPlane {
   bool wanted_;
 };
 
-LayeredImage window_of(const ParamsRecord& params, ColorSpace space) {
+LayeredImage window_of(const ViewRecord& view, ColorSpace space) {
   LayeredImage image;
-  image.width = narrow<int>(params.width);
-  image.height = narrow<int>(params.height);
-  image.x = narrow<int>(params.crop_x);
-  image.y = narrow<int>(params.crop_y);
-  image.data_width = narrow<int>(params.crop_width);
-  image.data_height = narrow<int>(params.crop_height);
+  image.width = narrow<int>(view.width);
+  image.height = narrow<int>(view.height);
+  image.x = narrow<int>(view.crop_x);
+  image.y = narrow<int>(view.crop_y);
+  image.data_width = narrow<int>(view.crop_width);
+  image.data_height = narrow<int>(view.crop_height);
   image.space = space;
   return image;
 }
 
 }  // namespace
 
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
                      NotFinite& not_finite) {
-  const std::size_t pixels = static_cast<std::size_t>(params.crop_width) * params.crop_height;
+  const std::size_t pixels = static_cast<std::size_t>(view.crop_width) * view.crop_height;
   CHECK_EQ_(film.size(), pixels);
   const double exposure = scene.film.exposure_time * scene.film.iso / 100;
   const double limit = scene.film.max_component_value;
   const std::array<double, 9> m = rgb_from_xyz(scene.film.space);
 
-  LayeredImage image = window_of(params, scene.film.space);
+  LayeredImage image = window_of(view, scene.film.space);
   const Planes color(image, true, {"R", "G", "B"}, pixels), coverage(image, true, {"A"}, pixels);
   const Planes depth(image, layers.has(Layer::depth), {"Z"}, pixels);
   const Planes albedo(image, layers.has(Layer::albedo), {"albedo.R", "albedo.G", "albedo.B"}, pixels);
@@ -152,16 +152,16 @@ LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& pa
     object.set(i, record.object);
     primitive.set(i, record.primitive);
     if (!finite && not_finite.count++ == 0) {
-      not_finite.x = params.crop_x + i % params.crop_width;
-      not_finite.y = params.crop_y + i / params.crop_width;
+      not_finite.x = view.crop_x + i % view.crop_width;
+      not_finite.y = view.crop_y + i / view.crop_width;
     }
   }
   return image;
 }
 
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers) {
+LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers) {
   NotFinite not_finite;
-  LayeredImage image = develop(film, params, scene, layers, not_finite);
+  LayeredImage image = develop(film, view, scene, layers, not_finite);
   not_finite.warn();
   return image;
 }

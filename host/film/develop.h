@@ -37,10 +37,10 @@ struct NotFinite {
 /// Nothing that is written is infinite or not a number: where sums or the exposure went beyond a float, R G B are black and the
 /// variance is the greatest float (other layers: 0), and `not_finite` counts those pixels.
 /// Throws std::logic_error when the film is not of the window's size.
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
                      NotFinite& not_finite);
 
 /// The same, with the warning.
-LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers);
+LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers);
 
 }  // namespace caplet

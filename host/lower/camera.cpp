@@ -13,17 +13,17 @@
 
 namespace caplet {
 
-void lower_camera(const Scene& scene, FlatScene& out) {
+void lower_camera(const Scene& scene, FlatView& out) {
   const Camera& camera = scene.camera;
   const FilmSettings& film = scene.film;
-  ParamsRecord& params = out.params;
-  params.width = narrow<uint>(film.width);
-  params.height = narrow<uint>(film.height);
+  ViewRecord& view = out.view;
+  view.width = narrow<uint>(film.width);
+  view.height = narrow<uint>(film.height);
   const std::array<int, 4> window = film.crop.value_or(std::array<int, 4>{0, film.width, 0, film.height});
-  params.crop_x = narrow<uint>(window[0]);
-  params.crop_y = narrow<uint>(window[2]);
-  params.crop_width = narrow<uint>(window[1] - window[0]);
-  params.crop_height = narrow<uint>(window[3] - window[2]);
+  view.crop_x = narrow<uint>(window[0]);
+  view.crop_y = narrow<uint>(window[2]);
+  view.crop_width = narrow<uint>(window[1] - window[0]);
+  view.crop_height = narrow<uint>(window[3] - window[2]);
 
   const double aspect = camera.frame_aspect_ratio.value_or(static_cast<double>(film.width) / film.height);
   const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
@@ -43,9 +43,9 @@ void lower_camera(const Scene& scene, FlatScene& out) {
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
-  FlatScene flat;
-  lower_camera(scene, flat);
-  const CameraRecord& camera = flat.camera;
+  FlatView view;
+  lower_camera(scene, view);
+  const CameraRecord& camera = view.camera;
   const float* m = camera.world_from_camera;
   // In double from the numbers the device has.
   const glm::dvec3 local(camera.screen_min_x + (x + 0.5) * camera.screen_per_pixel_x,

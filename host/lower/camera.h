@@ -8,10 +8,10 @@
 
 namespace caplet {
 
-/// Fills out.camera and params.width, height and crop_*. The field of view is that of the shorter side of the frame (its aspect
+/// Fills out.camera and view.width, height and crop_*. The field of view is that of the shorter side of the frame (its aspect
 /// is frame_aspect_ratio if given, else that of the image), or that of a screen window's unit. The scene must have passed
 /// validate().
-void lower_camera(const Scene& scene, FlatScene& out);
+void lower_camera(const Scene& scene, FlatView& out);
 
 /// The ray through the middle of pixel (x, y) of the full image, from the top left, and the middle of the lens: world space, unit
 /// direction, t in (0, infinity). What kernels/math/camera.cl makes of it, up to rounding.

@@ -104,9 +104,9 @@ glm::dvec3 environment_direction(bool equal_area, double u, double v) {
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   CHECK_EQ_(image.rgb.size(), 3 * width * height);
-  out.params.environment_width = narrow<uint>(image.width);
-  out.params.environment_height = narrow<uint>(image.height);
-  out.params.environment_square = image.equal_area ? 1 : 0;
+  out.lighting.environment_width = narrow<uint>(image.width);
+  out.lighting.environment_height = narrow<uint>(image.height);
+  out.lighting.environment_square = image.equal_area ? 1 : 0;
   out.environment_texels.resize(4 * width * height);
   out.environment_cdf.resize((height + 1) + height * (width + 1));
 

@@ -20,7 +20,7 @@ struct EnvironmentIntegrals {
   double illuminance = 0;  // of a surface facing +z, in the light's space
 };
 
-/// Fills environment_texels, environment_cdf and params.environment_*. The distribution is constant over a texel's cell and
+/// Fills environment_texels, environment_cdf and lighting.environment_*. The distribution is constant over a texel's cell and
 /// proportional to the integral of the radiance's luminance over it, so it is positive wherever the radiance is. Negative and NaN
 /// values count as 0, infinite ones as the largest float. An image without light has a distribution of zeros.
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out);

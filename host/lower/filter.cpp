@@ -89,10 +89,10 @@ double filter_value(const PixelFilter& filter, double x, double radius) {
   return 0;
 }
 
-void lower_filter(const PixelFilter& filter, FlatScene& out) {
+void lower_filter(const PixelFilter& filter, FlatView& out) {
   out.filter_table.clear();
-  out.params.filter_width = append_axis(filter, filter.radius_x, out.filter_table);
-  out.params.filter_height = append_axis(filter, filter.radius_y, out.filter_table);
+  out.view.filter_width = append_axis(filter, filter.radius_x, out.filter_table);
+  out.view.filter_height = append_axis(filter, filter.radius_y, out.filter_table);
 }
 
 }  // namespace caplet

@@ -108,7 +108,7 @@ class GeometryLowering {
       const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.world_from_part);
       emitters.insert(emitters.end(), more.begin(), more.end());
     }
-    out_.params.root = top.tree.root;
+    out_.world.root = top.tree.root;
     set_bounds(top.tree);
     out_.primitive_count = 0;
     for (const auto& [kind, count] : count_primitives(scene_)) out_.primitive_count += count;
@@ -484,10 +484,10 @@ class GeometryLowering {
   void set_bounds(const EncodedTree& tree) {
     dvec3 low(tree.min[0], tree.min[1], tree.min[2]), high(tree.max[0], tree.max[1], tree.max[2]);
     const dvec3 center = (low + high) * 0.5;
-    out_.params.scene_center_x = static_cast<float>(center.x);
-    out_.params.scene_center_y = static_cast<float>(center.y);
-    out_.params.scene_center_z = static_cast<float>(center.z);
-    out_.params.scene_radius = static_cast<float>(glm::length(high - low) * 0.5);
+    out_.world.center_x = static_cast<float>(center.x);
+    out_.world.center_y = static_cast<float>(center.y);
+    out_.world.center_z = static_cast<float>(center.z);
+    out_.world.radius = static_cast<float>(glm::length(high - low) * 0.5);
   }
 
   const Scene& scene_;

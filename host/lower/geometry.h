@@ -12,7 +12,7 @@
 
 namespace caplet {
 
-/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, params.root and the bounding sphere, and returns the
+/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the bounding sphere, and returns the
 /// emissive primitives in light order. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
 /// becomes an instance of its own tree, shared by all shapes under the same transform.
 std::vector<Emitter> lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out);

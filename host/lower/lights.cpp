@@ -19,7 +19,7 @@ constexpr double pi = std::numbers::pi;
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
  public:
-  LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.params.scene_radius) {}
+  LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.world.radius) {}
 
   void add(const Light& light, std::vector<LightShare>& shares) {
     light_ = &light;
@@ -68,7 +68,7 @@ class LightLowering {
       emit(record, light_constant, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
       return 0;  // found by BSDF sampling
     }
-    if (out_.params.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
+    if (out_.lighting.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
     const EnvironmentIntegrals of = lower_environment(*light.image, out_);
     record.kind = light_image;
     record.spectrum = spectra_.add_illuminant(RgbSpectrum{glm::dvec3(1), light.image->space});
@@ -112,7 +112,7 @@ bool is_infinite(const Light& light) { return std::holds_alternative<InfiniteLig
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out) {
   out.lights.clear();
   out.light_data.clear();
-  out.params.environment_width = out.params.environment_height = out.params.environment_square = 0;
+  out.lighting.environment_width = out.lighting.environment_height = out.lighting.environment_square = 0;
   std::vector<LightShare> shares;
   out.lights.reserve(emitters.size() + scene.lights.size());
   shares.reserve(emitters.size() + scene.lights.size());
@@ -139,14 +139,14 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   LightLowering lowering(spectra, out);
   for (const Light& light : scene.lights)
     if (!is_infinite(light)) lowering.add(light, shares);
-  out.params.infinite_begin = narrow<uint>(out.lights.size());
+  out.lighting.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
     if (is_infinite(light)) lowering.add(light, shares);
-  out.params.light_count = narrow<uint>(out.lights.size());
+  out.lighting.light_count = narrow<uint>(out.lights.size());
   out.light_alias = light_table(shares);
-  out.params.sampled_light_count = 0;
+  out.lighting.sampled_light_count = 0;
   for (const AliasRecord& row : out.light_alias)
-    if (row.probability > 0) ++out.params.sampled_light_count;
+    if (row.probability > 0) ++out.lighting.sampled_light_count;
 }
 
 }  // namespace caplet

@@ -24,9 +24,9 @@ struct Emitter {
   double ball[4];  // centre and radius, world
 };
 
-/// Fills lights, light_data, light_alias, environment_* and the light fields of params. Light i is emitter i for i <
+/// Fills lights, light_data, light_alias, environment_* and the record `lighting`. Light i is emitter i for i <
 /// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. They are selected by light_table.h;
-/// constant infinite lights are never selected, since BSDF sampling finds them as well. `params.scene_*` must be set. Throws
+/// constant infinite lights are never selected, since BSDF sampling finds them as well. `world` must be set. Throws
 /// InputError for more than one image light.
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out);
 

@@ -54,6 +54,10 @@ template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
   return values.size() * sizeof(T);
 }
+template <class T>
+std::uint64_t bytes_of(const T& record) {
+  return sizeof(record);
+}
 
 }  // namespace
 
@@ -70,10 +74,15 @@ bool FlatScene::basic_shapes() const {
 }
 
 std::uint64_t FlatScene::device_bytes() const {
-  return geometry_bytes() + sizeof(params) + sizeof(camera) + bytes_of(geometries) + bytes_of(surface_materials) +
-         bytes_of(materials) + bytes_of(spectra) + bytes_of(spectrum_tables) + bytes_of(lights) + bytes_of(light_data) +
-         bytes_of(light_alias) + bytes_of(environment_texels) + bytes_of(environment_cdf) + bytes_of(observer) +
-         bytes_of(wavelength_table) + bytes_of(filter_table);
+  std::uint64_t bytes = 0;
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) bytes += bytes_of(name);
+  SCENE_GROUPS
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+  return bytes;
 }
 
 FlatScene lower(const Scene& scene) {
@@ -83,11 +92,17 @@ FlatScene lower(const Scene& scene) {
   for (const Material& material : scene.materials) out.materials.push_back(std::visit(MaterialLowering(spectra), material.model));
   const std::vector<Emitter> emitters = lower_geometry(scene, spectra, out);
   lower_lights(scene, emitters, spectra, out);
+  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+FlatView lower_view(const Scene& scene) {
+  FlatView out;
   lower_camera(scene, out);
   lower_filter(scene.filter, out);
-  out.params.seed = scene.sampler.seed;
-  out.params.max_depth = narrow<uint>(scene.integrator.max_depth);
-  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.view.seed = scene.sampler.seed;
+  out.view.max_depth = narrow<uint>(scene.integrator.max_depth);
+  std::ranges::transform(rgb_from_xyz(scene.film.space), out.view.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
   return out;
 }
 

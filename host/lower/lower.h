@@ -8,26 +8,21 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "shared/groups.h"
 #include "shared/records.h"
 
 namespace caplet {
 
-/// Everything a device needs, by the names of buffers.def.
+// Members by the names and types of the groups' buffers.
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) access(type) name{};
+#define ONE(type) type
+#define IN(type) std::vector<type>
+
+/// Everything that a device needs of a scene, whoever looks at it.
 struct FlatScene {
-  ParamsRecord params{};
-  CameraRecord camera{};
-  std::vector<float> nodes, leaves;
-  std::vector<InstanceRecord> instances;
-  std::vector<GeometryRecord> geometries;
-  std::vector<uint> primitive_geometry, surface_materials, mesh_indices;
-  std::vector<float> mesh_normals, mesh_uvs;
-  std::vector<MaterialRecord> materials;
-  std::vector<SpectrumRecord> spectra;
-  std::vector<float> spectrum_tables;
-  std::vector<LightRecord> lights;
-  std::vector<float> light_data;
-  std::vector<AliasRecord> light_alias;
-  std::vector<float> environment_texels, environment_cdf, observer, wavelength_table, filter_table;
+  SCENE_GROUPS
 
   // For `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;
@@ -39,7 +34,21 @@ struct FlatScene {
   std::uint64_t geometry_bytes() const;  // nodes, leaves, primitive_geometry, instances, mesh arrays
 };
 
+/// What is rendered of a scene: its camera, film and sampler.
+struct FlatView {
+  VIEW_GROUPS
+};
+
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+#undef ONE
+#undef IN
+
 /// Throws InputError when a limit of the layout is exceeded (before memory is allocated).
 FlatScene lower(const Scene& scene);
+
+/// Cheap: nothing of the scene but its camera, film, filter, sampler and integrator is looked at.
+FlatView lower_view(const Scene& scene);
 
 }  // namespace caplet

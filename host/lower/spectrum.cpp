@@ -13,9 +13,9 @@ namespace caplet {
 
 namespace {
 
-/// Wavelengths at u = i / 1024: the inverse of the CDF of the sampling density.
+/// Wavelengths at u = i / CAPLET_WAVELENGTH_CELLS: the inverse of the CDF of the sampling density.
 std::vector<float> make_wavelength_table() {
-  constexpr std::size_t cells = 1024;
+  constexpr std::size_t cells = CAPLET_WAVELENGTH_CELLS;
   const SpectrumSamples density = wavelength_density();
   std::array<double, CAPLET_LAMBDA_COUNT> cdf;
   cdf[0] = 0;
@@ -85,8 +85,7 @@ SpectrumTable::SpectrumTable(FlatScene& out, ColorSpace space) : out_(out), spac
     out_.observer.push_back(0);
   }
   out_.wavelength_table = make_wavelength_table();
-  out_.params.illuminant_table = illuminant_table(space_);
-  std::ranges::transform(rgb_from_xyz(space_), out_.params.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
+  out_.world.illuminant_table = illuminant_table(space_);
 }
 
 std::uint32_t SpectrumTable::illuminant_table(ColorSpace space) {

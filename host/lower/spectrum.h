@@ -18,8 +18,7 @@ namespace caplet {
 /// Appends spectra to a FlatScene, each distinct one once.
 class SpectrumTable {
  public:
-  /// `space` is the film's. Also fills observer, wavelength_table, the space's illuminant table (params.illuminant_table) and
-  /// params.rgb_from_xyz.
+  /// `space` is the film's. Also fills observer, wavelength_table, and the space's illuminant table (world.illuminant_table).
   SpectrumTable(FlatScene& out, ColorSpace space);
 
   /// Index into FlatScene::spectra. RGB is uplifted by a sigmoid polynomial; values are clamped to [0, 1].

@@ -9,14 +9,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "base/check.h"
 #include "base/log.h"
 #include "device/self_test.h"
 #include "render/known_rays.h"
 #include "render/query.h"
-#include "render/stages.h"
+#include "render/device_scene.h"
 
 namespace caplet {
 
@@ -116,13 +118,39 @@ Seen seen_of(const PickRecord& pick) {
   return {std::isfinite(pick.t), static_cast<double>(pick.t), pick.object, pick.leaving != 0};
 }
 
+/// What `extend` and `connect` say of rays.
+struct TracedPaths {
+  std::vector<HitRecord> hits;  // of each ray
+  std::vector<bool> free;       // each shadow ray
+};
+
+TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span<const RayRecord> shadows) {
+  const std::size_t paths = std::max(rays.size(), shadows.size());
+  scene.kernels().compile(std::array{Stage::extend, Stage::connect}, paths);
+  PathBuffers buffers(scene.device(), paths, 1);
+  std::vector<uint> all(paths);
+  std::iota(all.begin(), all.end(), 0u);
+  buffers.rays.path_ray.write(rays);
+  buffers.queues.queue.write(std::span(all).first(rays.size()));
+  buffers.shadows.path_shadow.write(shadows);
+  buffers.shadows.queue_shadow.write(std::span(all).first(shadows.size()));
+  buffers.shadows.path_shadow_radiance.write(std::vector<float4>(shadows.size(), {1, 1, 1, 1}));
+  buffers.radiance.path_radiance.write(std::vector<float4>(shadows.size(), {0, 0, 0, 0}));
+  Bindings bindings = scene.bindings();
+  buffers.bind(bindings);
+  scene.kernels().run(Stage::extend, bindings, rays.size());
+  scene.kernels().run(Stage::connect, bindings, shadows.size());
+  TracedPaths out;
+  out.hits = buffers.rays.path_hit.read();
+  out.hits.resize(rays.size());
+  const std::vector<float4> seen = buffers.radiance.path_radiance.read();
+  for (std::size_t i = 0; i < shadows.size(); ++i) out.free.push_back(seen[i].x == 1.0f);
+  return out;
+}
+
 void check_render(const KnownScene& known, const FlatScene& flat, const Device& device, Tally& tally) {
   const std::size_t count = known.rays.size();
-  StateSize size;
-  size.paths = 2 * count;
-  size.pixels = 1;
-  size.sort_bins = 1;
-  Stages stages(device, flat, size, stage_options(flat, device));
+  DeviceScene scene(device, flat);
   // Every ray just before its first crossing and just behind it; where there is none, twice to its end.
   std::vector<RayRecord> rays, shadows;
   for (const KnownRay& ray : known.rays) {
@@ -132,9 +160,7 @@ void check_render(const KnownScene& known, const FlatScene& flat, const Device& 
       if (!ray.crossings.empty()) shadows.back().t_max = static_cast<float>(share * ray.crossings.front().t);
     }
   }
-  stages.compile(std::array{Stage::extend, Stage::connect}, size.paths);
-  stages.set_params(flat.params);
-  const TracedPaths traced = stages.trace(rays, shadows);
+  const TracedPaths traced = trace(scene, rays, shadows);
   for (std::size_t i = 0; i < count; ++i) {
     const KnownRay& ray = known.rays[i];
     if (const std::string wrong = difference(ray, seen_of(flat, traced.hits[i]), 0); !wrong.empty())
@@ -180,9 +206,9 @@ std::string key_of(const Trial& trial) {
 std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
   std::vector<std::string> out{key_of(trial), name_of(device.encoding()), kernel_source("probe/self_test.cl"),
                                kernel_source("probe/layout.cl")};
-  if (trial.render) out.insert(out.end(), {kernel_source("extend"), kernel_source("connect")});
-  if (trial.nearest) out.push_back(kernel_source("pick"));
-  if (trial.lists) out.insert(out.end(), {kernel_source("pick_all"), kernel_source("pick_list")});
+  if (trial.render) out.insert(out.end(), {stage_source(Stage::extend), stage_source(Stage::connect)});
+  if (trial.nearest) out.push_back(stage_source(Stage::pick));
+  if (trial.lists) out.insert(out.end(), {stage_source(Stage::pick_all), stage_source(Stage::pick_list)});
   return out;
 }
 

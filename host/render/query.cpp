@@ -20,23 +20,48 @@ std::size_t chosen(std::size_t wanted, std::size_t otherwise) { return wanted ? 
 
 }  // namespace
 
+Query::Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options)
+    : scene_(std::move(scene)),
+      batch_rays_(chosen(options.batch_rays, scene_->device().is_cpu() ? cpu_batch_rays : gpu_batch_rays)),
+      batch_hits_(chosen(options.batch_hits, batch_hits)) {
+  query_.query = Buffer<QueryRecord>(scene_->device(), 1);
+}
+
+Query::Query(DeviceScene& scene, const QueryOptions& options)
+    : Query(std::shared_ptr<DeviceScene>(std::shared_ptr<void>(), &scene), options) {}
+
 Query::Query(const FlatScene& scene, const Device& device, const QueryOptions& options)
-    : params_(scene.params),
-      batch_rays_(chosen(options.batch_rays, device.is_cpu() ? cpu_batch_rays : gpu_batch_rays)),
-      batch_hits_(chosen(options.batch_hits, batch_hits)),
-      stages_(device, scene, {}, stage_options(scene, device)) {}
+    : Query(std::make_shared<DeviceScene>(device, scene), options) {}
+
+void Query::reserve(std::size_t rays, std::size_t hits, std::size_t picks) {
+  const Device& device = scene_->device();
+  if (rays > query_.query_rays.size()) query_.query_rays = Buffer<RayRecord>(device, rays);
+  if (hits > crossings_.query_hits.size()) crossings_.query_hits = Buffer<HitRecord>(device, hits);
+  if (hits > 0 && rays > crossings_.query_counts.size()) {
+    crossings_.query_counts = Buffer<uint>(device, rays);
+    crossings_.query_begin = Buffer<uint>(device, rays);
+  }
+  if (picks > picks_.picks.size()) picks_.picks = Buffer<PickRecord>(device, picks);
+}
+
+Bindings Query::bindings() const {
+  Bindings out = scene_->bindings();
+  out.query = &query_;
+  out.crossings = &crossings_;
+  out.picks = &picks_;
+  return out;
+}
 
 std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays) {
   const std::size_t batch = std::min(batch_rays_, rays.size());
-  stages_.compile(std::array{Stage::pick}, batch_rays_);
-  stages_.reserve_query(batch, 0, batch);
-  stages_.set_params(params_);
+  scene_->kernels().compile(std::array{Stage::pick}, batch_rays_);
+  reserve(batch, 0, batch);
   std::vector<PickRecord> out(rays.size());
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     const std::size_t count = std::min(batch, rays.size() - first);
-    stages_.set_query_rays(rays.subspan(first, count));
-    stages_.run(Stage::pick, count);
-    stages_.read_picks(std::span(out).subspan(first, count));
+    query_.query_rays.write(rays.subspan(first, count));
+    scene_->kernels().run(Stage::pick, bindings(), count);
+    picks_.picks.RawBuffer::read(&out[first], 0, count * sizeof(PickRecord));
   }
   return out;
 }
@@ -45,18 +70,19 @@ HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
   CHECK_LE_(std::size_t{1}, capacity);
   CHECK_LE_(capacity, max_query_capacity);
   const std::size_t batch = std::min(std::clamp<std::size_t>(batch_hits_ / capacity, 1, batch_rays_), rays.size());
-  stages_.compile(std::array{Stage::pick_all, Stage::pick_list}, batch_rays_);
-  params_.query_capacity = narrow<uint>(capacity);
-  stages_.set_params(params_);
+  scene_->kernels().compile(std::array{Stage::pick_all, Stage::pick_list}, batch_rays_);
+  QueryRecord record{};
+  record.capacity = narrow<uint>(capacity);
+  query_.query.write({&record, 1});
   HitLists out;
   out.begin.push_back(0);
   std::vector<uint> counts(batch), begin(batch);
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     const std::size_t count = std::min(batch, rays.size() - first);
-    stages_.reserve_query(batch, batch * capacity, 0);
-    stages_.set_query_rays(rays.subspan(first, count));
-    stages_.run(Stage::pick_all, count);
-    stages_.read_query_counts(std::span(counts).first(count));
+    reserve(batch, batch * capacity, 0);
+    query_.query_rays.write(rays.subspan(first, count));
+    scene_->kernels().run(Stage::pick_all, bindings(), count);
+    crossings_.query_counts.RawBuffer::read(counts.data(), 0, count * sizeof(uint));
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       begin[i] = narrow<uint>(kept);
@@ -65,11 +91,11 @@ HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
       out.begin.push_back(out.crossings.size() + kept);
     }
     if (kept == 0) continue;
-    stages_.reserve_query(batch, batch * capacity, std::bit_ceil(kept));
-    stages_.set_query_begin(std::span(begin).first(count));
-    stages_.run(Stage::pick_list, count);
+    reserve(batch, batch * capacity, std::bit_ceil(kept));
+    crossings_.query_begin.write(std::span(begin).first(count));
+    scene_->kernels().run(Stage::pick_list, bindings(), count);
     out.crossings.resize(out.crossings.size() + kept);
-    stages_.read_picks(std::span(out.crossings).last(kept));
+    picks_.picks.RawBuffer::read(&out.crossings[out.crossings.size() - kept], 0, kept * sizeof(PickRecord));
   }
   return out;
 }

@@ -4,13 +4,13 @@
 // Questions to a lowered scene: what do these rays hit?
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "device/device.h"
 #include "lower/lower.h"
-#include "render/stages.h"
+#include "render/device_scene.h"
 
 namespace caplet {
 
@@ -29,11 +29,14 @@ struct HitLists {
   std::vector<std::size_t> overflowed;  // rays with more crossings than the capacity, whose lists are therefore not complete
 };
 
-/// Holds the scene on the device. Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not
-/// finite or have no direction miss. Kernels are compiled at the first question of their kind. What a query needs on the device
-/// does not grow with the number of rays. Throws RunError.
+/// Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not finite or have no direction miss.
+/// Kernels are compiled at the first question of their kind. What a query needs on the device does not grow with the number of
+/// rays. Throws RunError.
 class Query {
  public:
+  /// Asks `scene`, which must outlive this.
+  explicit Query(DeviceScene& scene, const QueryOptions& options = {});
+  /// With the scene on the device for this query alone.
   Query(const FlatScene& scene, const Device& device, const QueryOptions& options = {});
 
   /// The nearest crossing of each ray; t is INFINITY where it misses.
@@ -41,12 +44,19 @@ class Query {
   /// Every crossing of each ray, the nearest `capacity` (1 to max_query_capacity) where there are more.
   HitLists all(std::span<const RayRecord> rays, std::size_t capacity);
 
-  double compile_seconds() const { return stages_.compile_seconds(); }
+  double compile_seconds() const { return scene_->kernels().compile_seconds(); }
 
  private:
-  ParamsRecord params_;
+  Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options);
+  /// Makes room; what is too small loses its contents.
+  void reserve(std::size_t rays, std::size_t hits, std::size_t picks);
+  Bindings bindings() const;
+
+  std::shared_ptr<DeviceScene> scene_;  // its own, or another's that it does not delete
   std::size_t batch_rays_, batch_hits_;
-  Stages stages_;
+  QueryBuffers query_;
+  CrossingsBuffers crossings_;
+  PicksBuffers picks_;
 };
 
 }  // namespace caplet

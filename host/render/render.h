@@ -39,10 +39,7 @@ struct RenderResult {
 };
 
 /// Renders pass by pass; stops after the pass in which `interrupt_requested()` (base) became true. Throws RunError.
-RenderResult render(const FlatScene& scene, const Device& device, const RenderOptions& options,
+RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
-
-/// Bytes of the state of a full batch of paths on a CPU or another device (path_state.def; smaller renders take smaller batches).
-std::uint64_t batch_bytes(bool cpu);
 
 }  // namespace caplet

@@ -221,9 +221,9 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
 
 std::vector<HeatPixel> heatmap(const Scene& scene, const std::vector<Device>& devices) {
   SceneCheck check(scene, {devices.front()});
-  FlatScene frame;
+  FlatView frame;
   lower_camera(scene, frame);
-  const ParamsRecord& p = frame.params;
+  const ViewRecord& p = frame.view;
   std::vector<RayRecord> rays;
   for (uint y = 0; y < p.crop_height; ++y)
     for (uint x = 0; x < p.crop_width; ++x)

@@ -10,12 +10,12 @@
 #include "bsdf/conductor.cl"
 #include "bsdf/dielectric.cl"
 #include "bsdf/diffuse.cl"
-#include "globals.cl"
+#include "groups.cl"
 #include "math/spectrum.cl"
 
 // Material number `material` at four wavelengths (nm).
-static inline Bsdf bsdf_make(const Globals* g, uint material, float4 lambda) {
-  __global const MaterialRecord* record = g->materials + material;
+static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, float4 lambda) {
+  __global const MaterialRecord* record = materials->materials + material;
   Bsdf b;
   b.kind = record->kind;
   b.flags = record->flags;
@@ -28,15 +28,15 @@ static inline Bsdf bsdf_make(const Globals* g, uint material, float4 lambda) {
   }
   switch (b.kind) {
     case material_diffuse:
-      b.reflectance = spectrum_eval(g, record->reflectance, lambda);
+      b.reflectance = spectrum_eval(spectra, record->reflectance, lambda);
       break;
     case material_conductor:
       // Beyond 1e4 the reflectance is 1 to 4e-4, and fourth powers stay finite.
-      b.eta = clamp(spectrum_eval(g, record->eta, lambda), 0.0f, 1e4f);
-      b.k = clamp(spectrum_eval(g, record->k, lambda), 0.0f, 1e4f);
+      b.eta = clamp(spectrum_eval(spectra, record->eta, lambda), 0.0f, 1e4f);
+      b.k = clamp(spectrum_eval(spectra, record->k, lambda), 0.0f, 1e4f);
       break;
     case material_dielectric:
-      b.eta = clamp(spectrum_eval(g, record->eta, lambda), 1e-2f, 1e2f);
+      b.eta = clamp(spectrum_eval(spectra, record->eta, lambda), 1e-2f, 1e2f);
       break;
   }
   return b;

@@ -5,7 +5,7 @@
 #ifndef CAPLET_LIGHTS_AREA_CL
 #define CAPLET_LIGHTS_AREA_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "lights/ball.cl"
 #include "lights/cylinder.cl"
 #include "lights/round_cone.cl"
@@ -26,8 +26,8 @@ typedef struct {
 } AreaSample;
 
 // The primitive's data: datum j at [8 * j] (shared/shapes.def).
-static inline __global const float* area_data(const Globals* g, __global const LightRecord* light) {
-  return g->leaves + light->slot + 8u;
+static inline __global const float* area_data(const Tree* tree, __global const LightRecord* light) {
+  return tree->leaves + light->slot + 8u;
 }
 static inline float3 area_point(__global const float* data, int j) {
   return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]);
@@ -46,11 +46,11 @@ static inline RoundCone area_round_cone(uint shape, __global const float* data) 
 }
 
 // World-space corners of a triangle light, as seen from p.
-static inline TriangleView area_triangle(const Globals* g, __global const LightRecord* light, __global const float* data,
+static inline TriangleView area_triangle(const Tree* tree, __global const LightRecord* light, __global const float* data,
                                          float3 p) {
   float3 v0 = area_point(data, 0), v1 = area_point(data, 3), v2 = area_point(data, 6);
   if (light->instance != CAPLET_NONE) {
-    __global const float* m = g->instances[light->instance].world_from_object;
+    __global const float* m = tree->instances[light->instance].world_from_object;
     v0 = transform_point(m, v0);
     v1 = transform_point(m, v1);
     v2 = transform_point(m, v2);
@@ -77,11 +77,11 @@ static inline float area_magnitude(uint shape, __global const float* data) {
 
 // Bound on the distance along the normal between a sampled point and the surface as a shadow ray from p meets it: some eight
 // roundings each of the sampling and of the traversal, of the numbers they go through.
-static inline float area_error(const Globals* g, __global const LightRecord* light, float magnitude, float3 x, float3 p) {
+static inline float area_error(const Tree* tree, __global const LightRecord* light, float magnitude, float3 x, float3 p) {
   float world = magnitude;
   if (light->instance != CAPLET_NONE) {
-    __global const float* to_world = g->instances[light->instance].world_from_object;
-    __global const float* to_object = g->instances[light->instance].object_from_world;
+    __global const float* to_world = tree->instances[light->instance].world_from_object;
+    __global const float* to_object = tree->instances[light->instance].object_from_world;
     const float3 there = transform_magnitude(to_world, (float3)(magnitude));
     const float3 back = transform_magnitude(to_object, fmax(there, fabs(p)));
     world = norm1(transform_magnitude(to_world, fmax(back, (float3)(magnitude))));
@@ -90,9 +90,9 @@ static inline float area_error(const Globals* g, __global const LightRecord* lig
 }
 
 // Samples primitive light `light` as seen from p: 0 when nothing of it that emits and that rays see ("onesided") faces p.
-static inline int area_sample(const Globals* g, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
-  __global const GeometryRecord* geometry = g->geometries + light->geometry;
-  __global const float* data = area_data(g, light);
+static inline int area_sample(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
+  __global const GeometryRecord* geometry = scene->surfaces.geometries + light->geometry;
+  __global const float* data = area_data(&scene->tree, light);
   const uint shape = geometry->shape;
   const int both = (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0;
   const int flip = (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
@@ -102,16 +102,16 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
 
 #ifndef CAPLET_BASIC_SHAPES
   if (light->data != CAPLET_NONE) {
-    __global const float* ball = g->light_data + light->data;
+    __global const float* ball = scene->lights.light_data + light->data;
     const float3 wi = ball_sample(ball, p, u);
     HitRecord hit;
-    if (!primitive_crossing(g, light->slot, light->instance, p, wi, &hit)) return 0;
+    if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit)) return 0;
     const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
-    const Surface found = surface_at(g, &ray, &hit);
+    const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
     if (found.light == CAPLET_NONE || (!both && !(dot(found.ng, wi) < 0.0f))) return 0;
     s->p = found.p;
     s->n = found.ng;
-    s->error = area_error(g, light, norm1(load3(ball)) + ball[3], found.p, p);
+    s->error = area_error(&scene->tree, light, norm1(load3(ball)) + ball[3], found.p, p);
     s->pdf = fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
     return 1;
   }
@@ -125,9 +125,9 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
     s->p = area_point(data, 0) + s->n * data[24];
     s->pdf = 1.0f / (2.0f * CAPLET_PI * cone);
   } else if (shape == shape_triangle) {
-    const TriangleView view = area_triangle(g, light, data, p);
+    const TriangleView view = area_triangle(&scene->tree, light, data, p);
     if (!(view.area > 0.0f)) return 0;
-    const int mirrored = placed && (g->instances[light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
+    const int mirrored = placed && (scene->tree.instances[light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
     s->n = view.cross / (2.0f * view.area);
     if (flip != mirrored) s->n = -s->n;
     if (!both && !(dot(s->n, view.v0) < 0.0f)) return 0;
@@ -140,7 +140,7 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
       per_area = pdf;
   } else {
     float3 x, n;
-    const float3 q = placed ? transform_point(g->instances[light->instance].object_from_world, p) : p;
+    const float3 q = placed ? transform_point(scene->tree.instances[light->instance].object_from_world, p) : p;
     if (shape == shape_disk) {
       const float3 center = area_point(data, 0);
       n = area_point(data, 3);
@@ -152,7 +152,7 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
       per_area = CAPLET_INV_PI / sqr(data[48]);
 #ifndef CAPLET_BASIC_SHAPES
     } else if (shape == shape_cylinder) {
-      per_area = cylinder_sample(data, cylinder_areas(g, geometry, data), u, &x, &n);
+      per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, geometry, data), u, &x, &n);
       if (!(per_area > 0.0f)) return 0;
       if (flip) n = -n;
 #endif
@@ -165,7 +165,7 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
       if (flip) n = -n;
     }
     if (placed) {
-      __global const InstanceRecord* instance = g->instances + light->instance;
+      __global const InstanceRecord* instance = scene->tree.instances + light->instance;
       per_area /= area_scale(instance, n);
       x = transform_point(instance->world_from_object, x);
       n = unit_or(transform_transposed(instance->object_from_world, n), n);
@@ -182,20 +182,20 @@ static inline int area_sample(const Globals* g, __global const LightRecord* ligh
   if (placed) {
     // Before ReverseOrientation a ray enters against the normal.
     const uint unseen = (facing > 0.0f) != flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
-    if (g->instances[light->instance].flags & unseen) return 0;
+    if (scene->tree.instances[light->instance].flags & unseen) return 0;
   }
   if (per_area > 0.0f) s->pdf = per_area * distance_squared / fabs(facing);
-  s->error = area_error(g, light, area_magnitude(shape, data), s->p, p);
+  s->error = area_error(&scene->tree, light, area_magnitude(shape, data), s->p, p);
   s->pdf = fmin(s->pdf, CAPLET_MAX_DENSITY);
   return s->pdf > 0.0f;
 }
 
 // Solid-angle density that area_sample has from p for the direction wi, which meets the light at x with world normal n.
-static inline float area_pdf(const Globals* g, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
-  const uint shape = g->geometries[light->geometry].shape;
-  __global const float* data = area_data(g, light);
+static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
+  const uint shape = scene->surfaces.geometries[light->geometry].shape;
+  __global const float* data = area_data(&scene->tree, light);
 #ifndef CAPLET_BASIC_SHAPES
-  if (light->data != CAPLET_NONE) return fmin(ball_pdf(g->light_data + light->data, p), CAPLET_MAX_DENSITY);
+  if (light->data != CAPLET_NONE) return fmin(ball_pdf(scene->lights.light_data + light->data, p), CAPLET_MAX_DENSITY);
 #endif
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) return fmin(1.0f / (2.0f * CAPLET_PI * cone), CAPLET_MAX_DENSITY);
@@ -203,7 +203,7 @@ static inline float area_pdf(const Globals* g, __global const LightRecord* light
   const float facing = fabs(dot(n, wi));
   float per_area;
   if (shape == shape_triangle) {
-    const TriangleView view = area_triangle(g, light, data, p);
+    const TriangleView view = area_triangle(&scene->tree, light, data, p);
     if (view.solid_angle > 0.0f) return 1.0f / view.solid_angle;
     per_area = 1.0f / view.area;
   } else {
@@ -211,7 +211,7 @@ static inline float area_pdf(const Globals* g, __global const LightRecord* light
     float3 object_n = n;
     float3 q = p, y = x;
     if (placed) {
-      __global const InstanceRecord* instance = g->instances + light->instance;
+      __global const InstanceRecord* instance = scene->tree.instances + light->instance;
       q = transform_point(instance->object_from_world, p);
       y = transform_point(instance->object_from_world, x);
       object_n = unit_or(transform_transposed(instance->world_from_object, n), n);
@@ -220,14 +220,14 @@ static inline float area_pdf(const Globals* g, __global const LightRecord* light
       per_area = CAPLET_INV_PI / sqr(data[48]);
 #ifndef CAPLET_BASIC_SHAPES
     } else if (shape == shape_cylinder) {
-      per_area = cylinder_density(cylinder_areas(g, g->geometries + light->geometry, data));
+      per_area = cylinder_density(cylinder_areas(&scene->surfaces, scene->surfaces.geometries + light->geometry, data));
 #endif
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);
       per_area = round_cone_density(&k, &view, y);
     }
-    if (placed) per_area /= area_scale(g->instances + light->instance, object_n);
+    if (placed) per_area /= area_scale(scene->tree.instances + light->instance, object_n);
   }
   return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
 }

@@ -7,7 +7,7 @@
 #ifndef CAPLET_LIGHTS_BALL_CL
 #define CAPLET_LIGHTS_BALL_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "lights/sphere.cl"
 #include "math/vector.cl"
 #include "shapes/shapes.cl"
@@ -30,23 +30,23 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
 }
 
 // The first crossing that a ray sees of the primitive at `slot`, from p along wi; 0 when there is none.
-static inline int primitive_crossing(const Globals* g, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
-  const GeometryRecord geometry = g->geometries[g->primitive_geometry[as_uint(g->leaves[slot])]];
+static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
+  const GeometryRecord geometry = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
   float3 o = p, d = wi;
   if (instance != CAPLET_NONE) {
-    o = transform_point(g->instances[instance].object_from_world, p);
-    d = transform_vector(g->instances[instance].object_from_world, wi);
+    o = transform_point(tree->instances[instance].object_from_world, p);
+    d = transform_vector(tree->instances[instance].object_from_world, wi);
   }
-  ShapeRay ray = shape_ray(o, d, 0.0f, g->leaves);
+  ShapeRay ray = shape_ray(o, d, 0.0f, tree->leaves);
   if (instance != CAPLET_NONE) {
     // Every shape that is sampled here looks for the first crossing of a side that is seen.
-    if (g->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
-    if (g->instances[instance].flags & CAPLET_INSTANCE_NO_LEAVING) ray.sees_leaving = 0;
+    if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
+    if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_LEAVING) ray.sees_leaving = 0;
   }
   const uint lane = slot & 7u;
   real t;
   real_mask side;
-  const real_mask found = shape_hit(geometry.shape, &ray, g->leaves + (slot - lane), lane, &t, &side);
+  const real_mask found = shape_hit(geometry.shape, &ray, tree->leaves + (slot - lane), lane, &t, &side);
   float ts[CAPLET_REAL_WIDTH];
   int sides[CAPLET_REAL_WIDTH];
   real_store(t, ts);

@@ -5,18 +5,18 @@
 #ifndef CAPLET_LIGHTS_CYLINDER_CL
 #define CAPLET_LIGHTS_CYLINDER_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "math/vector.cl"
 #include "shapes/surface_local.cl"
 
 // Areas of the side and of the ends that emit. data: the primitive's (shared/shapes.def).
-static inline float3 cylinder_areas(const Globals* g, __global const GeometryRecord* geometry, __global const float* data) {
+static inline float3 cylinder_areas(const Surfaces* surfaces, __global const GeometryRecord* geometry, __global const float* data) {
   const float r = data[48];
   float3 area = (float3)(2.0f * CAPLET_PI * r * length(data3(data, 3) - data3(data, 0)),
                          data[56] == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r,
                          data[64] == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r);
   if (geometry->surface_begin == CAPLET_NONE) return area;
-  __global const uint* rows = g->surface_materials + geometry->surface_begin;
+  __global const uint* rows = surfaces->surface_materials + geometry->surface_begin;
   if (rows[0] & CAPLET_SURFACE_DARK) area.x = 0.0f;
   if (rows[1] & CAPLET_SURFACE_DARK) area.y = 0.0f;
   if (rows[2] & CAPLET_SURFACE_DARK) area.z = 0.0f;

@@ -5,7 +5,7 @@
 #ifndef CAPLET_LIGHTS_ENVIRONMENT_CL
 #define CAPLET_LIGHTS_ENVIRONMENT_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "math/spectrum.cl"
 #include "math/vector.cl"
 
@@ -47,9 +47,9 @@ static inline float2 sphere_to_latlong(float3 d, float* sine) {
 
 // The texel at (x, y), each at most one beyond the image: around in longitude, the pole's row again in latitude; over the folded
 // edges of the octahedron.
-static inline float4 environment_texel(const Globals* g, int x, int y) {
-  const int width = (int)g->params->environment_width, height = (int)g->params->environment_height;
-  if (g->params->environment_square) {
+static inline float4 environment_texel(const Lights* lights, int x, int y) {
+  const int width = (int)lights->lighting->environment_width, height = (int)lights->lighting->environment_height;
+  if (lights->lighting->environment_square) {
     if (x < 0 || x >= width) {
       x = x < 0 ? -1 - x : 2 * width - 1 - x;
       y = height - 1 - y;
@@ -62,19 +62,19 @@ static inline float4 environment_texel(const Globals* g, int x, int y) {
     x = x < 0 ? x + width : x >= width ? x - width : x;
     y = clamp(y, 0, height - 1);
   }
-  return vload4((size_t)y * (size_t)width + (size_t)x, g->environment_texels);
+  return vload4((size_t)y * (size_t)width + (size_t)x, lights->environment_texels);
 }
 
 // Radiance (before the light's scale) at uv of the image, whose colours are under `illuminant` (a table): bilinear between the
 // radiances of texels, which stand at their centres.
-static inline float4 environment_radiance(const Globals* g, __global const float* illuminant, float2 uv, float4 lambda) {
-  const float2 at = uv * (float2)((float)g->params->environment_width, (float)g->params->environment_height) - 0.5f;
+static inline float4 environment_radiance(const Lights* lights, __global const float* illuminant, float2 uv, float4 lambda) {
+  const float2 at = uv * (float2)((float)lights->lighting->environment_width, (float)lights->lighting->environment_height) - 0.5f;
   const float2 low = floor(at), t = at - low;
   const int x = (int)low.x, y = (int)low.y;
-  const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(g, x, y), lambda);
-  const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(g, x + 1, y), lambda);
-  const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(g, x, y + 1), lambda);
-  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(g, x + 1, y + 1), lambda);
+  const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(lights, x, y), lambda);
+  const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(lights, x + 1, y), lambda);
+  const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(lights, x, y + 1), lambda);
+  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(lights, x + 1, y + 1), lambda);
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
 }
 
@@ -91,45 +91,45 @@ static inline uint cdf_cell(__global const float* cdf, uint cells, float u) {
   return low;
 }
 
-static inline __global const float* environment_row(const Globals* g, uint row) {
-  return g->environment_cdf + (g->params->environment_height + 1u) + (size_t)row * (g->params->environment_width + 1u);
+static inline __global const float* environment_row(const Lights* lights, uint row) {
+  return lights->environment_cdf + (lights->lighting->environment_height + 1u) + (size_t)row * (lights->lighting->environment_width + 1u);
 }
 
 // Density over the unit square of the image at cell (column, row).
-static inline float environment_density(const Globals* g, uint column, uint row) {
-  __global const float* conditional = environment_row(g, row);
-  return (g->environment_cdf[row + 1] - g->environment_cdf[row]) * (conditional[column + 1] - conditional[column]) *
-         ((float)g->params->environment_width * (float)g->params->environment_height);
+static inline float environment_density(const Lights* lights, uint column, uint row) {
+  __global const float* conditional = environment_row(lights, row);
+  return (lights->environment_cdf[row + 1] - lights->environment_cdf[row]) * (conditional[column + 1] - conditional[column]) *
+         ((float)lights->lighting->environment_width * (float)lights->lighting->environment_height);
 }
 
-static inline float environment_solid_angle_density(const Globals* g, float per_square, float sine) {
-  if (g->params->environment_square) return per_square * (0.25f * CAPLET_INV_PI);
+static inline float environment_solid_angle_density(const Lights* lights, float per_square, float sine) {
+  if (lights->lighting->environment_square) return per_square * (0.25f * CAPLET_INV_PI);
   return sine > 0.0f ? per_square * (0.5f * CAPLET_INV_PI * CAPLET_INV_PI) / sine : 0.0f;
 }
 
 // Direction in the light's space, its place in the image and its solid-angle density (0: nothing).
-static inline float environment_sample(const Globals* g, float2 u, float3* direction, float2* uv) {
-  const uint width = g->params->environment_width, height = g->params->environment_height;
-  const uint row = cdf_cell(g->environment_cdf, height, u.y);
-  __global const float* conditional = environment_row(g, row);
+static inline float environment_sample(const Lights* lights, float2 u, float3* direction, float2* uv) {
+  const uint width = lights->lighting->environment_width, height = lights->lighting->environment_height;
+  const uint row = cdf_cell(lights->environment_cdf, height, u.y);
+  __global const float* conditional = environment_row(lights, row);
   const uint column = cdf_cell(conditional, width, u.x);
   const float x_begin = conditional[column], x_step = conditional[column + 1] - x_begin;
-  const float y_begin = g->environment_cdf[row], y_step = g->environment_cdf[row + 1] - y_begin;
+  const float y_begin = lights->environment_cdf[row], y_step = lights->environment_cdf[row + 1] - y_begin;
   if (!(x_step > 0.0f && y_step > 0.0f)) return 0.0f;
   *uv = (float2)(((float)column + clamp((u.x - x_begin) / x_step, 0.0f, 1.0f)) / (float)width,
                  ((float)row + clamp((u.y - y_begin) / y_step, 0.0f, 1.0f)) / (float)height);
   float sine = 1.0f;
-  *direction = g->params->environment_square ? square_to_sphere(*uv) : latlong_to_sphere(*uv, &sine);
-  return environment_solid_angle_density(g, environment_density(g, column, row), sine);
+  *direction = lights->lighting->environment_square ? square_to_sphere(*uv) : latlong_to_sphere(*uv, &sine);
+  return environment_solid_angle_density(lights, environment_density(lights, column, row), sine);
 }
 
 // Place of a direction (light's space) in the image, and the density that environment_sample has for it.
-static inline float2 environment_locate(const Globals* g, float3 direction, float* pdf) {
-  const uint width = g->params->environment_width, height = g->params->environment_height;
+static inline float2 environment_locate(const Lights* lights, float3 direction, float* pdf) {
+  const uint width = lights->lighting->environment_width, height = lights->lighting->environment_height;
   float sine = 1.0f;
-  const float2 uv = g->params->environment_square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
+  const float2 uv = lights->lighting->environment_square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
   const uint column = min((uint)(uv.x * (float)width), width - 1u), row = min((uint)(uv.y * (float)height), height - 1u);
-  *pdf = environment_solid_angle_density(g, environment_density(g, column, row), sine);
+  *pdf = environment_solid_angle_density(lights, environment_density(lights, column, row), sine);
   return uv;
 }
 

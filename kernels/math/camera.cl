@@ -5,13 +5,12 @@
 #ifndef CAPLET_MATH_CAMERA_CL
 #define CAPLET_MATH_CAMERA_CL
 
-#include "globals.cl"
 #include "math/vector.cl"
+#include "shared/records.h"
 
-// The ray through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at u_lens in [0, 1)^2.
+// The ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at u_lens in [0, 1)^2.
 // World space, unit direction, t in [0, INFINITY).
-static inline RayRecord camera_ray(const Globals* g, float2 raster, float2 u_lens) {
-  __global const CameraRecord* camera = g->camera;
+static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens) {
   float3 direction = (float3)(camera->screen_min_x + raster.x * camera->screen_per_pixel_x,
                               camera->screen_min_y + raster.y * camera->screen_per_pixel_y, 1.0f);
   float3 origin = (float3)(0.0f);

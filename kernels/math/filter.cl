@@ -6,7 +6,6 @@
 #ifndef CAPLET_MATH_FILTER_CL
 #define CAPLET_MATH_FILTER_CL
 
-#include "globals.cl"
 #include "math/vector.cl"
 
 // t in [0, 1] with density proportional to the line from a at 0 to b at 1 (a, b >= 0, not both 0).
@@ -36,13 +35,12 @@ static inline float filter_axis(__global const float* table, uint cells, float u
   return mix(positions[low], positions[low + 1], sample_linear(within, fabs(a), fabs(b)));
 }
 
-// Offset from the pixel's centre, in pixels, for u in [0, 1)^2; *weight is what the sample counts: 1 for filters that are nowhere
+// Offset from the pixel's centre, in pixels, for u in [0, 1)^2, by a table of width and height cells an axis; *weight is what the sample counts: 1 for filters that are nowhere
 // negative, otherwise plus or minus a constant, 1 on average.
-static inline float2 filter_sample(const Globals* g, float2 u, float* weight) {
-  const uint width = g->params->filter_width, height = g->params->filter_height;
+static inline float2 filter_sample(__global const float* table, uint width, uint height, float2 u, float* weight) {
   *weight = 1.0f;
-  const float x = filter_axis(g->filter_table, width, u.x, weight);
-  const float y = filter_axis(g->filter_table + 3 * (width + 1) + 1, height, u.y, weight);
+  const float x = filter_axis(table, width, u.x, weight);
+  const float y = filter_axis(table + 3 * (width + 1) + 1, height, u.y, weight);
   return (float2)(x, y);
 }
 

@@ -5,10 +5,9 @@
 #ifndef CAPLET_MATH_SPECTRUM_CL
 #define CAPLET_MATH_SPECTRUM_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "math/vector.cl"
-
-#define CAPLET_WAVELENGTH_CELLS 1024
+#include "shared/limits.h"
 
 // Place of a wavelength (nm) in a 1 nm table: the sample before it and the fraction to the next.
 static inline int spectrum_cell(float lambda, float* fraction) {
@@ -36,13 +35,13 @@ static inline float4 sigmoid_polynomial(float c0, float c1, float c2, float4 lam
 }
 
 // Values of spectrum number `spectrum` at four wavelengths (nm).
-static inline float4 spectrum_eval(const Globals* g, uint spectrum, float4 lambda) {
-  __global const SpectrumRecord* s = g->spectra + spectrum;
+static inline float4 spectrum_eval(const Spectra* spectra, uint spectrum, float4 lambda) {
+  __global const SpectrumRecord* s = spectra->spectra + spectrum;
   const uint kind = s->kind;
   if (kind == spectrum_constant) return (float4)(s->scale);
-  if (kind == spectrum_table) return s->scale * spectrum_table_at4(g->spectrum_tables + s->table, lambda);
+  if (kind == spectrum_table) return s->scale * spectrum_table_at4(spectra->spectrum_tables + s->table, lambda);
   const float4 sigmoid = s->scale * sigmoid_polynomial(s->c0, s->c1, s->c2, lambda);
-  if (kind == spectrum_sigmoid_illuminant) return sigmoid * spectrum_table_at4(g->spectrum_tables + s->table, lambda);
+  if (kind == spectrum_sigmoid_illuminant) return sigmoid * spectrum_table_at4(spectra->spectrum_tables + s->table, lambda);
   return sigmoid;
 }
 
@@ -51,45 +50,45 @@ static inline float4 sigmoid_illuminant(__global const float* illuminant, float4
   return texel.w * sigmoid_polynomial(texel.x, texel.y, texel.z, lambda) * spectrum_table_at4(illuminant, lambda);
 }
 
-// One wavelength (nm) from u in [0, 1) and its density (1/nm): the density is constant between the table's entries, so it is
+// One wavelength (nm) from u in [0, 1) and its density (1/nm), by the table Observer.wavelength_table: the density is constant between the table's entries, so it is
 // exactly that of the wavelength returned.
-static inline float wavelength_sample(const Globals* g, float u, float* pdf) {
+static inline float wavelength_sample(__global const float* table, float u, float* pdf) {
   const float x = u * (float)CAPLET_WAVELENGTH_CELLS;
   const int cell = clamp((int)x, 0, CAPLET_WAVELENGTH_CELLS - 1);
-  const float low = g->wavelength_table[cell], step = g->wavelength_table[cell + 1] - low;
+  const float low = table[cell], step = table[cell + 1] - low;
   *pdf = 1.0f / ((float)CAPLET_WAVELENGTH_CELLS * step);
   return low + (x - (float)cell) * step;
 }
 
 // Four stratified wavelengths (u + i/4 mod 1) in nm, and their densities in 1/nm. u in [0, 1).
-static inline float4 wavelengths_sample(const Globals* g, float u, float4* pdf) {
+static inline float4 wavelengths_sample(__global const float* table, float u, float4* pdf) {
   float4 v = u + (float4)(0.0f, 0.25f, 0.5f, 0.75f);
   v -= floor(v);
   float p0, p1, p2, p3;
-  const float4 lambda = (float4)(wavelength_sample(g, v.x, &p0), wavelength_sample(g, v.y, &p1), wavelength_sample(g, v.z, &p2),
-                                 wavelength_sample(g, v.w, &p3));
+  const float4 lambda = (float4)(wavelength_sample(table, v.x, &p0), wavelength_sample(table, v.y, &p1), wavelength_sample(table, v.z, &p2),
+                                 wavelength_sample(table, v.w, &p3));
   *pdf = (float4)(p0, p1, p2, p3);
   return lambda;
 }
 
-static inline float3 observer_at(const Globals* g, float lambda) {
+static inline float3 observer_at(__global const float* observer, float lambda) {
   float fraction;
   const int cell = spectrum_cell(lambda, &fraction);
-  const float4 low = vload4(cell, g->observer), high = vload4(cell + 1, g->observer);
+  const float4 low = vload4(cell, observer), high = vload4(cell + 1, observer);
   return (low + fraction * (high - low)).xyz;
 }
 
-// CIE XYZ: the mean over the four wavelengths of radiance x observer / pdf. Wavelengths of pdf 0 add nothing.
-static inline float3 xyz_from_spectrum(const Globals* g, float4 radiance, float4 lambda, float4 pdf) {
+// CIE XYZ by the table Observer.observer: the mean over the four wavelengths of radiance x observer / pdf. Wavelengths of pdf 0 add nothing.
+static inline float3 xyz_from_spectrum(__global const float* observer, float4 radiance, float4 lambda, float4 pdf) {
   float3 xyz = (float3)(0.0f);
-  if (pdf.x > 0.0f) xyz += observer_at(g, lambda.x) * (radiance.x / pdf.x);
-  if (pdf.y > 0.0f) xyz += observer_at(g, lambda.y) * (radiance.y / pdf.y);
-  if (pdf.z > 0.0f) xyz += observer_at(g, lambda.z) * (radiance.z / pdf.z);
-  if (pdf.w > 0.0f) xyz += observer_at(g, lambda.w) * (radiance.w / pdf.w);
+  if (pdf.x > 0.0f) xyz += observer_at(observer, lambda.x) * (radiance.x / pdf.x);
+  if (pdf.y > 0.0f) xyz += observer_at(observer, lambda.y) * (radiance.y / pdf.y);
+  if (pdf.z > 0.0f) xyz += observer_at(observer, lambda.z) * (radiance.z / pdf.z);
+  if (pdf.w > 0.0f) xyz += observer_at(observer, lambda.w) * (radiance.w / pdf.w);
   return 0.25f * xyz;
 }
 
-// Linear RGB from XYZ by a 3x3 row-major matrix (params->rgb_from_xyz: the film's colour space; host: rgb_from_xyz).
+// Linear RGB from XYZ by a 3x3 row-major matrix (ViewRecord.rgb_from_xyz: the film's colour space; host: rgb_from_xyz).
 static inline float3 rgb_from_xyz(__global const float* m, float3 xyz) {
   return (float3)(dot(load3(m), xyz), dot(load3(m + 3), xyz), dot(load3(m + 6), xyz));
 }

@@ -6,7 +6,7 @@
 #ifndef CAPLET_SHAPES_SURFACE_CL
 #define CAPLET_SHAPES_SURFACE_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "shapes/surface_csg.cl"
 #include "shapes/surface_shapes.cl"
 
@@ -36,30 +36,30 @@ static inline LocalSurface surface_local(const SurfaceQuery* q) {
 }
 
 // The surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
-static inline Surface surface_at(const Globals* g, const RayRecord* ray, const HitRecord* hit) {
+static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
   float3 o = (float3)(ray->ox, ray->oy, ray->oz);
   float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   const int placed = hit->instance != CAPLET_NONE;
   if (placed) {
-    o = transform_point(g->instances[hit->instance].object_from_world, o);
-    d = transform_vector(g->instances[hit->instance].object_from_world, d);
+    o = transform_point(tree->instances[hit->instance].object_from_world, o);
+    d = transform_vector(tree->instances[hit->instance].object_from_world, d);
   }
-  const uint primitive = as_uint(g->leaves[hit->slot]);
-  const uint index = g->primitive_geometry[primitive];
-  const GeometryRecord geometry = g->geometries[index];
+  const uint primitive = as_uint(tree->leaves[hit->slot]);
+  const uint index = surfaces->primitive_geometry[primitive];
+  const GeometryRecord geometry = surfaces->geometries[index];
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
   const SurfaceQuery query = {
-      g,        &geometry, primitive, surface, g->leaves + hit->slot + 8u, o + hit->t * d,
-      backward, geometry.uv_space != CAPLET_NONE ? g->leaves + geometry.uv_space : 0};
+      surfaces, tree->leaves, &geometry, primitive, surface, tree->leaves + hit->slot + 8u, o + hit->t * d,
+      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;
     found.ns = -found.ns;
   }
   if (placed) {
-    __global const InstanceRecord* instance = g->instances + hit->instance;
+    __global const InstanceRecord* instance = tree->instances + hit->instance;
     found = surface_transformed(instance->world_from_object, instance->object_from_world, found);
   }
 
@@ -75,13 +75,13 @@ static inline Surface surface_at(const Globals* g, const RayRecord* ray, const H
   s.primitive = primitive;
   s.surface = surface;
   s.leaving = leaving;
-  const uint base = placed ? g->instances[hit->instance].light_base : 0u;
+  const uint base = placed ? tree->instances[hit->instance].light_base : 0u;
   s.light = s.primitive_light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
                                     ? CAPLET_NONE
                                     : base + geometry.light_offset + (primitive - geometry.primitive_begin);
   s.material = geometry.material;
   if (geometry.surface_begin != CAPLET_NONE) {
-    const uint entry = g->surface_materials[geometry.surface_begin + surface];
+    const uint entry = surfaces->surface_materials[geometry.surface_begin + surface];
     s.material = entry & ~CAPLET_SURFACE_DARK;
     if (entry & CAPLET_SURFACE_DARK) s.light = CAPLET_NONE;
   }

@@ -6,7 +6,7 @@
 #ifndef CAPLET_SHAPES_SURFACE_BILINEAR_CL
 #define CAPLET_SHAPES_SURFACE_BILINEAR_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "shapes/surface_triangle.cl"
 
 // Corners seen from x along `toward` (a unit vector on the normal's side): the (u, v) of the point at x that shows its front. The
@@ -54,7 +54,7 @@ static inline float2 bilinear_parameters(float3 p00, float3 p10, float3 p01, flo
 }
 
 static inline LocalSurface surface_bilinear(const SurfaceQuery* q) {
-  const Globals* g = q->g;
+  const Surfaces* surfaces = q->surfaces;
   const GeometryRecord* geometry = q->geometry;
   const float3 p00 = data3(q->data, 0), p10 = data3(q->data, 3), p01 = data3(q->data, 6), p11 = data3(q->data, 9);
   const float2 at = bilinear_parameters(p00, p10, p01, p11, q->x, q->fallback);
@@ -73,18 +73,18 @@ static inline LocalSurface surface_bilinear(const SurfaceQuery* q) {
   const uint corner = geometry->index_begin + 4u * (q->primitive - geometry->primitive_begin);
   const float4 weight = (float4)((1.0f - u) * (1.0f - v), u * (1.0f - v), (1.0f - u) * v, u * v);
   if (geometry->normal_begin != CAPLET_NONE) {
-    __global const float* normals = g->mesh_normals + geometry->normal_begin;
-    const float3 ns = weight.x * load3(normals + 3u * g->mesh_indices[corner]) +
-                      weight.y * load3(normals + 3u * g->mesh_indices[corner + 1u]) +
-                      weight.z * load3(normals + 3u * g->mesh_indices[corner + 2u]) +
-                      weight.w * load3(normals + 3u * g->mesh_indices[corner + 3u]);
+    __global const float* normals = surfaces->mesh_normals + geometry->normal_begin;
+    const float3 ns = weight.x * load3(normals + 3u * surfaces->mesh_indices[corner]) +
+                      weight.y * load3(normals + 3u * surfaces->mesh_indices[corner + 1u]) +
+                      weight.z * load3(normals + 3u * surfaces->mesh_indices[corner + 2u]) +
+                      weight.w * load3(normals + 3u * surfaces->mesh_indices[corner + 3u]);
     s.ns = unit_or(ns, s.ng);
     if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
   }
   if (geometry->uv_begin != CAPLET_NONE) {
-    __global const float* uvs = g->mesh_uvs + geometry->uv_begin;
-    const float2 uv00 = vload2(g->mesh_indices[corner], uvs), uv10 = vload2(g->mesh_indices[corner + 1u], uvs);
-    const float2 uv01 = vload2(g->mesh_indices[corner + 2u], uvs), uv11 = vload2(g->mesh_indices[corner + 3u], uvs);
+    __global const float* uvs = surfaces->mesh_uvs + geometry->uv_begin;
+    const float2 uv00 = vload2(surfaces->mesh_indices[corner], uvs), uv10 = vload2(surfaces->mesh_indices[corner + 1u], uvs);
+    const float2 uv01 = vload2(surfaces->mesh_indices[corner + 2u], uvs), uv11 = vload2(surfaces->mesh_indices[corner + 3u], uvs);
     s.uv = weight.x * uv00 + weight.y * uv10 + weight.z * uv01 + weight.w * uv11;
     const float2 along_u = (1.0f - v) * (uv10 - uv00) + v * (uv11 - uv01),
                  along_v = (1.0f - u) * (uv01 - uv00) + u * (uv11 - uv10);

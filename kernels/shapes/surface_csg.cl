@@ -17,7 +17,7 @@ typedef struct {
 
 // The operand that surface q->surface belongs to: its shape kind, and what to ask of surface_shape. Layout: csg.cl.
 static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, SurfaceQuery* own) {
-  __global const float* leaves = q->g->leaves;
+  __global const float* leaves = q->leaves;
   __global const float* header = leaves + as_uint(q->data[0]);
   __global const uint* numbers = (__global const uint*)header;
   const uint groups = numbers[4];

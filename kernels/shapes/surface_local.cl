@@ -5,7 +5,7 @@
 #ifndef CAPLET_SHAPES_SURFACE_LOCAL_CL
 #define CAPLET_SHAPES_SURFACE_LOCAL_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "math/vector.cl"
 
 // A point of a shape in the space in which its data is stored (world, or an instance's object space).
@@ -20,7 +20,8 @@ typedef struct {
 
 // What a surface function answers: the point of a shape's surface `surface` nearest to x, in the space its data is stored in.
 typedef struct {
-  const Globals* g;
+  const Surfaces* surfaces;
+  __global const float* leaves;
   const GeometryRecord* geometry;
   uint primitive, surface;
   __global const float* data;  // datum j at [8 * j]

@@ -6,7 +6,7 @@
 #ifndef CAPLET_SHAPES_SURFACE_TRIANGLE_CL
 #define CAPLET_SHAPES_SURFACE_TRIANGLE_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "shapes/surface_local.cl"
 
 // a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
@@ -28,7 +28,7 @@ static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float
 }
 
 static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
-  const Globals* g = q->g;
+  const Surfaces* surfaces = q->surfaces;
   const GeometryRecord* geometry = q->geometry;
   const float3 v0 = data3(q->data, 0);
   const float3 e1 = data3(q->data, 3) - v0, e2 = data3(q->data, 6) - v0;
@@ -53,17 +53,17 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
 
   const uint corner = geometry->index_begin + 3u * (q->primitive - geometry->primitive_begin);
   if (geometry->normal_begin != CAPLET_NONE) {
-    __global const float* normals = g->mesh_normals + geometry->normal_begin;
-    const float3 ns = b0 * load3(normals + 3u * g->mesh_indices[corner]) +
-                      b1 * load3(normals + 3u * g->mesh_indices[corner + 1u]) +
-                      b2 * load3(normals + 3u * g->mesh_indices[corner + 2u]);
+    __global const float* normals = surfaces->mesh_normals + geometry->normal_begin;
+    const float3 ns = b0 * load3(normals + 3u * surfaces->mesh_indices[corner]) +
+                      b1 * load3(normals + 3u * surfaces->mesh_indices[corner + 1u]) +
+                      b2 * load3(normals + 3u * surfaces->mesh_indices[corner + 2u]);
     s.ns = unit_or(ns, s.ng);
     if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
   }
   if (geometry->uv_begin != CAPLET_NONE) {
-    __global const float* uvs = g->mesh_uvs + geometry->uv_begin;
-    const float2 uv0 = vload2(g->mesh_indices[corner], uvs);
-    const float2 uv1 = vload2(g->mesh_indices[corner + 1u], uvs), uv2 = vload2(g->mesh_indices[corner + 2u], uvs);
+    __global const float* uvs = surfaces->mesh_uvs + geometry->uv_begin;
+    const float2 uv0 = vload2(surfaces->mesh_indices[corner], uvs);
+    const float2 uv1 = vload2(surfaces->mesh_indices[corner + 1u], uvs), uv2 = vload2(surfaces->mesh_indices[corner + 2u], uvs);
     s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
     derivatives_by_uv(uv1 - uv0, uv2 - uv0, e1, e2, &s);
   } else {

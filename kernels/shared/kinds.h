@@ -5,6 +5,8 @@
 #ifndef CAPLET_SHARED_KINDS_H
 #define CAPLET_SHARED_KINDS_H
 
+#include "shared/limits.h"
+
 #ifdef __cplusplus
 namespace caplet {
 #endif
@@ -44,14 +46,6 @@ enum {
 // block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
 #define CAPLET_LEAF_ROW_BITS 27
 #define CAPLET_LEAF_ROW_MASK 0x07ffffffu
-#define CAPLET_NODE_FLOATS 56  // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
-#define CAPLET_WIDTH 8
-#define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
-
-// Wavelengths, in nanometres, of every spectral table: 1 nm steps, both ends included.
-#define CAPLET_LAMBDA_MIN 360.0f
-#define CAPLET_LAMBDA_MAX 830.0f
-#define CAPLET_LAMBDA_COUNT 471
 
 // GeometryRecord.flags
 #define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
@@ -75,7 +69,6 @@ enum {
 #define CAPLET_CSG_UNION 0x100u
 #define CAPLET_CSG_INTERSECTION 0x101u
 #define CAPLET_CSG_DIFFERENCE 0x102u
-#define CAPLET_CSG_MAX_OPERANDS 32
 #define CAPLET_CSG_SUBTRACTED 0x80000000u  // with an operand's first surface: its normals flip
 // GGX roughness (pbrt-v4's): below the first in both directions a surface is a perfect mirror or a clear interface, as its lobe is
 // narrower than the rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.

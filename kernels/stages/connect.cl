@@ -2,13 +2,10 @@
 // Copyright Caplet authors
 //
 // Shadow rays: what reaches the light adds its radiance.
-#include "globals.cl"
 #include "trace/trace.cl"
 
-#define STAGE_NAME connect
-static void stage_item(const Globals* g, uint item) {
-  const uint path = g->queue_shadow[item];
-  if (trace_any(g->nodes, g->leaves, g->instances, g->params->root, g->path_shadow[path])) return;
-  vstore4(vload4(path, g->path_radiance) + vload4(path, g->path_shadow_radiance), path, g->path_radiance);
+static void stage_item(const Stage* g, uint item) {
+  const uint path = g->shadows.queue_shadow[item];
+  if (trace_any(&g->tree, g->shadows.path_shadow[path])) return;
+  g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }
-#include "stages/kernel.cl"

@@ -11,16 +11,11 @@
 #define CAPLET_STAGES_PATH_CL
 
 #include "math/rng.cl"
+#include "shared/records.h"
 
 // path_flags
 #define PATH_SPECULAR 1u   // the last scattering was a delta: light sampling could not have found what is hit next
 #define PATH_DEPTH_SHIFT 8
-
-// counters
-#define COUNTER_QUEUE 0
-#define COUNTER_NEXT 1
-#define COUNTER_SHADOW 2
-#define COUNTER_NOT_FINITE 3  // samples dropped because their radiance was not a number
 
 // Pairs of sample dimensions: three for the camera, four for each scattering.
 #define SAMPLE_FILTER 0
@@ -37,14 +32,14 @@ typedef struct {
   uint seed;  // of the pixel
 } PathSample;
 
-static inline PathSample path_sample(const Globals* g, uint path) {
-  __global const ParamsRecord* params = g->params;
-  const uint pixel = params->pixel_begin + path / params->sample_count;
+// Of path number `path` of a batch.
+static inline PathSample path_sample(__global const BatchRecord* batch, uint seed, uint path) {
+  const uint pixel = batch->pixel_begin + path / batch->sample_count;
   PathSample s;
-  s.x = params->crop_x + pixel % params->crop_width;
-  s.y = params->crop_y + pixel / params->crop_width;
-  s.sample = params->sample_begin + path % params->sample_count;
-  s.seed = pixel_seed(s.x, s.y, params->seed);
+  s.x = batch->window_x + pixel % batch->window_width;
+  s.y = batch->window_y + pixel / batch->window_width;
+  s.sample = batch->sample_begin + path % batch->sample_count;
+  s.seed = pixel_seed(s.x, s.y, seed);
   return s;
 }
 

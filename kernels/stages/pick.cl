@@ -2,14 +2,11 @@
 // Copyright Caplet authors
 //
 // The nearest crossing of every ray of a query.
-#include "globals.cl"
 #include "stages/pick_record.cl"
 #include "trace/trace.cl"
 
-#define STAGE_NAME pick
-static void stage_item(const Globals* g, uint item) {
-  const RayRecord ray = g->query_rays[item];
-  const HitRecord hit = trace_closest(g->nodes, g->leaves, g->instances, g->params->root, ray);
-  g->picks[item] = pick_record(g, &ray, &hit);
+static void stage_item(const Stage* g, uint item) {
+  const RayRecord ray = g->query.query_rays[item];
+  const HitRecord hit = trace_closest(&g->tree, ray);
+  g->picks.picks[item] = pick_record(&g->tree, &g->surfaces, &ray, &hit);
 }
-#include "stages/kernel.cl"

@@ -5,7 +5,7 @@
 #ifndef CAPLET_STAGES_PICK_RECORD_CL
 #define CAPLET_STAGES_PICK_RECORD_CL
 
-#include "globals.cl"
+#include "groups.cl"
 #include "shapes/surface.cl"
 
 // Shapes whose two sides are told apart by a normal alone.
@@ -15,19 +15,19 @@ static inline int shape_is_sheet(uint shape) {
 }
 
 // The record of a hit of `ray`, or of a miss. The normal points against the ray, from inside too.
-static inline PickRecord pick_record(const Globals* g, const RayRecord* ray, const HitRecord* hit) {
+static inline PickRecord pick_record(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
   PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE, CAPLET_NONE, 0, 0, 0, 0, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   if (hit->slot == CAPLET_NONE) return out;
-  const Surface s = surface_at(g, ray, hit);
-  __global const GeometryRecord* geometry = g->geometries + s.geometry;
+  const Surface s = surface_at(tree, surfaces, ray, hit);
+  __global const GeometryRecord* geometry = surfaces->geometries + s.geometry;
   const float3 normal = dot(s.ng, (float3)(ray->dx, ray->dy, ray->dz)) > 0.0f ? -s.ng : s.ng;
   out.t = hit->t;
   out.error = s.error;
   out.u = s.uv.x;
   out.v = s.uv.y;
   out.object = out.shape = geometry->object;
-  if (hit->instance != CAPLET_NONE && g->instances[hit->instance].object != CAPLET_NONE)
-    out.object = g->instances[hit->instance].object;
+  if (hit->instance != CAPLET_NONE && tree->instances[hit->instance].object != CAPLET_NONE)
+    out.object = tree->instances[hit->instance].object;
   out.primitive = s.primitive - geometry->primitive_begin;
   out.surface = s.surface;
   out.material = s.material;

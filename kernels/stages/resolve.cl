@@ -3,7 +3,6 @@
 //
 // Finished paths to the film: one work-item a pixel adds its samples in order with compensated sums (Kahan 1965), so that how
 // samples were split into batches cannot change a bit, and that a million of them lose nothing.
-#include "globals.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
 #include "stages/path.cl"
@@ -21,38 +20,39 @@ static inline void add_compensated3(float* sum, float* low, float3 value) {
   add_compensated(sum + 2, low + 2, value.z);
 }
 
-#define STAGE_NAME resolve
-static void stage_item(const Globals* g, uint item) {
-  __global const ParamsRecord* params = g->params;
-  FilmRecord film = g->film[params->pixel_begin + item];
-  for (uint i = 0; i < params->sample_count; ++i) {
-    const uint path = item * params->sample_count + i;
-    const float4 radiance = vload4(path, g->path_radiance);
-    float3 xyz = xyz_from_spectrum(g, radiance, vload4(path, g->path_wavelengths), vload4(path, g->path_wavelength_pdfs));
+static void stage_item(const Stage* g, uint item) {
+  __global const BatchRecord* batch = g->batch.batch;
+  __global const ViewRecord* view = g->view.view;
+  const uint pixel = batch->pixel_begin + item;
+  const uint x = batch->window_x + pixel % batch->window_width, y = batch->window_y + pixel / batch->window_width;
+  const uint place = (y - view->crop_y) * view->crop_width + (x - view->crop_x);
+  FilmRecord film = g->film.film[place];
+  for (uint i = 0; i < batch->sample_count; ++i) {
+    const uint path = item * batch->sample_count + i;
+    const float4 radiance = g->radiance.path_radiance[path];
+    float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
+                                   g->carried.path_wavelength_pdfs[path]);
     if (!all(isfinite(radiance)) || !all(isfinite(xyz))) {
       xyz = (float3)(0.0f);
-      atomic_inc(&g->counters[COUNTER_NOT_FINITE]);
+      atomic_inc(&g->counters.counters[counter_not_finite]);
     }
-    const float3 rgb = rgb_from_xyz(params->rgb_from_xyz, xyz);
+    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);
     add_compensated3(film.xyz, film.xyz_low, xyz);
     add_compensated3(film.rgb_squared, film.rgb_squared_low, rgb * rgb);
 
-    const float4 albedo = vload4(path, g->path_albedo);
-    const float4 normal = vload4(path, g->path_normal);
-    const float4 position = vload4(path, g->path_position);
+    const FirstHitRecord hit = g->first_hit.path_first_hit[path];
     if (film.samples == 0) {
-      film.object = as_uint(normal.w);
-      film.primitive = as_uint(position.w);
+      film.object = hit.object;
+      film.primitive = hit.primitive;
     }
     film.samples += 1;
-    if (as_uint(normal.w) != CAPLET_NONE) {
+    if (hit.object != CAPLET_NONE) {
       film.hits += 1;
-      add_compensated3(film.albedo, film.albedo_low, albedo.xyz);
-      add_compensated3(film.normal, film.normal_low, normal.xyz);
-      add_compensated3(film.position, film.position_low, position.xyz);
-      add_compensated(&film.depth, &film.depth_low, albedo.w);
+      add_compensated3(film.albedo, film.albedo_low, vload3(0, hit.albedo));
+      add_compensated3(film.normal, film.normal_low, vload3(0, hit.normal));
+      add_compensated3(film.position, film.position_low, vload3(0, hit.position));
+      add_compensated(&film.depth, &film.depth_low, hit.depth);
     }
   }
-  g->film[params->pixel_begin + item] = film;
+  g->film.film[place] = film;
 }
-#include "stages/kernel.cl"

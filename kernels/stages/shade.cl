@@ -3,7 +3,6 @@
 //
 // What a ray hit: emission and environment weighted against light sampling (Veach 1997, chapter 9), then one light sample,
 // one BSDF sample and Russian roulette. Fills queue_shadow and queue_next.
-#include "globals.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
 #include "shapes/surface.cl"
@@ -12,27 +11,28 @@
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
 
-// First-hit layers of the film.
-static inline void store_first_hit(const Globals* g, uint path, const Surface* s, const Bsdf* bsdf, float3 wo_local, float3 wo,
-                                   float depth, float4 wavelengths, float4 pdfs, uint instance) {
-  const float3 normal = dot(s->ns, wo) < 0.0f ? -s->ns : s->ns;
-  uint object = g->geometries[s->geometry].object;
-  if (instance != CAPLET_NONE && g->instances[instance].object != CAPLET_NONE) object = g->instances[instance].object;
-  const uint primitive = s->primitive - g->geometries[s->geometry].primitive_begin;
+// What the layers of the film tell.
+static inline FirstHitRecord first_hit(const Stage* g, const Surface* s, const Bsdf* bsdf, float3 wo_local, float3 wo, float depth,
+                                       float4 wavelengths, float4 pdfs, uint instance) {
+  FirstHitRecord out;
   // Under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
-  const float4 white = spectrum_table_at4(g->spectrum_tables + g->params->illuminant_table, wavelengths);
-  const float3 xyz = xyz_from_spectrum(g, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs);
-  vstore4((float4)(xyz.x, xyz.y, xyz.z, depth), path, g->path_albedo);
-  vstore4((float4)(normal.x, normal.y, normal.z, as_float(object)), path, g->path_normal);
-  vstore4((float4)(s->p.x, s->p.y, s->p.z, as_float(primitive)), path, g->path_position);
+  const float4 white = spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
+  vstore3(xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs), 0, out.albedo);
+  out.depth = depth;
+  vstore3(dot(s->ns, wo) < 0.0f ? -s->ns : s->ns, 0, out.normal);
+  out.object = g->surfaces.geometries[s->geometry].object;
+  if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE) out.object = g->tree.instances[instance].object;
+  vstore3(s->p, 0, out.position);
+  out.primitive = s->primitive - g->surfaces.geometries[s->geometry].primitive_begin;
+  return out;
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Globals* g, uint path, const Surface* s, const Frame* frame, const Bsdf* bsdf, float3 wo_local,
-                                float3 wo, float4 throughput, float4 wavelengths, uint u_select, float2 u) {
+static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
+                                const Bsdf* bsdf, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select, float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
-  if (!light_sample(g, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
+  if (!light_sample(scene, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface.
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
@@ -50,60 +50,61 @@ static inline void sample_light(const Globals* g, uint path, const Surface* s, c
   const float3 direction = light.infinite ? light.wi : light.target - origin;
   ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
   ray.dx = direction.x; ray.dy = direction.y; ray.dz = direction.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
-  g->path_shadow[path] = ray;
-  vstore4(contribution, path, g->path_shadow_radiance);
-  g->queue_shadow[atomic_inc(&g->counters[COUNTER_SHADOW])] = path;
+  g->shadows.path_shadow[path] = ray;
+  g->shadows.path_shadow_radiance[path] = contribution;
+  g->shadows.queue_shadow[atomic_inc(&g->counters.counters[counter_shadow])] = path;
 }
 
-#define STAGE_NAME shade
-static void stage_item(const Globals* g, uint item) {
-  const uint path = g->queue[item];
-  const RayRecord ray = g->path_ray[path];
-  const HitRecord hit = g->path_hit[path];
-  float4 throughput = vload4(path, g->path_throughput);
-  const float4 wavelengths = vload4(path, g->path_wavelengths);
-  float4 pdfs = vload4(path, g->path_wavelength_pdfs);
-  float4 scatter = vload4(path, g->path_scatter);  // last pdf, eta scale, bits of the light that was crossed
-  const uint flags = g->path_flags[path];
+static void stage_item(const Stage* g, uint item) {
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  const uint path = g->queues.queue[item];
+  const RayRecord ray = g->rays.path_ray[path];
+  const HitRecord hit = g->rays.path_hit[path];
+  float4 throughput = g->carried.path_throughput[path];
+  const float4 wavelengths = g->carried.path_wavelengths[path];
+  float4 pdfs = g->carried.path_wavelength_pdfs[path];
+  float4 scatter = g->carried.path_scatter[path];  // last pdf, eta scale, bits of the light that was crossed
+  const uint flags = g->carried.path_flags[path];
   const uint depth = flags >> PATH_DEPTH_SHIFT;
   const int specular = (flags & PATH_SPECULAR) != 0;
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
 
   if (hit.slot == CAPLET_NONE) {
-    const float4 sky = light_infinite(g, direction, wavelengths, scatter.x, specular);
-    vstore4(vload4(path, g->path_radiance) + throughput * sky, path, g->path_radiance);
+    const float4 sky = light_infinite(&g->spectra, &g->lights, direction, wavelengths, scatter.x, specular);
+    g->radiance.path_radiance[path] += throughput * sky;
     return;
   }
 
-  const Surface s = surface_at(g, &ray, &hit);
+  const Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
   const float3 wo = -direction;
   if (s.light != CAPLET_NONE) {
-    const float4 emitted = light_emitted(g, s.light, s.ng, wo, wavelengths);
+    const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
       // What a refracted ray finds of the primitive that it crossed has no other strategy.
       if (!specular && as_uint(scatter.z) != s.light)
-        weight = power_heuristic(scatter.x, light_area_pdf(g, s.light, (float3)(ray.ox, ray.oy, ray.oz), &s, direction));
-      vstore4(vload4(path, g->path_radiance) + throughput * emitted * weight, path, g->path_radiance);
+        weight = power_heuristic(scatter.x, light_area_pdf(&scene, s.light, (float3)(ray.ox, ray.oy, ray.oz), &s, direction));
+      g->radiance.path_radiance[path] += throughput * emitted * weight;
     }
   }
 
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
-  const Bsdf bsdf = bsdf_make(g, s.material, wavelengths);
-  if (depth == 0) store_first_hit(g, path, &s, &bsdf, wo_local, wo, hit.t, wavelengths, pdfs, hit.instance);
-  if (depth >= g->params->max_depth) return;
+  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, wavelengths);
+  if (depth == 0)
+    g->first_hit.path_first_hit[path] = first_hit(g, &s, &bsdf, wo_local, wo, hit.t, wavelengths, pdfs, hit.instance);
+  if (depth >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
     throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
-    vstore4(pdfs, path, g->path_wavelength_pdfs);
+    g->carried.path_wavelength_pdfs[path] = pdfs;
   }
 
-  const PathSample at = path_sample(g, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
   const float2 choices = sampler_2d(at.seed, at.sample, SAMPLE_CHOICES(depth));
-  if (g->params->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths,
+  if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
+    sample_light(g, &scene, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SAMPLE_CHOICES(depth)), sampler_2d(at.seed, at.sample, SAMPLE_LIGHT(depth)));
 
   BsdfSample sample;
@@ -128,15 +129,14 @@ static void stage_item(const Globals* g, uint item) {
   RayRecord next;
   next.ox = origin.x; next.oy = origin.y; next.oz = origin.z; next.t_min = 0.0f;
   next.dx = wi.x; next.dy = wi.y; next.dz = wi.z; next.t_max = INFINITY;
-  g->path_ray[path] = next;
-  vstore4(throughput, path, g->path_throughput);
-  vstore4(scatter, path, g->path_scatter);
-  g->path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
-  const uint position = atomic_inc(&g->counters[COUNTER_NEXT]);
-  g->queue_next[position] = path;
-  if (g->params->sort_bits == CAPLET_NONE) return;
-  const uint key = sort_key(g->params, origin, wi);
-  g->sort_keys[position] = key;
-  atomic_inc(&g->sort_bins[key]);
+  g->rays.path_ray[path] = next;
+  g->carried.path_throughput[path] = throughput;
+  g->carried.path_scatter[path] = scatter;
+  g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
+  const uint position = atomic_inc(&g->counters.counters[counter_next]);
+  g->queues.queue_next[position] = path;
+  if (g->batch.batch->sort_bits == CAPLET_NONE) return;
+  const uint key = sort_key(g->tree.world, g->batch.batch->sort_bits, origin, wi);
+  g->sort.sort_keys[position] = key;
+  atomic_inc(&g->sort.sort_bins[key]);
 }
-#include "stages/kernel.cl"

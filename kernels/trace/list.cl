@@ -104,12 +104,13 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
 }
 #endif
 
-// All crossings of `ray` with t in (t_min, t_max), in order: by t, leaving before entering, slot, instance, surface. Writes the nearest
+// All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order: by t, leaving before entering, slot, instance, surface. Writes the nearest
 // `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. The order of traversal cannot show.
 // capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
 // itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
-static inline uint trace_all(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
-                             uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+  __global const float* nodes = tree->nodes;
+  __global const float* leaves = tree->leaves;
   HitList list;
   list.sorted = sorted;
   list.capacity = capacity;
@@ -137,7 +138,7 @@ static inline uint trace_all(__global const float* nodes, __global const float* 
       __global const float* block = leaves + (size_t)row * 8;
       if (kind == shape_instance) {
         instance = ((__global const uint*)block)[0];
-        __global const InstanceRecord* placed = instances + instance;
+        __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
         current = (int)placed->root;
         if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
@@ -163,6 +164,11 @@ static inline uint trace_all(__global const float* nodes, __global const float* 
       shape = shape_ray(world_o, world_d, t_min, leaves);
     }
   }
+}
+
+// In the whole scene.
+static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+  return trace_list(tree, tree->world->root, ray, capacity, sorted);
 }
 
 #endif

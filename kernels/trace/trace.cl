@@ -6,9 +6,9 @@
 #ifndef CAPLET_TRACE_TRACE_CL
 #define CAPLET_TRACE_TRACE_CL
 
+#include "groups.cl"
 #include "math/vector.cl"
 #include "shapes/shapes.cl"
-#include "shared/records.h"
 
 // A visited node leaves at most seven of its children on the stack, in both levels of trees, and has all eight there while it orders
 // them; the host checks the depth.
@@ -178,8 +178,9 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
 
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: the smaller slot wins, then the smaller instance, so
 // that the order of traversal cannot show. Zero, infinite and NaN rays miss.
-static inline HitRecord trace_ray(__global const float* nodes, __global const float* leaves,
-                                  __global const InstanceRecord* instances, uint root, RayRecord ray, const int any) {
+static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
+  __global const float* nodes = tree->nodes;
+  __global const float* leaves = tree->leaves;
   HitRecord hit;
   hit.t = INFINITY;
   hit.slot = CAPLET_NONE;
@@ -207,7 +208,7 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
       __global const float* block = leaves + (size_t)row * 8;
       if (kind == shape_instance) {
         instance = ((__global const uint*)block)[0];
-        __global const InstanceRecord* placed = instances + instance;
+        __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
         current = (int)placed->root;
         if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
@@ -267,15 +268,13 @@ static inline HitRecord trace_ray(__global const float* nodes, __global const fl
 }
 
 // The nearest hit with t in (t_min, t_max).
-static inline HitRecord trace_closest(__global const float* nodes, __global const float* leaves,
-                                      __global const InstanceRecord* instances, uint root, RayRecord ray) {
-  return trace_ray(nodes, leaves, instances, root, ray, 0);
+static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
+  return trace_ray(tree, tree->world->root, ray, 0);
 }
 
 // 1 if anything is hit with t in (t_min, t_max).
-static inline int trace_any(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
-                            uint root, RayRecord ray) {
-  return trace_ray(nodes, leaves, instances, root, ray, 1).slot != CAPLET_NONE;
+static inline int trace_any(const Tree* tree, RayRecord ray) {
+  return trace_ray(tree, tree->world->root, ray, 1).slot != CAPLET_NONE;
 }
 
 #endif

@@ -86,7 +86,7 @@ void run_shapes(const std::string& kind, std::size_t count, const caplet::Device
   std::optional<caplet::test::Peer> peer;
   if (!same.empty()) peer.emplace(same);
   caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
-  tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.params.root);
+  tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
   Bench bench{tracer, peer ? &*peer : nullptr, scene.leaves, seconds, true};
   const auto camera = caplet::bench::camera_rays(size);
   bench.run(kind + " camera", camera, camera);

@@ -20,11 +20,9 @@ const char* const kernel_text = R"CL(
 __kernel void straight_back(__global const MaterialRecord* materials, __global const SpectrumRecord* spectra,
                             __global const float* spectrum_tables, __global float* out, uint count) {
   if (get_global_id(0) >= count) return;
-  Globals g;
-  g.materials = materials;
-  g.spectra = spectra;
-  g.spectrum_tables = spectrum_tables;
-  const Bsdf b = bsdf_make(&g, 0, (float4)(550.0f));
+  const Materials all = {materials};
+  const Spectra values = {spectra, spectrum_tables};
+  const Bsdf b = bsdf_make(&all, &values, 0, (float4)(550.0f));
   const float3 up = (float3)(0.0f, 0.0f, 1.0f);
   float pdf;
   bsdf_eval(&b, up, up, &pdf);

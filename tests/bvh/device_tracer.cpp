@@ -13,11 +13,13 @@ const char* const kernels = R"(
     __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays, uint count
 __kernel void closest(ARGUMENTS, __global HitRecord* restrict out) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) out[i] = trace_closest(nodes, leaves, instances, root, rays[i]);
+  const Tree tree = {0, nodes, leaves, instances};
+  if (i < count) out[i] = trace_ray(&tree, root, rays[i], 0);
 }
 __kernel void any_hit(ARGUMENTS, __global int* restrict out) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) out[i] = trace_any(nodes, leaves, instances, root, rays[i]);
+  const Tree tree = {0, nodes, leaves, instances};
+  if (i < count) out[i] = trace_ray(&tree, root, rays[i], 1).slot != CAPLET_NONE;
 }
 )";
 

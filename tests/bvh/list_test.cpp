@@ -91,7 +91,7 @@ struct ListScene {
     }
     const EncodedTree tree = encode_tree(primitives, flat.nodes, flat.leaves);
     slots = tree.slots;
-    flat.params.root = tree.root;
+    flat.world.root = tree.root;
     if (placements.empty()) return;
     std::vector<FlatPrimitive> top;
     for (const dmat4& placed : placements) {
@@ -122,7 +122,7 @@ struct ListScene {
       flat.instances.push_back(record);
       top.push_back(box);
     }
-    flat.params.root = encode_tree(top, flat.nodes, flat.leaves).root;
+    flat.world.root = encode_tree(top, flat.nodes, flat.leaves).root;
   }
 
   std::size_t places() const { return std::max<std::size_t>(1, object_from_world.size()); }

@@ -21,20 +21,20 @@ typedef struct {
 } CrossingSurface;
 
 __kernel void list_all(SCENE_PARAMETERS, __global const RayRecord* rays, uint capacity, __global HitRecord* closest,
-                       __global int* any, __global uint* counts, __global HitRecord* sorted, __global CrossingSurface* surfaces,
+                       __global int* any, __global uint* counts, __global HitRecord* sorted, __global CrossingSurface* found,
                        uint ray_count) {
   const uint i = (uint)get_global_id(0);
   if (i >= ray_count) return;
-  SCENE_GLOBALS(g);
+  SCENE_STRUCTS;
   const RayRecord ray = rays[i];
-  closest[i] = trace_closest(nodes, leaves, instances, root, ray);
-  any[i] = trace_any(nodes, leaves, instances, root, ray);
-  const uint count = trace_all(nodes, leaves, instances, root, ray, capacity, sorted + i * capacity);
+  closest[i] = trace_closest(&tree, ray);
+  any[i] = trace_any(&tree, ray);
+  const uint count = trace_all(&tree, ray, capacity, sorted + i * capacity);
   counts[i] = count;
   for (uint k = 0; k < min(count, capacity); k++) {
     const HitRecord hit = sorted[i * capacity + k];
-    const Surface s = surface_at(&g, &ray, &hit);
-    __global CrossingSurface* out = surfaces + i * capacity + k;
+    const Surface s = surface_at(&tree, &surfaces, &ray, &hit);
+    __global CrossingSurface* out = found + i * capacity + k;
     vstore3(s.p, 0, out->p);
     vstore3(s.ng, 0, out->ng);
     out->error = s.error;
@@ -56,7 +56,7 @@ ListTracer::ListTracer(const Device& device, int width)
 
 std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const RayRecord> rays, std::uint32_t capacity) const {
   const std::size_t places = rays.size() * capacity;
-  const SceneBuffers buffers(device_, scene);
+  const SceneOnDevice buffers(device_, scene);
   const Buffer<RayRecord> ray_buffer(device_, rays);
   const Buffer<HitRecord> closest(device_, rays.size()), sorted(device_, places);
   const Buffer<int> any(device_, rays.size());

@@ -17,15 +17,15 @@
 namespace caplet {
 namespace {
 
-ParamsRecord window(uint width, uint height) {
-  ParamsRecord params{};
-  params.width = 10;
-  params.height = 6;
-  params.crop_x = 3;
-  params.crop_y = 2;
-  params.crop_width = width;
-  params.crop_height = height;
-  return params;
+ViewRecord window(uint width, uint height) {
+  ViewRecord view{};
+  view.width = 10;
+  view.height = 6;
+  view.crop_x = 3;
+  view.crop_y = 2;
+  view.crop_width = width;
+  view.crop_height = height;
+  return view;
 }
 
 FilmRecord nothing() {

@@ -58,7 +58,7 @@ bool unit(const float (&v)[3]) {
   return std::abs(length - 1) <= 64 * 0x1p-24;
 }
 
-void material(const Globals* g, std::uint32_t number, const float (&lambda)[4], FuzzNumbers& numbers) {
+void material(const HostGroups* g, std::uint32_t number, const float (&lambda)[4], FuzzNumbers& numbers) {
   const HostKernels& kernels = host_kernels(8);
   const Direction wo = direction(numbers), wi = direction(numbers);
   float f[4];
@@ -76,7 +76,7 @@ void material(const Globals* g, std::uint32_t number, const float (&lambda)[4], 
   require(((sample.wi[2] < 0) != (wo.v[2] < 0)) == (sample.transmitted != 0));
 }
 
-void lights(const Globals* g, const float (&lambda)[4], FuzzNumbers& numbers) {
+void lights(const HostGroups* g, const float (&lambda)[4], FuzzNumbers& numbers) {
   const float u[3] = {random_number(numbers), random_number(numbers), random_number(numbers)};
   float p[3];
   for (float& x : p) {
@@ -96,12 +96,12 @@ void lights(const Globals* g, const float (&lambda)[4], FuzzNumbers& numbers) {
   require(radiometric(sky));
 }
 
-void camera(const Globals* g, const FlatScene& scene, FuzzNumbers& numbers, float (&lambda)[4]) {
+void camera(const HostGroups* g, const Scene& scene, FuzzNumbers& numbers, float (&lambda)[4]) {
   float u[5];
   for (float& x : u) x = random_number(numbers);
   RayRecord ray;
   HostCameraSample sample;
-  host_kernels(8).camera(g, numbers.below(scene.params.width), numbers.below(scene.params.height), u, &ray, &sample);
+  host_kernels(8).camera(g, numbers.below(static_cast<unsigned>(scene.film.width)), numbers.below(static_cast<unsigned>(scene.film.height)), u, &ray, &sample);
   const float origin[3] = {ray.ox, ray.oy, ray.oz}, along[3] = {ray.dx, ray.dy, ray.dz};
   require(finite(origin) && unit(along));
   require(std::isfinite(sample.filter_weight));
@@ -134,13 +134,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
-    const FlatScene flat = lower(scene);
-    const SceneArrays arrays(flat);
+    const SceneArrays arrays({lower(scene), lower_view(scene)});
     for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i) {
       float lambda[4];
-      camera(arrays.globals(), flat, numbers, lambda);
-      material(arrays.globals(), numbers.below(3), lambda, numbers);
-      lights(arrays.globals(), lambda, numbers);
+      camera(arrays.groups(), scene, numbers, lambda);
+      material(arrays.groups(), numbers.below(3), lambda, numbers);
+      lights(arrays.groups(), lambda, numbers);
     }
   });
 }

@@ -50,10 +50,10 @@ inline bool before(const HitRecord& a, const HitRecord& b) {
 
 class Checker {
  public:
-  Checker(const FlatScene& scene, FuzzNumbers& numbers) : scene_(scene), arrays_(scene), numbers_(numbers) {}
+  Checker(const FlatScene& scene, FuzzNumbers& numbers) : scene_(scene), arrays_({scene, {}}), numbers_(numbers) {}
 
   void ray(const RayRecord& ray) {
-    const Globals* g = arrays_.globals();
+    const HostGroups* g = arrays_.groups();
     const HostKernels& kernels = host_kernels(8);
     const HitRecord hit = kernels.trace_closest(g, &ray);
     // One lane at a time computes the same.
@@ -93,7 +93,7 @@ class Checker {
     for (float& x : u) x = static_cast<float>(numbers_.byte()) / 256;
     for (float& x : lambda) x = 360 + 470 * static_cast<float>(numbers_.fraction());
     HostLightSample sample;
-    if (!host_kernels(8).light_sample(arrays_.globals(), p, lambda, u, &sample)) return;
+    if (!host_kernels(8).light_sample(arrays_.groups(), p, lambda, u, &sample)) return;
     require(std::isfinite(sample.pdf) && sample.pdf > 0);
     require(unit(sample.wi));
     require(finite(sample.radiance) && *std::min_element(sample.radiance, sample.radiance + 4) >= 0);
@@ -108,7 +108,7 @@ class Checker {
     require(primitive < scene_.primitive_geometry.size());
     require(hit.instance == CAPLET_NONE || hit.instance < scene_.instances.size());
 
-    const Globals* g = arrays_.globals();
+    const HostGroups* g = arrays_.groups();
     HostSurface s;
     host_kernels(8).surface_at(g, &ray, &hit, &s);
     require(s.geometry < scene_.geometries.size() && s.primitive == primitive);
@@ -150,7 +150,7 @@ class Checker {
   FuzzNumbers& numbers_;
 };
 
-inline RayRecord make_ray(FuzzNumbers& numbers, const ParamsRecord& params) {
+inline RayRecord make_ray(FuzzNumbers& numbers, const WorldRecord& world) {
   RayRecord ray{};
   ray.t_max = std::numeric_limits<float>::infinity();
   const unsigned form = numbers.below(4);
@@ -163,10 +163,10 @@ inline RayRecord make_ray(FuzzNumbers& numbers, const ParamsRecord& params) {
   ray.oy = numbers.number();
   ray.oz = numbers.number();
   // Towards a point near the middle of the scene.
-  const auto offset = [&] { return params.scene_radius * (static_cast<float>(numbers.byte()) - 128) / 128; };
-  ray.dx = params.scene_center_x + offset() - ray.ox;
-  ray.dy = params.scene_center_y + offset() - ray.oy;
-  ray.dz = params.scene_center_z + offset() - ray.oz;
+  const auto offset = [&] { return world.radius * (static_cast<float>(numbers.byte()) - 128) / 128; };
+  ray.dx = world.center_x + offset() - ray.ox;
+  ray.dy = world.center_y + offset() - ray.oy;
+  ray.dz = world.center_z + offset() - ray.oz;
   if (form == 1) {
     float* const components[] = {&ray.dx, &ray.dy, &ray.dz};
     *components[numbers.below(3)] = numbers.number();
@@ -193,7 +193,7 @@ inline int fuzz_scene(const std::uint8_t* data, std::size_t size, bool csg) {
     diagnostics.finish();
     const FlatScene flat = lower(scene);
     Checker checker(flat, numbers);
-    for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i) checker.ray(make_ray(numbers, flat.params));
+    for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i) checker.ray(make_ray(numbers, flat.world));
     float p[3];
     for (float& x : p) {
       x = numbers.number();

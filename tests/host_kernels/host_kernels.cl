@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // host_kernels.def for one CAPLET_REAL_WIDTH, from the text of kernels/.
-#include "globals.cl"
+#include "groups.cl"
 #include "bsdf/bsdf.cl"
 #include "lights/lights.cl"
 #include "math/camera.cl"
@@ -10,6 +10,17 @@
 #include "shapes/surface.cl"
 #include "stages/pick_record.cl"
 #include "trace/list.cl"
+
+// As host_kernels.h has it for C++.
+typedef struct {
+#define GROUP_BEGIN(Type, group) Type group;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  SCENE_GROUPS VIEW_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+} HostGroups;
 
 #include "host_kernels.h"
 
@@ -20,20 +31,20 @@
 static float3 three(const float* p) { return (float3)(p[0], p[1], p[2]); }
 static float4 four(const float* p) { return (float4)(p[0], p[1], p[2], p[3]); }
 
-HitRecord HOST(trace_closest)(const Globals* g, const RayRecord* ray) {
-  return trace_closest(g->nodes, g->leaves, g->instances, g->params->root, *ray);
+HitRecord HOST(trace_closest)(const HostGroups* g, const RayRecord* ray) {
+  return trace_closest(&g->tree, *ray);
 }
 
-int HOST(trace_any)(const Globals* g, const RayRecord* ray) {
-  return trace_any(g->nodes, g->leaves, g->instances, g->params->root, *ray);
+int HOST(trace_any)(const HostGroups* g, const RayRecord* ray) {
+  return trace_any(&g->tree, *ray);
 }
 
-uint HOST(trace_all)(const Globals* g, const RayRecord* ray, uint capacity, __global HitRecord* sorted) {
-  return trace_all(g->nodes, g->leaves, g->instances, g->params->root, *ray, capacity, sorted);
+uint HOST(trace_all)(const HostGroups* g, const RayRecord* ray, uint capacity, __global HitRecord* sorted) {
+  return trace_all(&g->tree, *ray, capacity, sorted);
 }
 
-void HOST(surface_at)(const Globals* g, const RayRecord* ray, const HitRecord* hit, HostSurface* out) {
-  const Surface s = surface_at(g, ray, hit);
+void HOST(surface_at)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, HostSurface* out) {
+  const Surface s = surface_at(&g->tree, &g->surfaces, ray, hit);
   vstore3(s.p, 0, out->p);
   vstore3(s.ng, 0, out->ng);
   vstore3(s.ns, 0, out->ns);
@@ -49,15 +60,16 @@ void HOST(surface_at)(const Globals* g, const RayRecord* ray, const HitRecord* h
   out->leaving = s.leaving;
 }
 
-PickRecord HOST(pick_record)(const Globals* g, const RayRecord* ray, const HitRecord* hit) { return pick_record(g, ray, hit); }
+PickRecord HOST(pick_record)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit) { return pick_record(&g->tree, &g->surfaces, ray, hit); }
 
 void HOST(offset_origin)(const HostSurface* surface, const float* direction, float* origin) {
   vstore3(offset_origin(three(surface->p), three(surface->ng), surface->error, three(direction)), 0, origin);
 }
 
-int HOST(light_sample)(const Globals* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
+int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
   LightSample s;
-  if (!light_sample(g, three(p), four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  if (!light_sample(&scene, three(p), four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
   vstore3(s.target, 0, out->target);
   vstore4(s.radiance, 0, out->radiance);
@@ -67,19 +79,20 @@ int HOST(light_sample)(const Globals* g, const float* p, const float* lambda, co
   return 1;
 }
 
-float HOST(light_area)(const Globals* g, const RayRecord* ray, const HitRecord* hit, const float* lambda, float* emitted) {
-  const Surface s = surface_at(g, ray, hit);
+float HOST(light_area)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, const float* lambda, float* emitted) {
+  const Surface s = surface_at(&g->tree, &g->surfaces, ray, hit);
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
-  vstore4(light_emitted(g, s.light, s.ng, -d, four(lambda)), 0, emitted);
-  return light_area_pdf(g, s.light, (float3)(ray->ox, ray->oy, ray->oz), &s, d);
+  vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, -d, four(lambda)), 0, emitted);
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  return light_area_pdf(&scene, s.light, (float3)(ray->ox, ray->oy, ray->oz), &s, d);
 }
 
-void HOST(light_infinite)(const Globals* g, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {
-  vstore4(light_infinite(g, three(direction), four(lambda), last_pdf, specular), 0, out);
+void HOST(light_infinite)(const HostGroups* g, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {
+  vstore4(light_infinite(&g->spectra, &g->lights, three(direction), four(lambda), last_pdf, specular), 0, out);
 }
 
-int HOST(bsdf_sample)(const Globals* g, uint material, const float* lambda, const float* wo, const float* u, HostBsdfSample* out) {
-  const Bsdf b = bsdf_make(g, material, four(lambda));
+int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* u, HostBsdfSample* out) {
+  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, four(lambda));
   BsdfSample s;
   if (!bsdf_sample(&b, three(wo), u[0], (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
@@ -91,27 +104,27 @@ int HOST(bsdf_sample)(const Globals* g, uint material, const float* lambda, cons
   return 1;
 }
 
-float HOST(bsdf_eval)(const Globals* g, uint material, const float* lambda, const float* wo, const float* wi, float* f) {
-  const Bsdf b = bsdf_make(g, material, four(lambda));
+float HOST(bsdf_eval)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* wi, float* f) {
+  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, four(lambda));
   float pdf;
   vstore4(bsdf_eval(&b, three(wo), three(wi), &pdf), 0, f);
   return pdf;
 }
 
-void HOST(bsdf_albedo)(const Globals* g, uint material, const float* lambda, const float* wo, float* albedo) {
-  const Bsdf b = bsdf_make(g, material, four(lambda));
+void HOST(bsdf_albedo)(const HostGroups* g, uint material, const float* lambda, const float* wo, float* albedo) {
+  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, four(lambda));
   vstore4(bsdf_albedo(&b, three(wo)), 0, albedo);
 }
 
-void HOST(camera)(const Globals* g, uint x, uint y, const float* u, RayRecord* ray, HostCameraSample* out) {
-  const float2 offset = filter_sample(g, (float2)(u[0], u[1]), &out->filter_weight);
-  *ray = camera_ray(g, (float2)((float)x + 0.5f, (float)y + 0.5f) + offset, (float2)(u[2], u[3]));
+void HOST(camera)(const HostGroups* g, uint x, uint y, const float* u, RayRecord* ray, HostCameraSample* out) {
+  const float2 offset = filter_sample(g->camera.filter_table, g->view.view->filter_width, g->view.view->filter_height, (float2)(u[0], u[1]), &out->filter_weight);
+  *ray = camera_ray(g->camera.camera, (float2)((float)x + 0.5f, (float)y + 0.5f) + offset, (float2)(u[2], u[3]));
   float4 pdf;
-  vstore4(wavelengths_sample(g, u[4], &pdf), 0, out->lambda);
+  vstore4(wavelengths_sample(g->observer.wavelength_table, u[4], &pdf), 0, out->lambda);
   vstore4(pdf, 0, out->lambda_pdf);
 }
 
-void HOST(answer)(const Globals* g, const HostQuestion* question, __global HostAnswer* out) {
+void HOST(answer)(const HostGroups* g, const HostQuestion* question, __global HostAnswer* out) {
   const HostQuestion q = *question;
   HostAnswer a;
   for (uint i = 0; i < sizeof a / 4; ++i) ((__private uint*)&a)[i] = 0;

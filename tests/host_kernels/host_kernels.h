@@ -6,21 +6,34 @@
 #ifndef CAPLET_TESTS_HOST_KERNELS_H
 #define CAPLET_TESTS_HOST_KERNELS_H
 
+#include "shared/groups.h"
 #include "shared/records.h"
 
 #ifdef __cplusplus
 namespace caplet::test {
 #define __global
-// The arrays of a scene, by the names of buffers.def; those that pure functions do not use may be null.
-struct Globals {
+// The arrays of the groups of a scene and a view, by their names.
+#define ONE(type) const type*
 #define IN(type) const type*
-#define STATE(type) type*
+#define GROUP_BEGIN(Type, group) struct Type##Arrays {
 #define BUFFER(name, type, access) access(type) name = nullptr;
-#include "shared/buffers.def"
+#define GROUP_END(Type) \
+  }                     \
+  ;
+SCENE_GROUPS VIEW_GROUPS
+#undef GROUP_BEGIN
 #undef BUFFER
-#undef STATE
+#undef GROUP_END
+#undef ONE
 #undef IN
-  int end = 0;
+struct HostGroups {
+#define GROUP_BEGIN(Type, group) Type##Arrays group;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  SCENE_GROUPS VIEW_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
 };
 extern "C" {
 #endif

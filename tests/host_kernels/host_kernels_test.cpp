@@ -19,6 +19,7 @@
 #include "host_kernels/host_kernels.h"
 #include "host_kernels/model_maker.h"
 #include "host_kernels/scene_arrays.h"
+#include "render/buffers.h"
 #include "support/data.h"
 
 namespace caplet::test {
@@ -27,19 +28,27 @@ namespace {
 // What is added to host_kernels.cl on the device.
 const char* const entry_text = R"(
 __kernel void answers(
+#define GROUP_BEGIN(Type, group)
 #define BUFFER(name, type, access) access(type) name,
-#include "shared/buffers.def"
+#define GROUP_END(Type)
+    SCENE_GROUPS VIEW_GROUPS
+#undef GROUP_BEGIN
 #undef BUFFER
+#undef GROUP_END
     __global const HostQuestion* questions, __global HostAnswer* out, uint count) {
-  const Globals globals = {
+  const HostGroups groups = {
+#define GROUP_BEGIN(Type, group) {
 #define BUFFER(name, type, access) name,
-#include "shared/buffers.def"
+#define GROUP_END(Type) },
+      SCENE_GROUPS VIEW_GROUPS
+#undef GROUP_BEGIN
 #undef BUFFER
-      0};
+#undef GROUP_END
+  };
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const HostQuestion question = questions[i];
-  HOST(answer)(&globals, &question, out + i);
+  HOST(answer)(&groups, &question, out + i);
 }
 )";
 
@@ -69,30 +78,25 @@ Program device_program(int width) {
   return Program::from_source(device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
 }
 
-template <class T>
-std::span<const T> contents(const std::vector<T>& values) {
-  return values;
-}
-template <class T>
-std::span<const T> contents(const T& value) {
-  return {&value, 1};
-}
-
-std::vector<HostAnswer> ask_device(Program& program, const FlatScene& scene, const std::vector<HostQuestion>& questions) {
+std::vector<HostAnswer> ask_device(Program& program, const LoweredModel& model, const std::vector<HostQuestion>& questions) {
   cl::Kernel kernel = program.kernel("answers");
   cl_uint index = 0;
-  std::vector<RawBuffer> kept;
-  const auto add = [&](RawBuffer buffer) {
-    kernel.setArg(index++, buffer.handle());
-    kept.push_back(std::move(buffer));
-  };
-#define IN(name, type) add(Buffer<type>(device(), contents<type>(scene.name)));
-#define STATE(name, type) add(Buffer<type>(device(), std::size_t{1}));
-#define BUFFER(name, type, access) access(name, type)
-#include "shared/buffers.def"
+  const SceneBuffers scene(device(), model.scene);
+  const SensorBuffers view(device(), model.view);
+#define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
+#define GROUP_END(Type) }
+#define GROUP_BEGIN(Type, group) \
+  {                              \
+    const auto& buffers = scene.group;
+  SCENE_GROUPS
+#undef GROUP_BEGIN
+#define GROUP_BEGIN(Type, group) \
+  {                              \
+    const auto& buffers = view.group;
+  VIEW_GROUPS
+#undef GROUP_BEGIN
 #undef BUFFER
-#undef STATE
-#undef IN
+#undef GROUP_END
   const Buffer<HostQuestion> in(device(), std::span<const HostQuestion>(questions));
   Buffer<HostAnswer> out(device(), questions.size());
   kernel.setArg(index++, in.handle());
@@ -115,7 +119,7 @@ class Tame : public NumberSource {
   std::mt19937 random_;
 };
 
-std::optional<FlatScene> tame_scene(unsigned kind, std::uint32_t seed, Bounds& bounds) {
+std::optional<LoweredModel> tame_scene(unsigned kind, std::uint32_t seed, Bounds& bounds) {
   Tame numbers(seed);
   const Scene scene = ModelMaker(numbers).scene(kind, 3);
   Diagnostics diagnostics;
@@ -124,7 +128,7 @@ std::optional<FlatScene> tame_scene(unsigned kind, std::uint32_t seed, Bounds& b
   bounds = bounds_of(scene);
   if (bounds.empty()) return std::nullopt;
   try {
-    return lower(scene);
+    return LoweredModel{lower(scene), lower_view(scene)};
   } catch (const InputError&) {  // two image lights
     return std::nullopt;
   }
@@ -227,7 +231,7 @@ TEST_P(HostKernels, SayWhatTheDeviceSays) {
       const SceneArrays arrays(*scene);
       for (std::size_t i = 0; i < questions.size(); ++i) {
         HostAnswer host;
-        host_kernels(width).answer(arrays.globals(), &questions[i], &host);
+        host_kernels(width).answer(arrays.groups(), &questions[i], &host);
         compare(host, there[i], tally);
       }
     }
@@ -258,8 +262,8 @@ TEST(HostKernels, DoNotDependOnTheWidth) {
     const SceneArrays arrays(*scene);
     for (const HostQuestion& question : rays_into(bounds, seed, 200)) {
       HostAnswer wide, scalar;
-      host_kernels(8).answer(arrays.globals(), &question, &wide);
-      host_kernels(1).answer(arrays.globals(), &question, &scalar);
+      host_kernels(8).answer(arrays.groups(), &question, &wide);
+      host_kernels(1).answer(arrays.groups(), &question, &scalar);
       ++rays;
       ASSERT_EQ(std::memcmp(&wide.closest, &scalar.closest, sizeof wide.closest), 0)
           << "seed " << seed << ": t " << wide.closest.t << " and " << scalar.closest.t;

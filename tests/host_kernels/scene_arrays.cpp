@@ -18,14 +18,23 @@ const T* first(const T& value) {
 }  // namespace
 
 // A copied vector has no room to spare.
-SceneArrays::SceneArrays(const FlatScene& scene) : scene_(scene) {
-#define IN(name) globals_.name = first(scene_.name);
-#define STATE(name)
-#define BUFFER(name, type, access) access(name)
-#include "shared/buffers.def"
+SceneArrays::SceneArrays(const LoweredModel& model) : model_(model) {
+#define GROUP_BEGIN(Type, group) \
+  {                              \
+    auto& arrays = groups_.group;
+#define BUFFER(name, type, access) arrays.name = first(flat.name);
+#define GROUP_END(Type) }
+  {
+    const FlatScene& flat = model_.scene;
+    SCENE_GROUPS
+  }
+  {
+    const FlatView& flat = model_.view;
+    VIEW_GROUPS
+  }
+#undef GROUP_BEGIN
 #undef BUFFER
-#undef STATE
-#undef IN
+#undef GROUP_END
 }
 
 }  // namespace caplet::test

@@ -9,17 +9,22 @@
 
 namespace caplet::test {
 
+struct LoweredModel {
+  FlatScene scene;
+  FlatView view;
+};
+
 /// Keeps its own copy of the arrays.
 class SceneArrays {
  public:
-  explicit SceneArrays(const FlatScene& scene);
+  explicit SceneArrays(const LoweredModel& model);
   SceneArrays(const SceneArrays&) = delete;
   SceneArrays& operator=(const SceneArrays&) = delete;
-  const Globals* globals() const { return &globals_; }
+  const HostGroups* groups() const { return &groups_; }
 
  private:
-  FlatScene scene_;
-  Globals globals_;
+  LoweredModel model_;
+  HostGroups groups_;
 };
 
 }  // namespace caplet::test

@@ -18,41 +18,27 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 const char* const kernel_text = R"(
-#include "globals.cl"
 #include "lights/lights.cl"
 #include "trace/trace.cl"
 
-#define SCENE                                                                                                                 \
-  __global const ParamsRecord *params, __global const float *nodes, __global const float *leaves,                             \
-      __global const InstanceRecord *instances, __global const GeometryRecord *geometries, __global const LightRecord *lights, \
-      __global const float *light_data, __global const AliasRecord *light_alias, __global const SpectrumRecord *spectra,      \
-      __global const float *spectrum_tables, __global const float *environment_texels, __global const float *environment_cdf, \
-      __global const uint *primitive_geometry, __global const uint *surface_materials
-#define MAKE_GLOBALS                          \
-  Globals g;                                  \
-  g.params = params;                          \
-  g.nodes = nodes;                            \
-  g.leaves = leaves;                          \
-  g.instances = instances;                    \
-  g.geometries = geometries;                  \
-  g.lights = lights;                          \
-  g.light_data = light_data;                  \
-  g.light_alias = light_alias;                \
-  g.spectra = spectra;                        \
-  g.spectrum_tables = spectrum_tables;        \
-  g.environment_texels = environment_texels;  \
-  g.environment_cdf = environment_cdf;        \
-  g.primitive_geometry = primitive_geometry;  \
-  g.surface_materials = surface_materials;    \
-  const uint i = (uint)get_global_id(0);      \
-  if (i >= count) return;                     \
+#define GROUP_BEGIN(Type, group)
+#define BUFFER(name, type, access) access(type) name,
+#define GROUP_END(Type)
+#define SCENE GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS uint scene_end
+#define MAKE_SCENE                                                                                                    \
+  const Scene scene = {{world, nodes, leaves, instances},                                                             \
+                       {geometries, primitive_geometry, surface_materials, mesh_indices, mesh_normals, mesh_uvs},     \
+                       {spectra, spectrum_tables},                                                                    \
+                       {lighting, lights, light_data, light_alias, environment_texels, environment_cdf}};             \
+  const uint i = (uint)get_global_id(0);                                                                              \
+  if (i >= count) return;                                                                                             \
   const float4 lambda = (float4)(450.0f, 500.0f, 550.0f, 600.0f)
 
 __kernel void sample_lights(SCENE, float px, float py, float pz, __global const float* u, __global float* out, uint count) {
-  MAKE_GLOBALS;
+  MAKE_SCENE;
   const float3 p = (float3)(px, py, pz);
   LightSample s;
-  const int some = light_sample(&g, p, lambda, (uint)(u[3 * i] * 4294967296.0f), (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
+  const int some = light_sample(&scene, p, lambda, (uint)(u[3 * i] * 4294967296.0f), (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
   __global float* o = out + 11 * i;
   for (int k = 0; k < 11; ++k) o[k] = 0.0f;
   if (!some) return;
@@ -67,38 +53,38 @@ __kernel void sample_lights(SCENE, float px, float py, float pz, __global const 
     RayRecord ray;
     ray.ox = p.x; ray.oy = p.y; ray.oz = p.z; ray.t_min = 0.0f;
     ray.dx = d.x; ray.dy = d.y; ray.dz = d.z; ray.t_max = 1.0f;
-    o[10] = (float)trace_any(nodes, leaves, instances, params->root, ray);
+    o[10] = (float)trace_any(&scene.tree, ray);
   }
 }
 
 __kernel void area_densities(SCENE, uint light, float px, float py, float pz, __global const float* points, __global float* out,
                              uint count) {
-  MAKE_GLOBALS;
+  MAKE_SCENE;
   const float3 p = (float3)(px, py, pz);
   Surface hit;
   hit.p = vload3(2 * i, points);
   hit.ng = vload3(2 * i + 1, points);
-  out[i] = light_area_pdf(&g, light, p, &hit, normalize(hit.p - p)) + 0.0f * lambda.x;
+  out[i] = light_area_pdf(&scene, light, p, &hit, normalize(hit.p - p)) + 0.0f * lambda.x;
 }
 
 __kernel void sky(SCENE, __global const float* directions, __global float* out, uint count) {
-  MAKE_GLOBALS;
+  MAKE_SCENE;
   const float3 wi = vload3(i, directions);
-  out[2 * i] = light_infinite(&g, wi, lambda, 1.0f, 1).x;
+  out[2 * i] = light_infinite(&scene.spectra, &scene.lights, wi, lambda, 1.0f, 1).x;
   // With the density of the ray known, the weight gives away that of light sampling: w = 1 / (1 + pdf^2).
-  const float weight = light_infinite(&g, wi, lambda, 1.0f, 0).x / out[2 * i];
+  const float weight = light_infinite(&scene.spectra, &scene.lights, wi, lambda, 1.0f, 0).x / out[2 * i];
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
 // Of the 2^32 numbers, those from i << shift on, 2^shift of them: how many choose each of up to 8 lights, and whether every chance is
 // the light's own.
 __kernel void selections(SCENE, uint shift, __global uint* out, uint count) {
-  MAKE_GLOBALS;
+  MAKE_SCENE;
   uint counts[8] = {0, 0, 0, 0, 0, 0, 0, 0};
   uint wrong = lambda.x > 0.0f ? 0u : 1u;
   for (uint k = 0; k < (1u << shift); ++k) {
     float chance;
-    const uint chosen = light_select(&g, (i << shift) + k, &chance);
+    const uint chosen = light_select(&scene.lights, (i << shift) + k, &chance);
     ++counts[min(chosen, 7u)];
     wrong += chance != light_alias[chosen].probability;
   }
@@ -108,16 +94,11 @@ __kernel void selections(SCENE, uint shift, __global uint* out, uint count) {
 
 // Each of `count` random numbers chooses a light.
 __kernel void select_lights(SCENE, __global const uint* u, __global uint* out, uint count) {
-  MAKE_GLOBALS;
+  MAKE_SCENE;
   float chance;
-  out[i] = light_select(&g, u[i], &chance) + (lambda.x > 0.0f ? 0u : 1u);
+  out[i] = light_select(&scene.lights, u[i], &chance) + (lambda.x > 0.0f ? 0u : 1u);
 }
 )";
-
-template <class T>
-RawBuffer upload(const Device& device, const std::vector<T>& values) {
-  return RawBuffer(device, values.size() * sizeof(T), true, values.data());
-}
 
 Program& program(const Device& device) {
   static Program built = Program::from_source(device, "light_bench", flatten_kernels(kernel_text), "-DCAPLET_REAL_WIDTH=8");
@@ -131,25 +112,21 @@ Device& test_device() {
 
 }  // namespace
 
-LightBench::LightBench(const FlatScene& scene) : device_(test_device()) {
-  scene_buffers_.push_back(upload(device_, std::vector<ParamsRecord>{scene.params}));
-  scene_buffers_.push_back(upload(device_, scene.nodes));
-  scene_buffers_.push_back(upload(device_, scene.leaves));
-  scene_buffers_.push_back(upload(device_, scene.instances));
-  scene_buffers_.push_back(upload(device_, scene.geometries));
-  scene_buffers_.push_back(upload(device_, scene.lights));
-  scene_buffers_.push_back(upload(device_, scene.light_data));
-  scene_buffers_.push_back(upload(device_, scene.light_alias));
-  scene_buffers_.push_back(upload(device_, scene.spectra));
-  scene_buffers_.push_back(upload(device_, scene.spectrum_tables));
-  scene_buffers_.push_back(upload(device_, scene.environment_texels));
-  scene_buffers_.push_back(upload(device_, scene.environment_cdf));
-  scene_buffers_.push_back(upload(device_, scene.primitive_geometry));
-  scene_buffers_.push_back(upload(device_, scene.surface_materials));
-}
+LightBench::LightBench(const FlatScene& scene) : device_(test_device()), scene_(device_, scene) {}
 
-void LightBench::bind_scene(cl::Kernel& kernel) {
-  for (cl_uint i = 0; i < scene_buffers_.size(); ++i) kernel.setArg(i, scene_buffers_[i].handle());
+cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
+  cl_uint index = 0;
+#define GROUP_BEGIN(Type, group) \
+  {                              \
+    const Type##Buffers& buffers = scene_.group;
+#define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
+#define GROUP_END(Type) }
+  GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+  kernel.setArg(index++, cl_uint{0});
+  return index;
 }
 
 std::vector<SampledLight> LightBench::sample(const glm::dvec3& p, std::size_t count) {
@@ -159,8 +136,7 @@ std::vector<SampledLight> LightBench::sample(const glm::dvec3& p, std::size_t co
   const Buffer<float> numbers(device_, std::span<const float>(u));
   Buffer<float> out(device_, 11 * count);
   cl::Kernel kernel = program(device_).kernel("sample_lights");
-  bind_scene(kernel);
-  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  cl_uint at = bind_scene(kernel);
   for (int k = 0; k < 3; ++k) kernel.setArg(at++, static_cast<float>(p[k]));
   kernel.setArg(at++, numbers.handle());
   kernel.setArg(at++, out.handle());
@@ -183,8 +159,7 @@ std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& 
   const Buffer<float> in(device_, std::span<const float>(flat));
   Buffer<float> out(device_, points.size());
   cl::Kernel kernel = program(device_).kernel("area_densities");
-  bind_scene(kernel);
-  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, light);
   for (int k = 0; k < 3; ++k) kernel.setArg(at++, static_cast<float>(p[k]));
   kernel.setArg(at++, in.handle());
@@ -202,8 +177,7 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   const Buffer<float> in(device_, std::span<const float>(flat));
   Buffer<float> out(device_, 2 * directions.size());
   cl::Kernel kernel = program(device_).kernel("sky");
-  bind_scene(kernel);
-  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, in.handle());
   kernel.setArg(at++, out.handle());
   kernel.setArg(at++, static_cast<cl_uint>(directions.size()));
@@ -218,8 +192,7 @@ std::vector<std::uint64_t> LightBench::all_selections() {
   constexpr std::size_t shift = 14, items = std::size_t{1} << (32 - shift);
   Buffer<std::uint32_t> out(device_, 9 * items);
   cl::Kernel kernel = program(device_).kernel("selections");
-  bind_scene(kernel);
-  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, static_cast<cl_uint>(shift));
   kernel.setArg(at++, out.handle());
   kernel.setArg(at++, static_cast<cl_uint>(items));
@@ -234,8 +207,7 @@ std::vector<std::uint32_t> LightBench::select(const std::vector<std::uint32_t>& 
   const Buffer<std::uint32_t> numbers(device_, std::span<const std::uint32_t>(u));
   Buffer<std::uint32_t> out(device_, u.size());
   cl::Kernel kernel = program(device_).kernel("select_lights");
-  bind_scene(kernel);
-  auto at = static_cast<cl_uint>(scene_buffers_.size());
+  cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, numbers.handle());
   kernel.setArg(at++, out.handle());
   kernel.setArg(at++, static_cast<cl_uint>(u.size()));

@@ -12,6 +12,7 @@
 
 #include "device/device.h"
 #include "lower/lower.h"
+#include "render/buffers.h"
 #include "scene/scene.h"
 
 namespace caplet::test {
@@ -47,9 +48,10 @@ class LightBench {
   std::vector<std::uint32_t> select(const std::vector<std::uint32_t>& u);
 
  private:
-  void bind_scene(cl::Kernel& kernel);
+  /// Returns the number of the next argument.
+  cl_uint bind_scene(cl::Kernel& kernel);
   Device device_;
-  std::vector<RawBuffer> scene_buffers_;
+  SceneBuffers scene_;
 };
 
 /// `count` points a smooth part of the shape's emitting surface, evenly spread in its own coordinates; areas from the derivatives

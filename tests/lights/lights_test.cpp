@@ -146,7 +146,7 @@ TEST(ConstantLight, IsNeverSampledAndFoundByEveryRay) {
   Light light = light_of(InfiniteLight{});
   light.scale = 2.5;
   const FlatScene flat = lower(scene_with({light}));
-  EXPECT_EQ(flat.params.sampled_light_count, 0u);
+  EXPECT_EQ(flat.lighting.sampled_light_count, 0u);
   LightBench bench(flat);
   EXPECT_EQ(bench.sample({0, 0, 0}, 1)[0].pdf, 0);
   for (const glm::dvec2& sky : bench.sky(sphere_directions(10))) {
@@ -227,7 +227,7 @@ TEST_P(ImageLight, ABlackImageIsNotSampled) {
   const int width = 4, height = GetParam() ? 4 : 2;
   const FlatScene flat = lower(scene_with(
       {image_light(width, height, GetParam(), std::vector<float>(static_cast<std::size_t>(3 * width * height), 0.f))}));
-  EXPECT_EQ(flat.params.sampled_light_count, 0u);
+  EXPECT_EQ(flat.lighting.sampled_light_count, 0u);
   EXPECT_EQ(LightBench(flat).sky({{0, 0, 1}})[0].x, 0);
 }
 

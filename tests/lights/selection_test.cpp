@@ -73,7 +73,7 @@ TEST(LightSelection, IsHalfByPowerAndHalfEven) {
   lights.emplace_back();
   lights.back().model = InfiniteLight{};
   const FlatScene flat = lower(scene_with(lights));
-  EXPECT_EQ(flat.params.sampled_light_count, 29u);
+  EXPECT_EQ(flat.lighting.sampled_light_count, 29u);
   for (std::size_t i = 0; i < 37; ++i)
     EXPECT_NEAR(chance(flat, i), i % 5 == 0 ? 0 : 0.5 * lights[i].scale / total + 0.5 / 29, 0x1p-23) << i;
   EXPECT_EQ(chance(flat, 37), 0);
@@ -123,7 +123,7 @@ TEST(LightSelection, ManyLights) {
   EXPECT_EQ(sum, 1);
   FlatScene flat = lower(scene_with({point_light(1), point_light(1)}));
   flat.light_alias = table;
-  flat.params.light_count = 100000;
+  flat.lighting.light_count = 100000;
   constexpr std::size_t n = 1 << 20;
   std::vector<std::uint32_t> u;
   for (std::size_t i = 0; i < n; ++i) u.push_back(static_cast<std::uint32_t>(engine()));

@@ -262,9 +262,9 @@ TEST_P(ImageSky, HasTheWhiteOfItsOwnSpace) {
   image->space = ColorSpace::aces2065_1;
   std::get<InfiniteLight>(light.model).image = image;
   const FlatScene aces = lowered({light});
-  EXPECT_EQ(aces.params.illuminant_table, srgb.params.illuminant_table);
+  EXPECT_EQ(aces.world.illuminant_table, srgb.world.illuminant_table);
   for (std::size_t i = 0; i < 471; ++i)
-    EXPECT_EQ(aces.spectrum_tables[aces.params.illuminant_table + i], srgb.spectrum_tables[srgb.params.illuminant_table + i]);
+    EXPECT_EQ(aces.spectrum_tables[aces.world.illuminant_table + i], srgb.spectrum_tables[srgb.world.illuminant_table + i]);
   // At 450 nm daylight of 6500 K has 117.008 / 100 of its value at 560 nm, that of the ACES white 107.9044 / 100; both of
   // luminance 1. The tables' integrals with the observer (5 nm sums): 0.9993 of each other.
   const double ratio = LightBench(aces).sky({{0, 0, 1}})[0].x / LightBench(srgb).sky({{0, 0, 1}})[0].x;

@@ -316,24 +316,22 @@ TEST(RayOfPixel, IsTheDevicesCameraRay) {
   for (const char* name : {"scenes/capsules.pbrt", "tests/render/everything.pbrt"}) {
     Scene scene = scene_file(name);
     scene.film.crop = {8, 24, 5, 20};
-    const FlatScene flat = lower(scene);
+    const FlatView flat = lower_view(scene);
     const std::string source = flatten_kernels(R"(
 #include "math/camera.cl"
 __kernel void rays(__global const CameraRecord* camera, uint width, uint count, __global RayRecord* out) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  Globals g;
-  g.camera = camera;
-  out[i] = camera_ray(&g, (float2)((float)(i % width) + 0.5f, (float)(i / width) + 0.5f), (float2)(0.5f, 0.5f));
+  out[i] = camera_ray(camera, (float2)((float)(i % width) + 0.5f, (float)(i / width) + 0.5f), (float2)(0.5f, 0.5f));
 }
 )");
     const Device& device = test::test_device();
     Program program = Program::from_source(device, "camera_test", source, "");
     cl::Kernel kernel = program.kernel("rays");
-    const std::size_t count = std::size_t{flat.params.width} * flat.params.height;
+    const std::size_t count = std::size_t{flat.view.width} * flat.view.height;
     const Buffer<CameraRecord> camera(device, std::span(&flat.camera, 1));
     const Buffer<RayRecord> out(device, count);
-    set_arguments(device, kernel, camera, cl_uint{flat.params.width}, static_cast<cl_uint>(count), out);
+    set_arguments(device, kernel, camera, cl_uint{flat.view.width}, static_cast<cl_uint>(count), out);
     launch(device, kernel, count, 64);
     const std::vector<RayRecord> rays = out.read();
     for (std::size_t i = 0; i < count; i += 7) {

@@ -79,17 +79,18 @@ TEST(Determinism, CropIsPartOfTheWhole) {
 TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
   Scene scene = import_scene(scene_file(), FileImageReader());
   const FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
   RenderOptions options;
   options.samples_per_pixel = 4;
-  const RenderResult a = render(flat, test_device(Encoding::wide), options, {});
-  const RenderResult b = render(flat, test_device(Encoding::single), options, {});
+  const RenderResult a = render(flat, view, test_device(Encoding::wide), options, {});
+  const RenderResult b = render(flat, view, test_device(Encoding::single), options, {});
   std::size_t different = 0;
   for (std::size_t i = 0; i < a.film.size(); ++i)
     different += a.film[i].object != b.film[i].object || a.film[i].primitive != b.film[i].primitive;
   // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
   EXPECT_LE(different, a.film.size() / 1000);
-  const Figures figures = compare(picture_of(develop(a.film, flat.params, scene, Layers::all())),
-                                  picture_of(develop(b.film, flat.params, scene, Layers::all())));
+  const Figures figures = compare(picture_of(develop(a.film, view.view, scene, Layers::all())),
+                                  picture_of(develop(b.film, view.view, scene, Layers::all())));
   EXPECT_LT(std::abs(figures.mean), 2e-3);
   // PoCL's compiler rounds every operation of both as it is written.
   if (test_device().is_pocl()) {
@@ -116,14 +117,15 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   scene.film.height = 512;
   scene.integrator.max_depth = 1;
   const FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
   ASSERT_GE(flat.bvh_nodes, 1024u);
   RenderOptions options;
   options.samples_per_pixel = 4;
-  const RenderResult a = render(flat, test_device(Encoding::wide), options, {});
+  const RenderResult a = render(flat, view, test_device(Encoding::wide), options, {});
   options.batch_paths = std::size_t{1} << 20;
-  const RenderResult b = render(flat, test_device(Encoding::single), options, {});
-  const Picture wide = picture_of(develop(a.film, flat.params, scene, Layers::all())),
-                single = picture_of(develop(b.film, flat.params, scene, Layers::all()));
+  const RenderResult b = render(flat, view, test_device(Encoding::single), options, {});
+  const Picture wide = picture_of(develop(a.film, view.view, scene, Layers::all())),
+                single = picture_of(develop(b.film, view.view, scene, Layers::all()));
   EXPECT_LT(std::abs(compare(wide, single).mean), 2e-3);
   if (test_device().is_pocl()) {
     EXPECT_TRUE(same_bits(a.film, b.film));

@@ -102,10 +102,11 @@ TEST(ShadingNormals, LetNoScatteredRayThrough) {
   const Scene scene =
       scene_of(from_aside, grey + leaning + black + "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\nTranslate 0 0 -3\n" + ground);
   FlatScene flat = lower(scene);
-  flat.params.sampled_light_count = 0;
+  const FlatView view = lower_view(scene);
+  flat.lighting.sampled_light_count = 0;
   RenderOptions options;
   options.samples_per_pixel = 64;
-  EXPECT_EQ(mean_of(develop(render(flat, test_device(), options, {}).film, flat.params, scene, Layers::all()), "G").value, 0);
+  EXPECT_EQ(mean_of(develop(render(flat, view, test_device(), options, {}).film, view.view, scene, Layers::all()), "G").value, 0);
 }
 
 // --- Shadows ---

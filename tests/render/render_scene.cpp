@@ -24,10 +24,11 @@ const Device& test_device() {
 
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options) {
   const FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
   options.samples_per_pixel = samples_per_pixel;
   Rendered out;
-  out.result = render(flat, test_device(), options, {});
-  out.image = develop(out.result.film, flat.params, scene, Layers::all());
+  out.result = render(flat, view, test_device(), options, {});
+  out.image = develop(out.result.film, view.view, scene, Layers::all());
   return out;
 }
 

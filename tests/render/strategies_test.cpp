@@ -26,14 +26,15 @@ Scene scene_of(const std::string& world, const std::string& view) {
 /// Of the green of a render. `sampled`: with light sampling, of all lights alike.
 Mean light_of(const Scene& scene, int samples, bool sampled) {
   FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
   // Csg shapes, whose area nobody knows, are sampled too.
-  for (uint i = 0; i < flat.params.light_count; ++i)
-    flat.light_alias[i] = {1, i, 1 / static_cast<float>(flat.params.light_count), 0};
-  flat.params.sampled_light_count = sampled ? flat.params.light_count : 0;
+  for (uint i = 0; i < flat.lighting.light_count; ++i)
+    flat.light_alias[i] = {1, i, 1 / static_cast<float>(flat.lighting.light_count), 0};
+  flat.lighting.sampled_light_count = sampled ? flat.lighting.light_count : 0;
   RenderOptions options;
   options.samples_per_pixel = samples;
-  const RenderResult result = render(flat, test_device(), options, {});
-  return mean_of(develop(result.film, flat.params, scene, Layers::all()), "G");
+  const RenderResult result = render(flat, view, test_device(), options, {});
+  return mean_of(develop(result.film, view.view, scene, Layers::all()), "G");
 }
 
 struct Case {

@@ -45,22 +45,17 @@ __kernel void hashes(__global uint* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i < count) out[i] = hash_combine(i / 64u, i % 64u);
 }
-__kernel void filters(__global const ParamsRecord* params, __global const float* table, __global const float* u,
+__kernel void filters(__global const ViewRecord* view, __global const float* table, __global const float* u,
                       __global float* out, uint count) {
-  Globals g;
-  g.params = params;
-  g.filter_table = table;
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   float weight;
-  vstore2(filter_sample(&g, vload2(i, u), &weight), 0, out + 3 * i);
+  vstore2(filter_sample(table, view->filter_width, view->filter_height, vload2(i, u), &weight), 0, out + 3 * i);
   out[3 * i + 2] = weight;
 }
 __kernel void rays(__global const CameraRecord* camera, __global const float* in, __global RayRecord* out, uint count) {
-  Globals g;
-  g.camera = camera;
   const uint i = (uint)get_global_id(0);
-  if (i < count) out[i] = camera_ray(&g, vload2(2 * i, in), vload2(2 * i + 1, in));
+  if (i < count) out[i] = camera_ray(camera, vload2(2 * i, in), vload2(2 * i + 1, in));
 }
 __kernel void sums(__global const float* values, uint count, __global float* out) {
   float sum = 0.0f, low = 0.0f;
@@ -120,18 +115,17 @@ struct FilterSamples {
   std::vector<double> weights;
 };
 FilterSamples filter_samples(const PixelFilter& filter, std::size_t count) {
-  FlatScene flat;
+  FlatView flat;
   lower_filter(filter, flat);
   std::mt19937 engine(17);
   std::vector<float> u(2 * count);
   for (float& x : u) x = static_cast<float>(engine() >> 8) * 0x1p-24f;
-  const std::vector<ParamsRecord> params = {flat.params};
-  const Buffer<ParamsRecord> params_buffer(bench().device, std::span<const ParamsRecord>(params));
+  const Buffer<ViewRecord> view(bench().device, std::span<const ViewRecord>(&flat.view, 1));
   const Buffer<float> table(bench().device, std::span<const float>(flat.filter_table));
   const Buffer<float> in(bench().device, std::span<const float>(u));
   Buffer<float> out(bench().device, 3 * count);
   cl::Kernel kernel = bench().program.kernel("filters");
-  kernel.setArg(0, params_buffer.handle());
+  kernel.setArg(0, view.handle());
   kernel.setArg(1, table.handle());
   kernel.setArg(2, in.handle());
   kernel.setArg(3, out.handle());
@@ -147,7 +141,7 @@ FilterSamples filter_samples(const PixelFilter& filter, std::size_t count) {
 }
 
 RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
-  FlatScene flat;
+  FlatView flat;
   lower_camera(scene, flat);
   const std::vector<CameraRecord> record = {flat.camera};
   const std::vector<float> in = {raster.x, raster.y, lens.x, lens.y};
@@ -381,12 +375,12 @@ TEST(Camera, ScreenWindowAndCropAreThoseOfTheFile) {
   scene.film.height = 20;
   scene.film.crop = std::array<int, 4>{10, 30, 5, 20};
   scene.camera.screen_window = std::array<double, 4>{-1, 3, -0.5, 1};
-  FlatScene flat;
+  FlatView flat;
   lower_camera(scene, flat);
-  EXPECT_EQ(flat.params.crop_x, 10u);
-  EXPECT_EQ(flat.params.crop_y, 5u);
-  EXPECT_EQ(flat.params.crop_width, 20u);
-  EXPECT_EQ(flat.params.crop_height, 15u);
+  EXPECT_EQ(flat.view.crop_x, 10u);
+  EXPECT_EQ(flat.view.crop_y, 5u);
+  EXPECT_EQ(flat.view.crop_width, 20u);
+  EXPECT_EQ(flat.view.crop_height, 15u);
   const RayRecord corner = camera_ray(scene, {40, 20}, {0.5f, 0.5f});
   EXPECT_NEAR(corner.dx / corner.dz, 3, 1e-5);
   EXPECT_NEAR(corner.dy / corner.dz, -0.5, 1e-5);

@@ -412,7 +412,7 @@ TEST(Csg, BoundsAreTight) {
         std::tuple(csg_shape(Operation::set_difference, {small, operand(box(dvec3(5), dvec3(6)))}), -1.0, 1.0),
         std::tuple(csg_shape(Operation::set_intersection, {small, beside}), 0.0, 1.0)}) {
     const FlatScene scene = flat_scene(shape);
-    const double radius = double(scene.params.scene_radius), center = double(scene.params.scene_center_x);
+    const double radius = double(scene.world.radius), center = double(scene.world.center_x);
     EXPECT_NEAR(center, 0.5 * (low + high), 1e-3);
     EXPECT_NEAR(radius, 0.5 * std::sqrt(3.0) * (high - low), 1e-3);
   }

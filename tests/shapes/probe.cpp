@@ -33,21 +33,14 @@ __kernel void probe_trace(__global const float* nodes, __global const float* lea
                           __global const RayRecord* rays, __global HitRecord* hits, __global SurfaceOut* surfaces, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  Globals g;
-  g.nodes = nodes;
-  g.leaves = leaves;
-  g.instances = instances;
-  g.geometries = geometries;
-  g.primitive_geometry = primitive_geometry;
-  g.mesh_indices = mesh_indices;
-  g.mesh_uvs = mesh_uvs;
-  g.mesh_normals = mesh_uvs;
+  const Tree tree = {0, nodes, leaves, instances};
+  const Surfaces scene = {geometries, primitive_geometry, 0, mesh_indices, mesh_uvs, mesh_uvs};
   const RayRecord ray = rays[i];
-  const HitRecord hit = trace_closest(nodes, leaves, instances, roots[i], ray);
+  const HitRecord hit = trace_ray(&tree, roots[i], ray, 0);
   hits[i] = hit;
-  surfaces[i].any = trace_any(nodes, leaves, instances, roots[i], ray);
+  surfaces[i].any = trace_ray(&tree, roots[i], ray, 1).slot != CAPLET_NONE;
   if (hit.slot == CAPLET_NONE) return;
-  const Surface s = surface_at(&g, &ray, &hit);
+  const Surface s = surface_at(&tree, &scene, &ray, &hit);
   vstore3(s.p, 0, surfaces[i].p);
   vstore3(s.ng, 0, surfaces[i].ng);
   vstore3(s.ns, 0, surfaces[i].ns);
@@ -68,10 +61,11 @@ __kernel void probe_list(__global const float* nodes, __global const float* leav
                          __global uint* counts, __global HitRecord* sorted, uint capacity, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
+  const Tree tree = {0, nodes, leaves, instances};
   const RayRecord ray = rays[i];
-  hits[i] = trace_closest(nodes, leaves, instances, roots[i], ray);
-  any[i] = trace_any(nodes, leaves, instances, roots[i], ray);
-  counts[i] = trace_all(nodes, leaves, instances, roots[i], ray, capacity, sorted + (size_t)i * capacity);
+  hits[i] = trace_ray(&tree, roots[i], ray, 0);
+  any[i] = trace_ray(&tree, roots[i], ray, 1).slot != CAPLET_NONE;
+  counts[i] = trace_list(&tree, roots[i], ray, capacity, sorted + (size_t)i * capacity);
 }
 
 __kernel void probe_leave(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
@@ -91,7 +85,8 @@ __kernel void probe_leave(__global const float* nodes, __global const float* lea
   ray.dy = d.y;
   ray.dz = d.z;
   ray.t_max = INFINITY;
-  hits[i] = trace_closest(nodes, leaves, instances, roots[i], ray);
+  const Tree tree = {0, nodes, leaves, instances};
+  hits[i] = trace_ray(&tree, roots[i], ray, 0);
 }
 )";
 

@@ -31,14 +31,14 @@ typedef struct {
 __kernel void scene_trace(SCENE_PARAMETERS, __global const RayRecord* rays, __global SceneHit* hits, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  SCENE_GLOBALS(g);
+  SCENE_STRUCTS;
   const RayRecord ray = rays[i];
-  const HitRecord hit = trace_closest(nodes, leaves, instances, root, ray);
+  const HitRecord hit = trace_closest(&tree, ray);
   __global SceneHit* out = hits + i;
-  out->any = (uint)trace_any(nodes, leaves, instances, root, ray);
+  out->any = (uint)trace_any(&tree, ray);
   out->found = hit.slot != CAPLET_NONE;
   if (hit.slot == CAPLET_NONE) return;
-  const Surface s = surface_at(&g, &ray, &hit);
+  const Surface s = surface_at(&tree, &surfaces, &ray, &hit);
   out->t = hit.t;
   out->u = s.uv.x;
   out->v = s.uv.y;
@@ -57,13 +57,13 @@ __kernel void scene_walk(SCENE_PARAMETERS, __global const RayRecord* rays, __glo
                          uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  SCENE_GLOBALS(g);
+  SCENE_STRUCTS;
   RayRecord ray = rays[i];
   uint n = 0;
   for (; n < most; n++) {
-    const HitRecord hit = trace_closest(nodes, leaves, instances, root, ray);
+    const HitRecord hit = trace_closest(&tree, ray);
     if (hit.slot == CAPLET_NONE) break;
-    const Surface s = surface_at(&g, &ray, &hit);
+    const Surface s = surface_at(&tree, &surfaces, &ray, &hit);
     steps[(size_t)i * most + n] = (float4)(s.p, s.error);
     const float3 o = offset_origin(s.p, s.ng, s.error, (float3)(ray.dx, ray.dy, ray.dz));
     ray.ox = o.x;
@@ -115,7 +115,7 @@ cl::Kernel kernel_of(const char* name, int width) {
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
   cl::Kernel kernel = kernel_of("scene_trace", width);
   const Buffer<SceneHit> hits(device(), rays.size());
-  const SceneBuffers buffers(device(), scene);
+  const SceneOnDevice buffers(device(), scene);
   const auto ray_buffer = upload(device(), rays);
   buffers.set_arguments(kernel, ray_buffer, hits, static_cast<cl_uint>(rays.size()));
   launch(device(), kernel, rays.size(), 16);
@@ -126,7 +126,7 @@ std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& ray
   cl::Kernel kernel = kernel_of("scene_walk", 8);
   const Buffer<WalkStep> steps(device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(device(), rays.size());
-  const SceneBuffers buffers(device(), scene);
+  const SceneOnDevice buffers(device(), scene);
   const auto ray_buffer = upload(device(), rays);
   buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most), static_cast<cl_uint>(rays.size()));
   launch(device(), kernel, rays.size(), 16);

@@ -1,37 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// For test kernels that trace a lowered scene: their parameters, the Globals made of these, and the buffers.
+// For test kernels that trace a lowered scene: their parameters, the groups made of these, and the buffers.
 #pragma once
 
-#include <span>
-#include <tuple>
 #include <vector>
 
 #include "device/device.h"
 #include "lower/lower.h"
+#include "render/buffers.h"
 
 namespace caplet::test {
 
-/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, those of SceneBuffers in order, and SCENE_GLOBALS(g),
-/// which defines the Globals of them.
+/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, the arguments that SceneOnDevice sets, and SCENE_STRUCTS,
+/// which defines `tree` and `surfaces` of them.
 inline constexpr const char* scene_parameters = R"(
-#define SCENE_PARAMETERS                                                                                    \
-  __global const float *nodes, __global const float *leaves, __global const InstanceRecord *instances,      \
-      __global const GeometryRecord *geometries, __global const uint *primitive_geometry,                   \
-      __global const uint *surface_materials, __global const uint *mesh_indices,                            \
-      __global const float *mesh_normals, __global const float *mesh_uvs, uint root
-#define SCENE_GLOBALS(g)                     \
-  Globals g;                                 \
-  g.nodes = nodes;                           \
-  g.leaves = leaves;                         \
-  g.instances = instances;                   \
-  g.geometries = geometries;                 \
-  g.primitive_geometry = primitive_geometry; \
-  g.surface_materials = surface_materials;   \
-  g.mesh_indices = mesh_indices;             \
-  g.mesh_normals = mesh_normals;             \
-  g.mesh_uvs = mesh_uvs
+#include "groups.cl"
+#define GROUP_BEGIN(Type, group)
+#define BUFFER(name, type, access) access(type) name,
+#define GROUP_END(Type)
+#define SCENE_PARAMETERS GROUP_TREE GROUP_SURFACES uint scene_end
+#define SCENE_STRUCTS                                                                          \
+  const Tree tree = {world, nodes, leaves, instances};                                         \
+  const Surfaces surfaces = {geometries,   primitive_geometry, surface_materials,              \
+                             mesh_indices, mesh_normals,       mesh_uvs}
 )";
 
 template <class T>
@@ -40,27 +32,32 @@ Buffer<T> upload(const Device& device, const std::vector<T>& values) {
 }
 
 /// Sets the arguments of a kernel with (SCENE_PARAMETERS, more...). The scene's buffers last as long as this.
-class SceneBuffers {
+class SceneOnDevice {
  public:
-  SceneBuffers(const Device& device, const FlatScene& scene)
-      : device_(&device),
-        buffers_(upload(device, scene.nodes), upload(device, scene.leaves), upload(device, scene.instances),
-                 upload(device, scene.geometries), upload(device, scene.primitive_geometry),
-                 upload(device, scene.surface_materials), upload(device, scene.mesh_indices), upload(device, scene.mesh_normals),
-                 upload(device, scene.mesh_uvs)),
-        root_(scene.params.root) {}
+  SceneOnDevice(const Device& device, const FlatScene& scene) : device_(&device), buffers_(device, scene) {}
 
   template <class... More>
   void set_arguments(cl::Kernel& kernel, const More&... more) const {
-    std::apply([&](const auto&... buffers) { caplet::set_arguments(*device_, kernel, buffers..., root_, more...); }, buffers_);
+    const TreeBuffers& tree = buffers_.tree;
+    const SurfacesBuffers& surfaces = buffers_.surfaces;
+    caplet::set_arguments(*device_, kernel,
+#define GROUP_BEGIN(Type, group)
+#define BUFFER(name, type, access) tree.name,
+#define GROUP_END(Type)
+                          GROUP_TREE
+#undef BUFFER
+#define BUFFER(name, type, access) surfaces.name,
+                          GROUP_SURFACES
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+                          cl_uint{0},
+                          more...);
   }
 
  private:
   const Device* device_;
-  std::tuple<Buffer<float>, Buffer<float>, Buffer<InstanceRecord>, Buffer<GeometryRecord>, Buffer<cl_uint>, Buffer<cl_uint>,
-             Buffer<cl_uint>, Buffer<float>, Buffer<float>>
-      buffers_;
-  cl_uint root_;
+  SceneBuffers buffers_;
 };
 
 }  // namespace caplet::test

@@ -18,45 +18,34 @@ namespace {
 const char* const kernels = R"CL(
 #include "math/spectrum.cl"
 
-static Globals scene(__global const SpectrumRecord* spectra, __global const float* tables, __global const float* observer,
-                     __global const float* wavelengths, __global const ParamsRecord* params) {
-  Globals g;
-  g.spectra = spectra;
-  g.spectrum_tables = tables;
-  g.observer = observer;
-  g.wavelength_table = wavelengths;
-  g.params = params;
-  return g;
-}
-
 #define SCENE __global const SpectrumRecord *spectra, __global const float *tables, __global const float *observer, \
-              __global const float *wavelengths, __global const ParamsRecord *params
+              __global const float *wavelengths, __global const WorldRecord *world
 
 __kernel void evaluate(SCENE, __global const float* lambda, __global float* out, uint count) {
-  const Globals g = scene(spectra, tables, observer, wavelengths, params);
+  const Spectra values = {spectra, tables};
   const uint i = (uint)get_global_id(0);
-  if (i < count) vstore4(spectrum_eval(&g, i / 64, vload4(i % 64, lambda)), i, out);
+  if (i < count) vstore4(spectrum_eval(&values, i / 64, vload4(i % 64, lambda)), i, out);
 }
 __kernel void texel(SCENE, __global const float* lambda, __global float* out, uint count, float4 value) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) vstore4(sigmoid_illuminant(tables + params->illuminant_table, value, vload4(i, lambda)), i, out);
+  if (i < count) vstore4(sigmoid_illuminant(tables + world->illuminant_table, value, vload4(i, lambda)), i, out);
 }
 // Per u: four wavelengths, four densities, then XYZ of spectrum 0 and what xyz_from_spectrum makes of its first wavelength alone.
 __kernel void wavelengths_at(SCENE, __global const float* u, __global float* out, uint count) {
-  const Globals g = scene(spectra, tables, observer, wavelengths, params);
+  const Spectra values = {spectra, tables};
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   float4 pdf;
-  const float4 lambda = wavelengths_sample(&g, u[i], &pdf);
+  const float4 lambda = wavelengths_sample(wavelengths, u[i], &pdf);
   vstore4(lambda, 4 * i, out);
   vstore4(pdf, 4 * i + 1, out);
-  const float4 radiance = spectrum_eval(&g, 0, lambda);
-  vstore4((float4)(xyz_from_spectrum(&g, radiance, lambda, pdf), 0.0f), 4 * i + 2, out);
-  vstore4((float4)(xyz_from_spectrum(&g, radiance, lambda, pdf * (float4)(0.25f, 0.0f, 0.0f, 0.0f)), 0.0f), 4 * i + 3, out);
+  const float4 radiance = spectrum_eval(&values, 0, lambda);
+  vstore4((float4)(xyz_from_spectrum(observer, radiance, lambda, pdf), 0.0f), 4 * i + 2, out);
+  vstore4((float4)(xyz_from_spectrum(observer, radiance, lambda, pdf * (float4)(0.25f, 0.0f, 0.0f, 0.0f)), 0.0f), 4 * i + 3, out);
 }
-__kernel void matrix(__global const ParamsRecord* params, __global float* out) {
+__kernel void matrix(__global const ViewRecord* view, __global float* out) {
   for (int c = 0; c < 3; ++c) {
-    const float3 column = rgb_from_xyz(params->rgb_from_xyz, (float3)(c == 0, c == 1, c == 2));
+    const float3 column = rgb_from_xyz(view->rgb_from_xyz, (float3)(c == 0, c == 1, c == 2));
     out[c] = column.x, out[3 + c] = column.y, out[6 + c] = column.z;
   }
 }
@@ -80,10 +69,10 @@ class SpectrumOnDevice : public testing::Test {
     const Buffer<float> tables(*device_, std::span<const float>(scene_.spectrum_tables));
     const Buffer<float> observer(*device_, std::span<const float>(scene_.observer));
     const Buffer<float> wavelengths(*device_, std::span<const float>(scene_.wavelength_table));
-    const Buffer<ParamsRecord> params(*device_, std::span<const ParamsRecord>(&scene_.params, 1));
+    const Buffer<WorldRecord> world(*device_, std::span<const WorldRecord>(&scene_.world, 1));
     cl::Kernel kernel = program_->kernel(name);
     cl_uint argument = 0;
-    for (const RawBuffer* buffer : std::initializer_list<const RawBuffer*>{&spectra, &tables, &observer, &wavelengths, &params})
+    for (const RawBuffer* buffer : std::initializer_list<const RawBuffer*>{&spectra, &tables, &observer, &wavelengths, &world})
       kernel.setArg(argument++, buffer->handle());
     bind(kernel);
     launch(*device_, kernel, count, 1);
@@ -237,12 +226,13 @@ TEST_F(SpectrumOnDevice, MatrixIsThatOfTheFilmsSpace) {
       {ColorSpace::aces2065_1, {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
   };
   for (const auto& [space, m] : spaces) {
-    FlatScene scene;
-    const SpectrumTable table(scene, space);
-    const Buffer<ParamsRecord> params(*device_, std::span<const ParamsRecord>(&scene.params, 1));
+    Scene scene;
+    scene.film.space = space;
+    const FlatView flat = lower_view(scene);
+    const Buffer<ViewRecord> view(*device_, std::span<const ViewRecord>(&flat.view, 1));
     const Buffer<float> out(*device_, 9);
     cl::Kernel kernel = program_->kernel("matrix");
-    kernel.setArg(0, params.handle());
+    kernel.setArg(0, view.handle());
     kernel.setArg(1, out.handle());
     launch(*device_, kernel, 1, 1);
     const std::vector<float> values = out.read();

@@ -111,8 +111,8 @@ TEST(SpectrumTable, EqualSpectraAreShared) {
   EXPECT_NE(table.add_reflectance(rgb(0.1, 0.2, 0.3)), table.add_reflectance(rgb(0.1, 0.2, 0.31)));
   EXPECT_EQ(table.add_unbounded(*named_spectrum("metal-Cu-k")), table.add_unbounded(*named_spectrum("metal-Cu-k")));
   EXPECT_EQ(scene.spectrum_tables.size(), tables + CAPLET_LAMBDA_COUNT);
-  EXPECT_EQ(table.illuminant_table(ColorSpace::rec2020), scene.params.illuminant_table);  // D65 both
-  EXPECT_NE(table.illuminant_table(ColorSpace::aces2065_1), scene.params.illuminant_table);
+  EXPECT_EQ(table.illuminant_table(ColorSpace::rec2020), scene.world.illuminant_table);  // D65 both
+  EXPECT_NE(table.illuminant_table(ColorSpace::aces2065_1), scene.world.illuminant_table);
 }
 
 TEST(SpectrumTable, ConstantSpectraAreRecognised) {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The groups of shared/groups.h as buffers of a device: TreeBuffers, SurfacesBuffers, ...
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "device/device.h"
+#include "lower/lower.h"
+#include "shared/groups.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+#define GROUP_BEGIN(Type, group) struct Type##Buffers {
+#define BUFFER(name, type, access) Buffer<type> name;
+#define GROUP_END(Type) \
+  }                     \
+  ;
+ALL_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+
+/// The buffers that a kernel is run with, one pointer a group: `bindings.tree`, `bindings.surfaces`, ... Groups that it does not
+/// take may be null.
+struct Bindings {
+#define GROUP_BEGIN(Type, group) const Type##Buffers* group = nullptr;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  ALL_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+};
+
+/// The groups of a scene.
+struct SceneBuffers {
+#define GROUP_BEGIN(Type, group) Type##Buffers group;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  SCENE_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+
+  SceneBuffers(const Device& device, const FlatScene& scene);
+  void bind(Bindings& bindings) const;
+};
+
+/// The groups of a view.
+struct SensorBuffers {
+#define GROUP_BEGIN(Type, group) Type##Buffers group;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  VIEW_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+
+  SensorBuffers() = default;
+  SensorBuffers(const Device& device, const FlatView& view);
+  void bind(Bindings& bindings) const;
+};
+
+/// Those of paths under way, which have `paths` places and `sort_bins` bins.
+struct PathBuffers {
+#define GROUP_BEGIN(Type, group) Type##Buffers group;
+#define BUFFER(name, type, access)
+#define GROUP_END(Type)
+  PATH_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+
+  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins);
+  void bind(Bindings& bindings) const;
+  /// Bytes on the device of each path.
+  static std::uint64_t bytes_per_path();
+};
+
+}  // namespace caplet

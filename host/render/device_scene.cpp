@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "render/device_scene.h"
+
+namespace caplet {
+
+DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
+    : device_(device), buffers_(device, scene), kernels_(device, stage_options(scene, device)), bvh_nodes_(scene.bvh_nodes) {}
+
+Bindings DeviceScene::bindings() const {
+  Bindings out;
+  buffers_.bind(out);
+  return out;
+}
+
+}  // namespace caplet

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A lowered scene on a device, with the kernels that are built for it. Renders and queries of one scene share it.
+#pragma once
+
+#include "device/device.h"
+#include "lower/lower.h"
+#include "render/buffers.h"
+#include "render/kernels.h"
+
+namespace caplet {
+
+class DeviceScene {
+ public:
+  /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError when it does not fit.
+  DeviceScene(const Device& device, const FlatScene& scene);
+
+  const Device& device() const { return device_; }
+  Kernels& kernels() { return kernels_; }
+  /// The scene's groups, and none else. Valid as long as this.
+  Bindings bindings() const;
+  /// Nodes of its trees.
+  std::uint64_t bvh_nodes() const { return bvh_nodes_; }
+
+ private:
+  Device device_;
+  SceneBuffers buffers_;
+  Kernels kernels_;
+  std::uint64_t bvh_nodes_ = 0;
+};
+
+}  // namespace caplet

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "render/kernels.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "base/check.h"
+
+namespace caplet {
+
+namespace {
+
+// One work-item at a time suits PoCL's tracing (docs/performance.md); GPUs need whole wavefronts.
+constexpr std::size_t cpu_local_size = 64;
+constexpr std::size_t gpu_local_size = 64;
+
+constexpr const char* stage_names[] = {
+#define STAGE(name, groups) #name,
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+};
+
+/// Their groups, by name.
+constexpr const char* stage_groups[] = {
+#define STAGE(name, groups) #groups,
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+};
+
+constexpr Stage stages_of_a_render[] = {
+#define STAGE(name, groups) Stage::name,
+#include "shared/stages.def"
+#undef STAGE
+};
+
+const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
+
+/// Sets the buffers of a stage's groups and returns the number of the argument after them.
+cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
+  cl_uint index = 0;
+#define GROUP_BEGIN(Type, group)             \
+  {                                          \
+    CHECK_EQ_(bindings.group != nullptr, true); \
+    const Type##Buffers& buffers = *bindings.group;
+#define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
+#define GROUP_END(Type) }
+  switch (stage) {
+#define STAGE(name, groups) \
+  case Stage::name: {       \
+    groups                  \
+  } break;
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+    case Stage::count:
+      break;
+  }
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+  return index;
+}
+
+}  // namespace
+
+std::span<const Stage> render_stages() { return stages_of_a_render; }
+
+std::size_t buffer_count(Stage stage) {
+#define GROUP_BEGIN(Type, group)
+#define BUFFER(name, type, access) +1
+#define GROUP_END(Type)
+  constexpr std::size_t counts[] = {
+#define STAGE(name, groups) 0 groups,
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+  };
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+  return counts[static_cast<std::size_t>(stage)];
+}
+
+std::string stage_source(Stage stage) {
+  return flatten_kernels(
+      fmt::format("#define STAGE_NAME {0}\n#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
+                  "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
+                  name_of(stage), stage_groups[static_cast<std::size_t>(stage)]));
+}
+
+std::string stage_options(const FlatScene& scene, const Device& device) {
+  std::string options = device.encoding() == Encoding::wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
+  if (scene.basic_shapes()) options += " -DCAPLET_BASIC_SHAPES";
+  return options;
+}
+
+Kernels::Kernels(const Device& device, std::string options)
+    : device_(device), options_(std::move(options)), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {}
+
+void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
+  for (const Stage stage : stages) {
+    auto& compiled = compiled_[static_cast<std::size_t>(stage)];
+    if (compiled) continue;
+    const std::string name = name_of(stage);
+    Program program = Program::from_source(device_, name, stage_source(stage), options_);
+    program.prepare(name, local_size_of(stage), stage == Stage::sort_prefix ? 1 : most);
+    compile_seconds_ += program.build_seconds();
+    compile_seconds_by_stage_.emplace_back(name, program.build_seconds());
+    cl::Kernel kernel = program.kernel(name);
+    compiled = Compiled{std::move(program), std::move(kernel)};
+  }
+}
+
+std::size_t Kernels::local_size_of(Stage stage) const { return stage == Stage::sort_prefix ? 1 : local_size_; }
+
+void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count) {
+  if (count == 0) return;
+  auto& compiled = compiled_[static_cast<std::size_t>(stage)];
+  CHECK_EQ_(compiled.has_value(), true);
+  const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
+  compiled->kernel.setArg(index, narrow<cl_uint>(count));
+  const auto start = std::chrono::steady_clock::now();
+  launch(device_, compiled->kernel, count, local_size_of(stage));
+  if (!timed_) return;
+  device_.finish();
+  compiled->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<std::pair<std::string, double>> Kernels::seconds_by_stage() const {
+  std::vector<std::pair<std::string, double>> out;
+  for (std::size_t i = 0; i < compiled_.size(); ++i)
+    if (compiled_[i]) out.emplace_back(stage_names[i], compiled_[i]->seconds);
+  return out;
+}
+
+}  // namespace caplet

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The stages of stages.def and queries.def as kernels of a device.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device/device.h"
+#include "render/buffers.h"
+
+namespace caplet {
+
+enum class Stage {
+#define STAGE(name, groups) name,
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+  count
+};
+
+/// The stages of a render: those of stages.def.
+std::span<const Stage> render_stages();
+
+/// Number of buffers that the stage's kernel takes.
+std::size_t buffer_count(Stage stage);
+
+/// The OpenCL C of a stage, without `#include`s.
+std::string stage_source(Stage stage);
+
+/// Compiler options of all stages: how traversal is shaped (Device::encoding), and which shapes it must know.
+std::string stage_options(const FlatScene& scene, const Device& device);
+
+class Kernels {
+ public:
+  /// `options`: see stage_options.
+  Kernels(const Device& device, std::string options);
+
+  /// Compiles those that are not compiled yet, for launches of at most `most` work-items. Throws RunError.
+  void compile(std::span<const Stage> stages, std::size_t most);
+  /// Enqueues a stage, which is compiled, over `count` work-items. With timing on, waits for it and adds its seconds.
+  void run(Stage stage, const Bindings& bindings, std::size_t count);
+
+  void time_stages(bool on) { timed_ = on; }
+  /// Seconds that each stage took so far, when timing is on.
+  std::vector<std::pair<std::string, double>> seconds_by_stage() const;
+  double compile_seconds() const { return compile_seconds_; }
+  const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const { return compile_seconds_by_stage_; }
+
+ private:
+  std::size_t local_size_of(Stage stage) const;
+
+  struct Compiled {
+    Program program;
+    cl::Kernel kernel;
+    double seconds = 0;  // of its launches
+  };
+  Device device_;
+  std::string options_;
+  std::array<std::optional<Compiled>, static_cast<std::size_t>(Stage::count)> compiled_;
+  bool timed_ = false;
+  std::size_t local_size_ = 1;
+  double compile_seconds_ = 0;
+  std::vector<std::pair<std::string, double>> compile_seconds_by_stage_;
+};
+
+}  // namespace caplet

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The groups of shared/groups.h as structs: functions take those that they need.
+#ifndef CAPLET_GROUPS_CL
+#define CAPLET_GROUPS_CL
+
+#include "shared/groups.h"
+#include "shared/records.h"
+
+#define ONE(type) __global const type* restrict
+#define IN(type) __global const type* restrict
+#define STATE(type) __global type* restrict
+
+#define GROUP_BEGIN(Type, group) typedef struct {
+#define BUFFER(name, type, access) access(type) name;
+#define GROUP_END(Type) } Type;
+ALL_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+
+// What sampling a light needs: its shape, its surfaces, its spectrum.
+typedef struct {
+  Tree tree;
+  Surfaces surfaces;
+  Spectra spectra;
+  Lights lights;
+} Scene;
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Sizes that host and kernels share, each in this one place. Valid as OpenCL C 1.2 and as C++.
+#ifndef CAPLET_SHARED_LIMITS_H
+#define CAPLET_SHARED_LIMITS_H
+
+// Wavelengths, in nanometres, of every spectral table: 1 nm steps, both ends included.
+#define CAPLET_LAMBDA_MIN 360.0f
+#define CAPLET_LAMBDA_MAX 830.0f
+#define CAPLET_LAMBDA_COUNT 471
+// Steps of the table that wavelengths are sampled by.
+#define CAPLET_WAVELENGTH_CELLS 1024
+
+// The tree.
+#define CAPLET_WIDTH 8
+#define CAPLET_NODE_FLOATS 56     // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
+#define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
+
+#define CAPLET_CSG_MAX_OPERANDS 32
+
+#ifdef __cplusplus
+namespace caplet {
+#endif
+
+// What a round of stages counts (Counters.counters).
+enum {
+  counter_next,        // paths that go on
+  counter_shadow,      // shadow rays
+  counter_not_finite,  // samples dropped because their radiance was not a number
+  counter_count
+};
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
