@@ -2,30 +2,21 @@
 // Copyright Caplet authors
 #include "cli/bands.h"
 
-#include "base/check.h"
-
 namespace caplet::cli {
 
-BandedImage developed_in_bands(const Buffer<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
-                               NotFinite& not_finite) {
+BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
   BandedImage out;
-  out.whole.width = narrow<int>(view.width);
-  out.whole.height = narrow<int>(view.height);
-  out.whole.x = narrow<int>(view.crop_x);
-  out.whole.y = narrow<int>(view.crop_y);
-  out.whole.data_width = narrow<int>(view.crop_width);
-  out.whole.data_height = narrow<int>(view.crop_height);
+  const Window& window = film.layout.window;
+  out.whole.width = film.layout.width;
+  out.whole.height = film.layout.height;
+  out.whole.x = window.x;
+  out.whole.y = window.y;
+  out.whole.data_width = window.width;
+  out.whole.data_height = window.height;
   out.whole.space = scene.film.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
-  out.band = [&film, &view, &scene, &not_finite, layers](int first, int rows) {
-    const std::size_t width = view.crop_width;
-    std::vector<FilmRecord> sums(static_cast<std::size_t>(rows) * width);
-    film.RawBuffer::read(sums.data(), static_cast<std::size_t>(first) * width * sizeof(FilmRecord),
-                         sums.size() * sizeof(FilmRecord));
-    ViewRecord window = view;
-    window.crop_y += narrow<cl_uint>(first);
-    window.crop_height = narrow<cl_uint>(rows);
-    return develop(sums, window, scene, layers, not_finite);
+  out.band = [&film, &scene, &not_finite, layers](int first, int rows) {
+    return develop(film.read(first, rows), scene, layers, not_finite);
   };
   return out;
 }

@@ -4,17 +4,14 @@
 // A render's picture, developed a few rows at a time from the device's film: neither film nor picture is in memory as a whole.
 #pragma once
 
-#include "device/device.h"
 #include "film/develop.h"
 #include "film/image.h"
+#include "render/renderer.h"
 #include "scene/scene.h"
-#include "shared/records.h"
 
 namespace caplet::cli {
 
-/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `view`, `scene` and
-/// `not_finite`.
-BandedImage developed_in_bands(const Buffer<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
-                               NotFinite& not_finite);
+/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `scene` and `not_finite`.
+BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
 }  // namespace caplet::cli

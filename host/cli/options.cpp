@@ -122,11 +122,16 @@ Layers parse_layers(const std::optional<std::string>& list, bool variance) {
     for (std::string_view rest = *list;;) {
       const std::size_t comma = rest.find(',');
       const std::string_view name = rest.substr(0, comma);
-      const auto found = std::ranges::find(layer_names, name);
-      if (found == layer_names.end())
+      const auto found =
+          std::ranges::find_if(layer_rows, [&](const LayerRow& row) { return !name.empty() && row.option == name; });
+      if (found == layer_rows.end()) {
+        std::vector<std::string> names;
+        for (const LayerRow& row : layer_rows)
+          if (*row.option) names.emplace_back(row.option);
         refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like Z,albedo, or all, or none)",
-                                       name, pbrt::nearest_name(name, {layer_names.begin(), layer_names.end()})));
-      layers = layers.with(static_cast<Layer>(found - layer_names.begin()));
+                                       name, pbrt::nearest_name(name, names)));
+      }
+      layers = layers.with(static_cast<Layer>(found - layer_rows.begin()));
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }

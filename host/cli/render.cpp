@@ -201,12 +201,14 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
   render_options.film_on_device = true;
+  render_options.cancelled = interrupt_requested;
+  render_options.layers = layers;
   const RenderResult result = render_with_progress(flat, view, device, render_options, options.quiet);
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;
 
   NotFinite not_finite;
-  BandedImage picture = developed_in_bands(result.device_film, view.view, scene, layers, not_finite);
+  BandedImage picture = developed_in_bands(result.device_film, scene, layers, not_finite);
   picture.whole.metadata = metadata_of(scene, options, invocation, device, result);
   phase.lap();
   write_pictures(files, picture, layers.channels(), result.render_seconds);

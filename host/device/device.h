@@ -64,6 +64,10 @@ class Device {
   /// there is no device. `encoding` automatic: what the environment variable CAPLET_ENCODING says, else natural_encoding.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
+  /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver
+  /// cannot divide it, or there are fewer units than parts.
+  std::vector<Device> split(std::size_t parts) const;
+
   const DeviceInfo& info() const { return info_; }
   bool is_cpu() const { return info_.type == "cpu"; }
   /// Wide or single.
@@ -82,6 +86,7 @@ class Device {
  private:
   friend class RawBuffer;
   struct Accounting;
+  static Device open(const cl::Device& device, const DeviceInfo& info, Encoding encoding);
   DeviceInfo info_;
   Encoding encoding_ = Encoding::single;
   cl::Device device_;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/check.h"
 #include "device/accounting.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
@@ -100,15 +103,39 @@ Device Device::choose(const std::string& choice, Encoding encoding) {
   infos.reserve(devices.size());
   for (const Found& candidate : devices) infos.push_back(candidate.info);
   const Found& found = devices[select_device(infos, choice)];
+  return open(found.device, found.info, encoding == Encoding::automatic ? natural_encoding(found.info) : encoding);
+}
+
+Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding encoding) {
   Device out;
-  out.info_ = found.info;
-  out.encoding_ = encoding == Encoding::automatic ? natural_encoding(found.info) : encoding;
-  out.device_ = found.device;
-  cl_call("opening the device", found.info.name, [&] {
-    out.context_ = cl::Context(found.device);
-    out.queue_ = std::make_shared<cl::CommandQueue>(out.context_, found.device);
+  out.info_ = info;
+  out.encoding_ = encoding;
+  out.device_ = device;
+  cl_call("opening the device", info.name, [&] {
+    out.context_ = cl::Context(device);
+    out.queue_ = std::make_shared<cl::CommandQueue>(out.context_, device);
   });
   out.accounting_ = std::make_shared<Accounting>();
+  return out;
+}
+
+std::vector<Device> Device::split(std::size_t parts) const {
+  CHECK_LT_(std::size_t{0}, parts);
+  const std::size_t units = info_.compute_units;
+  if (units < parts)
+    throw RunError(fmt::format("device '{}' has {} compute units and cannot be divided into {}", info_.name, units, parts));
+  std::vector<cl_device_partition_property> properties{CL_DEVICE_PARTITION_BY_COUNTS};
+  for (std::size_t i = 0; i < parts; ++i)
+    properties.push_back(static_cast<cl_device_partition_property>(units / parts + (i < units % parts ? 1 : 0)));
+  properties.insert(properties.end(), {CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0});
+  std::vector<cl::Device> devices;
+  cl_call("dividing the device", info_.name, [&] { cl::Device(device_).createSubDevices(properties.data(), &devices); });
+  std::vector<Device> out;
+  for (const cl::Device& device : devices) {
+    DeviceInfo info = info_;
+    info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    out.push_back(open(device, info, encoding_));
+  }
   return out;
 }
 

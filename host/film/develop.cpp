@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
 
 #include "base/check.h"
 #include "base/log.h"
@@ -15,14 +17,7 @@ namespace caplet {
 
 namespace {
 
-/// A compensated sum's value: Kahan's c is what the running sum has too much.
-double total(float sum, float compensation) { return static_cast<double>(sum) - static_cast<double>(compensation); }
-
 using Vector = std::array<double, 3>;
-
-Vector total(const float (&sums)[3], const float (&compensations)[3]) {
-  return {total(sums[0], compensations[0]), total(sums[1], compensations[1]), total(sums[2], compensations[2])};
-}
 
 Vector operator*(double factor, const Vector& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
 Vector operator*(const std::array<double, 9>& m, const Vector& v) {
@@ -36,132 +31,150 @@ float towards_zero(double value) {
   return std::abs(double{rounded}) > std::abs(value) ? std::nextafter(rounded, 0.0f) : rounded;
 }
 
-/// Channels of one layer (none where it is not wanted), filled pixel by pixel.
-class Planes {
- public:
-  Planes(LayeredImage& image, bool wanted, std::vector<std::string> names, std::size_t pixels)
-      : image_(image), first_(image.channels.size()), wanted_(wanted) {
-    if (!wanted) return;
-    for (std::string& name : names) image_.channels.push_back({std::move(name), std::vector<float>(pixels), {}});
-  }
-  explicit operator bool() const { return wanted_; }
+/// Beyond the range of a float: infinity.
+float to_float(double value) {
+  if (std::abs(value) > double{std::numeric_limits<float>::max()}) return std::numeric_limits<float>::infinity();
+  return static_cast<float>(value);
+}
 
-  /// False, and `instead` in all of the planes, when a value is infinite or not a number as a float.
-  bool set(std::size_t pixel, const Vector& values, float instead = 0) const {
-    std::array<float, 3> floats{};
-    std::ranges::transform(values, floats.begin(), to_float);
-    const bool finite = std::ranges::all_of(floats, [](float v) { return std::isfinite(v); });
-    if (wanted_)
-      for (std::size_t k = 0; k < 3; ++k) plane(k)[pixel] = finite ? floats[k] : instead;
-    return finite || !wanted_;
-  }
-  bool set(std::size_t pixel, double value) const {
-    if (!wanted_) return true;
-    const float rounded = to_float(value);
-    plane(0)[pixel] = std::isfinite(rounded) ? rounded : 0.0f;
-    return std::isfinite(rounded);
-  }
-
- private:
-  static float to_float(double value) {
-    if (std::abs(value) > double{std::numeric_limits<float>::max()}) return std::numeric_limits<float>::infinity();
-    return static_cast<float>(value);
-  }
-  std::vector<float>& plane(std::size_t k) const { return image_.channels[first_ + k].floats; }
-
-  LayeredImage& image_;
-  std::size_t first_;
-  bool wanted_;
-};
-
-class IdPlane {
- public:
-  IdPlane(LayeredImage& image, bool wanted, const char* name, std::size_t pixels)
-      : image_(image), index_(image.channels.size()), wanted_(wanted) {
-    if (wanted_) image_.channels.push_back({name, {}, std::vector<std::uint32_t>(pixels)});
-  }
-  void set(std::size_t pixel, std::uint32_t id) const {
-    if (wanted_) image_.channels[index_].uints[pixel] = id;
-  }
-
- private:
-  LayeredImage& image_;
-  std::size_t index_;
-  bool wanted_;
-};
-
-LayeredImage window_of(const ViewRecord& view, ColorSpace space) {
+LayeredImage image_of(const Film& film, ColorSpace space, Layers layers) {
+  const FilmLayout& layout = film.layout();
   LayeredImage image;
-  image.width = narrow<int>(view.width);
-  image.height = narrow<int>(view.height);
-  image.x = narrow<int>(view.crop_x);
-  image.y = narrow<int>(view.crop_y);
-  image.data_width = narrow<int>(view.crop_width);
-  image.data_height = narrow<int>(view.crop_height);
+  image.width = layout.width;
+  image.height = layout.height;
+  image.x = layout.window.x;
+  image.y = layout.window.y;
+  image.data_width = layout.window.width;
+  image.data_height = layout.window.height;
   image.space = space;
+  const std::size_t pixels = layout.window.pixels();
+  for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+    if (!layers.has(static_cast<Layer>(i))) continue;
+    for (std::string_view names = layer_rows[i].channels; !names.empty();) {
+      const std::size_t comma = std::min(names.find(','), names.size());
+      Channel channel{std::string(names.substr(0, comma)), {}, {}};
+      if (layer_rows[i].kind == LayerKind::id)
+        channel.uints.resize(pixels);
+      else
+        channel.floats.resize(pixels);
+      image.channels.push_back(std::move(channel));
+      names.remove_prefix(std::min(comma + 1, names.size()));
+    }
+  }
   return image;
 }
+
+/// One pixel of a film.
+class Developer {
+ public:
+  Developer(const Film& film, const Scene& scene)
+      : film_(film),
+        rgb_from_xyz_(rgb_from_xyz(scene.film.space)),
+        exposure_(scene.film.exposure_time * scene.film.iso / 100),
+        limit_(scene.film.max_component_value) {}
+
+  void look_at(std::size_t pixel) {
+    pixel_ = pixel;
+    samples_ = static_cast<double>(film_.samples(pixel));
+    hits_ = film_.sum(Layer::coverage, 0, pixel);
+    per_sample_ = samples_ > 0 ? 1 / samples_ : 0;
+    per_hit_ = hits_ > 0 ? 1 / hits_ : 0;
+    rgb_ = rgb_from_xyz_ * (per_sample_ * sums(Layer::color));
+    const double peak = exposure_ * std::max({rgb_[0], rgb_[1], rgb_[2]});
+    gain_ = exposure_ * (limit_ > 0 && peak > limit_ ? limit_ / peak : 1.0);
+  }
+
+  /// The channels of a layer that is no number.
+  Vector values(Layer layer) const {
+    switch (row_of(layer).how) {
+      case LayerHow::picture:
+        return gain_ * rgb_;
+      case LayerHow::share:
+        return per_sample_ * sums(layer);
+      case LayerHow::distance:
+        return hits_ > 0 ? per_hit_ * sums(layer) : Vector{double{depth_of_nothing}, 0, 0};
+      case LayerHow::reflectance:
+        return rgb_from_xyz_ * (per_sample_ * sums(layer));
+      case LayerHow::direction: {
+        // Unit vectors as floats are up to 1e-7 too long, and so is their mean.
+        const Vector n = per_hit_ * sums(layer);
+        const double length = std::hypot(n[0], n[1], n[2]);
+        return length > 1 ? Vector{towards_zero(n[0] / length), towards_zero(n[1] / length), towards_zero(n[2] / length)} : n;
+      }
+      case LayerHow::mean:
+        return per_hit_ * sums(layer);
+      case LayerHow::variance: {
+        if (samples_ < 2) return {};
+        const Vector square = per_sample_ * sums(layer);
+        Vector of_mean{};
+        for (std::size_t c = 0; c < 3; ++c)
+          of_mean[c] = gain_ * gain_ * std::max(0.0, square[c] - rgb_[c] * rgb_[c]) / (samples_ - 1);
+        return of_mean;
+      }
+      case LayerHow::number:
+        break;
+    }
+    return {};
+  }
+
+ private:
+  Vector sums(Layer layer) const {
+    Vector out{};
+    for (int c = 0; c < row_of(layer).count; ++c)
+      out[static_cast<std::size_t>(c)] = film_.sum(layer, static_cast<std::size_t>(c), pixel_);
+    return out;
+  }
+
+  const Film& film_;
+  const std::array<double, 9> rgb_from_xyz_;
+  const double exposure_, limit_;
+  std::size_t pixel_ = 0;
+  double samples_ = 0, hits_ = 0, per_sample_ = 0, per_hit_ = 0, gain_ = 0;
+  Vector rgb_{};
+};
+
+/// What is written where a value is infinite or not a number.
+float instead_of(LayerHow how) { return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f; }
 
 }  // namespace
 
-LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
-                     NotFinite& not_finite) {
-  const std::size_t pixels = static_cast<std::size_t>(view.crop_width) * view.crop_height;
-  CHECK_EQ_(film.size(), pixels);
-  const double exposure = scene.film.exposure_time * scene.film.iso / 100;
-  const double limit = scene.film.max_component_value;
-  const std::array<double, 9> m = rgb_from_xyz(scene.film.space);
-
-  LayeredImage image = window_of(view, scene.film.space);
-  const Planes color(image, true, {"R", "G", "B"}, pixels), coverage(image, true, {"A"}, pixels);
-  const Planes depth(image, layers.has(Layer::depth), {"Z"}, pixels);
-  const Planes albedo(image, layers.has(Layer::albedo), {"albedo.R", "albedo.G", "albedo.B"}, pixels);
-  const Planes normal(image, layers.has(Layer::normal), {"N.X", "N.Y", "N.Z"}, pixels);
-  const Planes position(image, layers.has(Layer::position), {"P.X", "P.Y", "P.Z"}, pixels);
-  const Planes variance(image, layers.has(Layer::variance), {"variance.R", "variance.G", "variance.B"}, pixels);
-  const IdPlane object(image, layers.has(Layer::object), "object.id", pixels);
-  const IdPlane primitive(image, layers.has(Layer::primitive), "primitive.id", pixels);
-
-  not_finite.of += pixels;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const FilmRecord& record = film[i];
-    const double per_sample = record.samples > 0 ? 1.0 / record.samples : 0.0;
-    const double per_hit = record.hits > 0 ? 1.0 / record.hits : 0.0;
-    const Vector rgb = m * (per_sample * total(record.xyz, record.xyz_low));
-    const double peak = exposure * std::max({rgb[0], rgb[1], rgb[2]});
-    const double gain = exposure * (limit > 0 && peak > limit ? limit / peak : 1.0);
-    bool finite = color.set(i, gain * rgb);
-    finite &= coverage.set(i, record.hits * per_sample);
-    finite &= depth.set(i, record.hits > 0 ? total(record.depth, record.depth_low) * per_hit : double{depth_of_nothing});
-    finite &= albedo.set(i, m * (per_sample * total(record.albedo, record.albedo_low)));
-    finite &= position.set(i, per_hit * total(record.position, record.position_low));
-    // Unit vectors as floats are up to 1e-7 too long, and so is their mean.
-    const Vector n = per_hit * total(record.normal, record.normal_low);
-    const double length = std::hypot(n[0], n[1], n[2]);
-    finite &= normal.set(
-        i, length > 1 ? Vector{towards_zero(n[0] / length), towards_zero(n[1] / length), towards_zero(n[2] / length)} : n);
-    if (variance && record.samples > 1) {
-      const Vector square = per_sample * total(record.rgb_squared, record.rgb_squared_low);
-      Vector of_mean{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double spread = square[c] - rgb[c] * rgb[c];
-        of_mean[c] = gain * gain * (spread < 0 ? 0.0 : spread) / (record.samples - 1.0);  // what is not a number stays so
+LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
+  CHECK_EQ_(film.layout().layers.has_all(layers), true);
+  LayeredImage image = image_of(film, scene.film.space, layers);
+  const Window& window = film.layout().window;
+  Developer developer(film, scene);
+  not_finite.of += window.pixels();
+  for (std::size_t pixel = 0; pixel < window.pixels(); ++pixel) {
+    developer.look_at(pixel);
+    bool all_finite = true;
+    std::size_t channel = 0;
+    for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+      const auto layer = static_cast<Layer>(i);
+      const LayerRow& row = layer_rows[i];
+      if (!layers.has(layer)) continue;
+      if (row.kind == LayerKind::id) {
+        image.channels[channel++].uints[pixel] = film.number(layer, pixel);
+        continue;
       }
-      finite &= variance.set(i, of_mean, std::numeric_limits<float>::max());
+      const Vector values = developer.values(layer);
+      std::array<float, 3> floats{};
+      std::ranges::transform(values, floats.begin(), to_float);
+      const bool finite = std::ranges::all_of(floats, [](float v) { return std::isfinite(v); });
+      for (std::size_t c = 0; c < static_cast<std::size_t>(row.count); ++c)
+        image.channels[channel++].floats[pixel] = finite ? floats[c] : instead_of(row.how);
+      all_finite &= finite;
     }
-    object.set(i, record.object);
-    primitive.set(i, record.primitive);
-    if (!finite && not_finite.count++ == 0) {
-      not_finite.x = view.crop_x + i % view.crop_width;
-      not_finite.y = view.crop_y + i / view.crop_width;
-    }
+    if (all_finite || not_finite.count++ > 0) continue;
+    const auto width = static_cast<std::size_t>(window.width);
+    not_finite.x = static_cast<std::size_t>(window.x) + pixel % width;
+    not_finite.y = static_cast<std::size_t>(window.y) + pixel / width;
   }
   return image;
 }
 
-LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers) {
+LayeredImage develop(const Film& film, const Scene& scene, Layers layers) {
   NotFinite not_finite;
-  LayeredImage image = develop(film, view, scene, layers, not_finite);
+  LayeredImage image = develop(film, scene, layers, not_finite);
   not_finite.warn();
   return image;
 }

@@ -4,12 +4,12 @@
 // The film's sums as picture layers.
 #pragma once
 
-#include <vector>
+#include <cstddef>
 
+#include "film/film.h"
 #include "film/image.h"
 #include "film/layers.h"
 #include "scene/scene.h"
-#include "shared/records.h"
 
 namespace caplet {
 
@@ -25,8 +25,7 @@ struct NotFinite {
   void warn() const;
 };
 
-/// R G B A and the layers asked for of the rendered window (docs/output.md), of film records in its scan order, times the film's
-/// exposure:
+/// R G B A and the layers asked for (docs/output.md), which the film has, of all its pixels, times the exposure of `scene`:
 /// R G B     mean of the samples, linear in the film's colour space; at most film.max_component_value, the others scaled with it
 /// A         coverage: share of the camera rays that hit something
 /// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1 is white in any light
@@ -34,13 +33,11 @@ struct NotFinite {
 ///           0, 0 and depth_of_nothing without hits
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
 /// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
-/// Nothing that is written is infinite or not a number: where sums or the exposure went beyond a float, R G B are black and the
-/// variance is the greatest float (other layers: 0), and `not_finite` counts those pixels.
-/// Throws std::logic_error when the film is not of the window's size.
-LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers,
-                     NotFinite& not_finite);
+/// Nothing that is written is infinite or not a number: where the exposure goes beyond a float, R G B are black and the variance
+/// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
+LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
 /// The same, with the warning.
-LayeredImage develop(const std::vector<FilmRecord>& film, const ViewRecord& view, const Scene& scene, Layers layers);
+LayeredImage develop(const Film& film, const Scene& scene, Layers layers);
 
 }  // namespace caplet

@@ -1,55 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The layers of a picture beside R G B A, which every picture has.
+// The layers of a film and of a picture: shared/layers.def.
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstddef>
+#include <cstdint>
+
+#include "shared/kinds.h"
 
 namespace caplet {
 
-enum class Layer { depth, albedo, normal, position, object, primitive, variance };
+enum class Layer {
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) name,
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value) name,
+#define ID_LAYER(name, option, channel, value) name,
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
+};
 
-/// As the command line calls them, in the order of Layer (docs/output.md).
-inline constexpr std::array<const char*, 7> layer_names{"Z", "albedo", "N", "P", "object", "primitive", "variance"};
+/// What a layer's values are, in the film.
+enum class LayerKind { radiance, hit, id };
 
-/// A set of layers.
+/// How they become channels (develop.cpp).
+enum class LayerHow { picture, share, distance, reflectance, direction, mean, variance, number };
+
+/// A row of layers.def.
+struct LayerRow {
+  LayerKind kind;
+  const char* option;    // as the command line calls it; "": every picture has it
+  const char* channels;  // their names, between commas
+  LayerHow how;
+  int count;                           // of channels
+  int words;                           // 64-bit words of each channel's sum
+  int (*unit)(int color, int length);  // sums are whole numbers of 2^unit; numbers have none
+};
+
+inline constexpr std::array<LayerRow, layer_count> layer_rows{{
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
+  {LayerKind::radiance,                                                        \
+   option,                                                                     \
+   channels,                                                                   \
+   LayerHow::how,                                                              \
+   count,                                                                      \
+   words,                                                                      \
+   []([[maybe_unused]] int color, [[maybe_unused]] int length) { return unit; }},
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value)                                                       \
+  {LayerKind::hit, option, channels, LayerHow::how, count, words, []([[maybe_unused]] int color, [[maybe_unused]] int length) { \
+     return unit;                                                                                                               \
+   }},
+#define ID_LAYER(name, option, channel, value) {LayerKind::id, option, channel, LayerHow::number, 1, 1, nullptr},
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
+}};
+
+constexpr const LayerRow& row_of(Layer layer) { return layer_rows[static_cast<std::size_t>(layer)]; }
+
+/// A set of layers, R G B A (color and coverage) always among them.
 class Layers {
  public:
-  static Layers none() { return {}; }
-  static Layers all() {
+  /// R G B A alone.
+  static constexpr Layers none() { return {}; }
+  static constexpr Layers all() {
     Layers layers;
-    layers.bits_.set();
+    layers.bits_ = (1u << layer_count) - 1;
     return layers;
   }
   /// All but the variance.
-  static Layers usual() { return all().without(Layer::variance); }
+  static constexpr Layers usual() { return all().without(Layer::variance); }
+  /// Of bits 1 << layer_color, ...
+  static constexpr Layers of_bits(std::uint32_t bits) {
+    Layers layers = all();
+    layers.bits_ &= bits | none().bits_;
+    return layers;
+  }
 
-  bool has(Layer layer) const { return bits_[index(layer)]; }
-  Layers with(Layer layer) const {
+  constexpr std::uint32_t bits() const { return bits_; }
+  constexpr bool has(Layer layer) const { return (bits_ & bit(layer)) != 0; }
+  constexpr Layers with(Layer layer) const {
     Layers out = *this;
-    out.bits_.set(index(layer));
+    out.bits_ |= bit(layer);
     return out;
   }
-  Layers without(Layer layer) const {
+  constexpr Layers without(Layer layer) const {
     Layers out = *this;
-    out.bits_.reset(index(layer));
+    out.bits_ &= ~bit(layer) | none().bits_;
     return out;
   }
-  /// 32-bit channels of a picture with these layers, R G B A among them.
-  std::size_t channels() const {
-    constexpr std::array<std::size_t, layer_names.size()> of_layer{1, 3, 3, 3, 1, 1, 3};  // in the order of Layer
-    std::size_t count = 4;
-    for (std::size_t i = 0; i < of_layer.size(); ++i) count += bits_[i] ? of_layer[i] : 0;
+  /// Whether all of `others` are among these.
+  constexpr bool has_all(Layers others) const { return (others.bits_ & ~bits_) == 0; }
+  /// 32-bit channels of a picture with these layers.
+  constexpr std::size_t channels() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < layer_rows.size(); ++i)
+      if (bits_ >> i & 1u) count += static_cast<std::size_t>(layer_rows[i].count);
     return count;
   }
   bool operator==(const Layers&) const = default;
 
  private:
-  static std::size_t index(Layer layer) { return static_cast<std::size_t>(layer); }
-  std::bitset<layer_names.size()> bits_;
+  static constexpr std::uint32_t bit(Layer layer) { return 1u << static_cast<unsigned>(layer); }
+  std::uint32_t bits_ = 1u << layer_color | 1u << layer_coverage;
 };
 
 }  // namespace caplet

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "lower/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <numbers>
@@ -21,6 +22,9 @@ class LightLowering {
  public:
   LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.world.radius) {}
 
+  /// Luminance of the radiance of the brightest light so far, spread over all directions and the scene where it has none.
+  double brightest() const { return brightest_; }
+
   void add(const Light& light, std::vector<LightShare>& shares) {
     light_ = &light;
     LightRecord record{};
@@ -29,6 +33,7 @@ class LightLowering {
     double power = 0;
     std::visit([&](const auto& model) { power = lower(model, record); }, light.model);
     out_.lights.push_back(record);
+    brightest_ = std::max(brightest_, power / (4 * pi * pi * radius_ * radius_));
     const auto group = shares.empty() ? 0 : shares.back().group + 1;
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, group});
   }
@@ -66,6 +71,7 @@ class LightLowering {
     if (!light.image) {
       const double power = replaced(light_->power, 4 * pi * pi * radius_ * radius_);
       emit(record, light_constant, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
+      brightest_ = std::max(brightest_, luminance(light.radiance, record));
       return 0;  // found by BSDF sampling
     }
     if (out_.lighting.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
@@ -102,6 +108,7 @@ class LightLowering {
   SpectrumTable& spectra_;
   FlatScene& out_;
   const double radius_;
+  double brightest_ = 0;
   const Light* light_ = nullptr;
 };
 
@@ -114,6 +121,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.light_data.clear();
   out.lighting.environment_width = out.lighting.environment_height = out.lighting.environment_square = 0;
   std::vector<LightShare> shares;
+  double brightest = 0;
   out.lights.reserve(emitters.size() + scene.lights.size());
   shares.reserve(emitters.size() + scene.lights.size());
   for (const Emitter& emitter : emitters) {
@@ -133,6 +141,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
       out.light_data.back() *= 1 + 0x1p-18f;
     }
     out.lights.push_back(record);
+    brightest = std::max(brightest, emitter.luminance);
     const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
   }
@@ -142,6 +151,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.lighting.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
     if (is_infinite(light)) lowering.add(light, shares);
+  out.lighting.radiance = static_cast<float>(std::max(brightest, lowering.brightest()));
   out.lighting.light_count = narrow<uint>(out.lights.size());
   out.light_alias = light_table(shares);
   out.lighting.sampled_light_count = 0;

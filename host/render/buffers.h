@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "film/film.h"
 #include "lower/lower.h"
 #include "shared/groups.h"
 #include "shared/records.h"
@@ -66,7 +67,7 @@ struct SensorBuffers {
   void bind(Bindings& bindings) const;
 };
 
-/// Those of paths under way, which have `paths` places and `sort_bins` bins.
+/// Those of paths under way, which have `paths` places and `sort_bins` bins, for a film of such layers.
 struct PathBuffers {
 #define GROUP_BEGIN(Type, group) Type##Buffers group;
 #define BUFFER(name, type, access)
@@ -76,10 +77,10 @@ struct PathBuffers {
 #undef BUFFER
 #undef GROUP_END
 
-  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins);
+  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film);
   void bind(Bindings& bindings) const;
   /// Bytes on the device of each path.
-  static std::uint64_t bytes_per_path();
+  static std::uint64_t bytes_per_path(Layers of_film);
 };
 
 }  // namespace caplet

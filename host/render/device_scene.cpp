@@ -5,7 +5,12 @@
 namespace caplet {
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
-    : device_(device), buffers_(device, scene), kernels_(device, stage_options(scene, device)), bvh_nodes_(scene.bvh_nodes) {}
+    : device_(device),
+      buffers_(device, scene),
+      kernels_(device, stage_options(scene, device)),
+      world_(scene.world),
+      light_radiance_(scene.lighting.radiance),
+      bvh_nodes_(scene.bvh_nodes) {}
 
 Bindings DeviceScene::bindings() const {
   Bindings out;

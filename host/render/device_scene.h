@@ -20,6 +20,10 @@ class DeviceScene {
   Kernels& kernels() { return kernels_; }
   /// The scene's groups, and none else. Valid as long as this.
   Bindings bindings() const;
+  /// Its bounds.
+  const WorldRecord& world() const { return world_; }
+  /// LightingRecord.radiance.
+  float light_radiance() const { return light_radiance_; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
@@ -27,6 +31,8 @@ class DeviceScene {
   Device device_;
   SceneBuffers buffers_;
   Kernels kernels_;
+  WorldRecord world_;
+  float light_radiance_ = 0;
   std::uint64_t bvh_nodes_ = 0;
 };
 

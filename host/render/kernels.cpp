@@ -42,8 +42,8 @@ const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(s
 /// Sets the buffers of a stage's groups and returns the number of the argument after them.
 cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
   cl_uint index = 0;
-#define GROUP_BEGIN(Type, group)             \
-  {                                          \
+#define GROUP_BEGIN(Type, group)                \
+  {                                             \
     CHECK_EQ_(bindings.group != nullptr, true); \
     const Type##Buffers& buffers = *bindings.group;
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());

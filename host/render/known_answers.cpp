@@ -16,9 +16,9 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "device/self_test.h"
+#include "render/device_scene.h"
 #include "render/known_rays.h"
 #include "render/query.h"
-#include "render/device_scene.h"
 
 namespace caplet {
 
@@ -127,7 +127,7 @@ struct TracedPaths {
 TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span<const RayRecord> shadows) {
   const std::size_t paths = std::max(rays.size(), shadows.size());
   scene.kernels().compile(std::array{Stage::extend, Stage::connect}, paths);
-  PathBuffers buffers(scene.device(), paths, 1);
+  PathBuffers buffers(scene.device(), paths, 1, Layers::none());
   std::vector<uint> all(paths);
   std::iota(all.begin(), all.end(), 0u);
   buffers.rays.path_ray.write(rays);

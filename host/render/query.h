@@ -29,9 +29,9 @@ struct HitLists {
   std::vector<std::size_t> overflowed;  // rays with more crossings than the capacity, whose lists are therefore not complete
 };
 
-/// Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not finite or have no direction miss.
-/// Kernels are compiled at the first question of their kind. What a query needs on the device does not grow with the number of
-/// rays. Throws RunError.
+/// Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not finite or have no direction
+/// miss. Kernels are compiled at the first question of their kind. What a query needs on the device does not grow with the number
+/// of rays. Throws RunError.
 class Query {
  public:
   /// Asks `scene`, which must outlive this.

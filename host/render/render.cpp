@@ -6,7 +6,6 @@
 #include <chrono>
 
 #include "base/check.h"
-#include "base/interrupt.h"
 #include "base/log.h"
 #include "render/renderer.h"
 
@@ -32,7 +31,9 @@ RenderResult render(const FlatScene& scene, const FlatView& view, const Device& 
   const int total = options.samples_per_pixel;
   const std::size_t pixels = std::size_t{view.view.crop_width} * view.view.crop_height;
   DeviceScene on_device(device, scene);
-  Renderer renderer(on_device, view, options.batch_paths, pixels * static_cast<std::size_t>(total));
+  Renderer renderer(
+      on_device, view,
+      {.layers = options.layers, .batch_paths = options.batch_paths, .most_paths = pixels * static_cast<std::size_t>(total)});
   Kernels& kernels = on_device.kernels();
   kernels.time_stages(options.time_stages);
 
@@ -44,14 +45,14 @@ RenderResult render(const FlatScene& scene, const FlatView& view, const Device& 
   int done = 0;
   while (done < total) {
     const uint count = samples_in_pass(renderer, pixels, total - done);
-    renderer.pass(renderer.film_window(), static_cast<uint>(done), count, [&](std::size_t pixels_done) {
+    renderer.pass(renderer.film().layout.window, static_cast<uint>(done), count, [&](std::size_t pixels_done) {
       if (!progress) return;
       const double samples = done + static_cast<double>(count) * static_cast<double>(pixels_done) / static_cast<double>(pixels);
       progress({samples / total, done, samples * static_cast<double>(pixels) / std::max(1e-9, seconds_since(start))});
     });
     done += static_cast<int>(count);
     if (result.first_pass_seconds == 0) result.first_pass_seconds = seconds_since(start);
-    result.interrupted = interrupt_requested();
+    result.interrupted = options.cancelled && options.cancelled();
     if (result.interrupted || (options.time_limit && seconds_since(start) >= *options.time_limit)) break;
   }
   if (options.film_on_device)
@@ -65,8 +66,7 @@ RenderResult render(const FlatScene& scene, const FlatView& view, const Device& 
   result.shadow_rays = renderer.rays().shadow;
   if (options.time_stages) result.stage_seconds = kernels.seconds_by_stage();
   result.peak_device_bytes = device.bytes_peak();
-  if (renderer.rays().not_finite > 0)
-    log::warn("{} samples were not finite and count as black", renderer.rays().not_finite);
+  if (renderer.rays().not_finite > 0) log::warn("{} samples were not finite and count as black", renderer.rays().not_finite);
   return result;
 }
 

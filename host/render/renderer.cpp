@@ -34,8 +34,15 @@ Window window_of(const ViewRecord& view) {
   return {narrow<int>(view.crop_x), narrow<int>(view.crop_y), narrow<int>(view.crop_width), narrow<int>(view.crop_height)};
 }
 
-std::size_t pixels_of(const Window& window) {
-  return static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+/// The exponent of the power of two above |x|, within what sums have room for; 0 of what has none.
+int exponent_of(double x) { return x > 0 && std::isfinite(x) ? std::clamp(std::ilogb(x) + 1, -60, 60) : 0; }
+
+/// Of the whole scene and the camera, as seen from the world's origin.
+double extent_of(const WorldRecord& world, const CameraRecord& camera) {
+  double at = 0;
+  for (const int k : {3, 7, 11}) at += std::abs(double{camera.world_from_camera[k]});
+  return at + std::abs(double{world.center_x}) + std::abs(double{world.center_y}) + std::abs(double{world.center_z}) +
+         double{world.radius};
 }
 
 std::size_t chosen_batch_paths(const Device& device, std::size_t wanted, std::size_t most) {
@@ -44,33 +51,51 @@ std::size_t chosen_batch_paths(const Device& device, std::size_t wanted, std::si
 
 }  // namespace
 
-Renderer::Renderer(DeviceScene& scene, const FlatView& view, std::size_t batch_paths, std::size_t most_paths)
+Film DeviceFilm::read(int first, int rows) const {
+  FilmLayout part = layout;
+  part.window.y += first;
+  part.window.height = rows;
+  const std::size_t row_words = static_cast<std::size_t>(part.window.width) * part.words_per_pixel();
+  std::vector<std::uint64_t> values(static_cast<std::size_t>(rows) * row_words);
+  words.RawBuffer::read(values.data(), static_cast<std::size_t>(first) * row_words * sizeof(ulong),
+                        values.size() * sizeof(ulong));
+  const bool whole = part.window == layout.window;
+  return Film(part, std::move(values), whole ? parts : std::vector<FilmPart>());
+}
+
+Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options)
     : scene_(scene),
-      batch_paths_(chosen_batch_paths(scene.device(), batch_paths, most_paths)),
+      batch_paths_(chosen_batch_paths(scene.device(), options.batch_paths, options.most_paths)),
       sort_bits_(scene.bvh_nodes() >= sorting_pays_from_nodes ? sort_bits_for(batch_paths_) : CAPLET_NONE),
-      paths_(scene.device(), batch_paths_, bins_of(sort_bits_)) {
+      layers_(options.layers),
+      paths_(scene.device(), batch_paths_, bins_of(sort_bits_), layers_) {
   reset(view);
   scene.kernels().compile(render_stages(), batch_paths_);
 }
 
 void Renderer::reset(const FlatView& view) {
-  const Window window = window_of(view.view);
   sensor_ = SensorBuffers(scene_.device(), view);
-  if (pixels_of(window) != film_.film.size()) {
+  FilmLayout layout;
+  layout.width = narrow<int>(view.view.width);
+  layout.height = narrow<int>(view.view.height);
+  layout.window = window_of(view.view);
+  layout.layers = layers_;
+  layout.color_exponent = exponent_of(scene_.light_radiance());
+  layout.length_exponent = exponent_of(extent_of(scene_.world(), view.camera));
+  const std::size_t pixels = layout.window.pixels(), words = pixels * layout.words_per_pixel();
+  if (words != film_.words.size() || film_.words.handle()() == nullptr) {
     film_ = {};  // the old one makes room first
-    film_.film = Buffer<FilmRecord>(scene_.device(), pixels_of(window));
+    film_.words = Buffer<ulong>(scene_.device(), words);
   }
-  film_window_ = window;
-  clear_film();
-}
-
-void Renderer::clear_film() {
+  film_.layout = layout;
+  film_.parts.clear();
   // In pieces: a film is the largest thing there is.
-  const std::size_t pixels = film_.film.size();
-  const std::vector<FilmRecord> empty(std::min<std::size_t>(pixels, 1 << 16), FilmRecord{});
-  for (std::size_t first = 0; first < pixels; first += empty.size())
-    film_.film.RawBuffer::write(empty.data(), first * sizeof(FilmRecord),
-                                std::min(empty.size(), pixels - first) * sizeof(FilmRecord));
+  FilmLayout piece = layout;
+  piece.window = {0, 0, static_cast<int>(std::min<std::size_t>(pixels, 1 << 14)), 1};
+  const Film empty(piece);
+  for (std::size_t first = 0; first < words; first += empty.words().size())
+    film_.words.RawBuffer::write(empty.words().data(), first * sizeof(ulong),
+                                 std::min(empty.words().size(), words - first) * sizeof(ulong));
 }
 
 void Renderer::clear_counters() {
@@ -80,13 +105,11 @@ void Renderer::clear_counters() {
 
 void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
                     const std::function<void(std::size_t)>& batch_done) {
-  CHECK_LE_(film_window_.x, window.x);
-  CHECK_LE_(film_window_.y, window.y);
-  CHECK_LE_(window.x + window.width, film_window_.x + film_window_.width);
-  CHECK_LE_(window.y + window.height, film_window_.y + film_window_.height);
+  CHECK_EQ_(film_.layout.window.holds(window), true);
   CHECK_LT_(0u, sample_count);
   CHECK_LE_(std::size_t{sample_count}, batch_paths_);
-  const std::size_t pixels = pixels_of(window), per_batch = batch_paths_ / sample_count;
+  add_part(film_.parts, {window, sample_begin, sample_count});
+  const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
     BatchRecord record{};
@@ -99,6 +122,11 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
     record.sample_count = sample_count;
     record.path_count = narrow<uint>(count * sample_count);
     record.sort_bits = sort_bits_;
+    record.layers = layers_.bits();
+    record.layer_floats = narrow<uint>(film_.layout.floats_per_path());
+    record.film_words = narrow<uint>(film_.layout.words_per_pixel());
+    record.color_exponent = film_.layout.color_exponent;
+    record.length_exponent = film_.layout.length_exponent;
     batch(record);
     if (batch_done) batch_done(first + count);
   }
@@ -110,7 +138,8 @@ void Renderer::batch(const BatchRecord& record) {
   Bindings bindings = scene_.bindings();
   sensor_.bind(bindings);
   paths_.bind(bindings);
-  bindings.film = &film_;
+  const FilmBuffers film{film_.words};
+  bindings.film = &film;
   const bool sorts = sort_bits_ != CAPLET_NONE;
   paths_.batch.batch.write({&record, 1});
   clear_counters();
@@ -141,6 +170,6 @@ void Renderer::batch(const BatchRecord& record) {
   rays_.not_finite += counters[counter_not_finite];
 }
 
-std::uint64_t batch_bytes(bool cpu) { return PathBuffers::bytes_per_path() * default_batch_paths(cpu); }
+std::uint64_t batch_bytes(bool cpu) { return PathBuffers::bytes_per_path(Layers::all()) * default_batch_paths(cpu); }
 
 }  // namespace caplet

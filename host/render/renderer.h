@@ -10,16 +10,12 @@
 #include <vector>
 
 #include "device/device.h"
+#include "film/film.h"
 #include "lower/lower.h"
 #include "render/buffers.h"
 #include "render/device_scene.h"
 
 namespace caplet {
-
-/// Pixels [x, x + width) times [y, y + height) of the full image.
-struct Window {
-  int x = 0, y = 0, width = 0, height = 0;
-};
 
 /// What a renderer has done so far.
 struct RayCounts {
@@ -27,43 +23,58 @@ struct RayCounts {
   std::uint64_t not_finite = 0;  // samples that count as black, as their radiance was not a number
 };
 
+/// A film in a device's memory, which copies share.
+struct DeviceFilm {
+  Buffer<ulong> words;
+  FilmLayout layout;
+  std::vector<FilmPart> parts;
+
+  /// All of it, or `rows` of its rows from `first` on. Throws RunError.
+  Film read() const { return read(0, layout.window.height); }
+  Film read(int first, int rows) const;
+};
+
+struct RendererOptions {
+  Layers layers = Layers::usual();    // of the film: each takes memory and time
+  std::size_t batch_paths = 0;        // most paths under way at a time; 0: chosen for the device
+  std::size_t most_paths = SIZE_MAX;  // that a pass will have, for small renders
+};
+
 class Renderer {
  public:
-  /// Renders `scene`, which must outlive this, as `view` shows it. Compiles what is not compiled yet. `batch_paths`: most paths
-  /// under way at a time; 0: chosen for the device. `most_paths`: what the passes to come have at the most, for small renders.
-  Renderer(DeviceScene& scene, const FlatView& view, std::size_t batch_paths = 0, std::size_t most_paths = SIZE_MAX);
+  /// Renders `scene`, which must outlive this, as `view` shows it. Compiles what is not compiled yet. Throws RunError.
+  Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options = {});
 
   /// Another view of the scene as it now is; the film is empty again.
   void reset(const FlatView& view);
 
-  /// The film's window.
-  Window film_window() const { return film_window_; }
   /// Adds samples [sample_begin, sample_begin + sample_count) of every pixel of `window`, which lies within the film's.
-  /// `batch_done`, when there is one, is told the number of the window's pixels that are finished. Throws RunError.
+  /// `batch_done`, when there is one, is told the number of the window's pixels that are finished. Throws RunError, and
+  /// InputError when some of these samples are in the film already.
   void pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 
-  /// Sums of the film's window, row-major.
-  const Buffer<FilmRecord>& film() const { return film_.film; }
+  /// What has been added up so far. Valid until the next pass or reset.
+  const DeviceFilm& film() const { return film_; }
   std::size_t batch_paths() const { return batch_paths_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
   void batch(const BatchRecord& record);
   void clear_counters();
-  void clear_film();
 
   DeviceScene& scene_;
   std::size_t batch_paths_;
   std::uint32_t sort_bits_;
-  Window film_window_;
+  Layers layers_;
   SensorBuffers sensor_;
   PathBuffers paths_;
-  FilmBuffers film_;
+  DeviceFilm film_;
   RayCounts rays_;
 };
 
-/// Bytes of the state of a full batch of paths on a CPU or another device (smaller renders take smaller batches).
+/// Bytes of the state of a full batch of paths, with all layers, on a CPU or another device (smaller renders take smaller
+/// batches).
 std::uint64_t batch_bytes(bool cpu);
 
 }  // namespace caplet

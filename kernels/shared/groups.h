@@ -105,10 +105,10 @@
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 
-#define GROUP_FIRST_HIT                         \
-  GROUP_BEGIN(FirstHit, first_hit)              \
-  BUFFER(path_first_hit, FirstHitRecord, STATE) \
-  GROUP_END(FirstHit)
+#define GROUP_LAYERS                                                                            \
+  GROUP_BEGIN(Layers, layers)                                                                   \
+  BUFFER(path_layers, float, STATE) /* BatchRecord.layer_floats a path: the HIT_ and ID_LAYERs of layers.def */ \
+  GROUP_END(Layers)
 
 #define GROUP_SHADOWS                                                                               \
   GROUP_BEGIN(Shadows, shadows)                                                                     \
@@ -138,7 +138,8 @@
 
 #define GROUP_FILM               \
   GROUP_BEGIN(Film, film)        \
-  BUFFER(film, FilmRecord, STATE) \
+  /* BatchRecord.film_words a pixel: samples, then the sums of layers.def */ \
+  BUFFER(film, ulong, STATE)                                                  \
   GROUP_END(Film)
 
 // --- Queries ---
@@ -164,7 +165,7 @@
 #define SCENE_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
-  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_FIRST_HIT GROUP_SHADOWS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
+  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_LAYERS GROUP_SHADOWS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
 #define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 

@@ -39,6 +39,17 @@ enum {
   spectrum_count
 };
 
+enum {
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) layer_##name,
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value) layer_##name,
+#define ID_LAYER(name, option, channel, value) layer_##name,
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
+  layer_count
+};
+
 // "None" for any index: instance of a world-space primitive, geometry without light, mesh without normals.
 #define CAPLET_NONE 0xffffffffu
 

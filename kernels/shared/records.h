@@ -11,6 +11,7 @@
 #include <cstdint>
 namespace caplet {
 using uint = std::uint32_t;
+using ulong = std::uint64_t;
 struct float4 {
   float x, y, z, w;
 };

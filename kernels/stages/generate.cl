@@ -6,6 +6,7 @@
 #include "math/filter.cl"
 #include "math/rng.cl"
 #include "math/spectrum.cl"
+#include "stages/layers.cl"
 #include "stages/path.cl"
 
 static void stage_item(const Stage* g, uint path) {
@@ -26,7 +27,6 @@ static void stage_item(const Stage* g, uint path) {
   g->carried.path_scatter[path] = (float4)(0.0f, 1.0f, 0.0f, filter_weight);
   g->carried.path_flags[path] = PATH_SPECULAR;
   g->radiance.path_radiance[path] = (float4)(0.0f);
-  const FirstHitRecord nothing = {{0.0f, 0.0f, 0.0f}, 0.0f, {0.0f, 0.0f, 0.0f}, CAPLET_NONE, {0.0f, 0.0f, 0.0f}, CAPLET_NONE};
-  g->first_hit.path_first_hit[path] = nothing;
+  layers_of_nothing(g->batch.batch, path, g->layers.path_layers);
   g->queues.queue[path] = path;
 }

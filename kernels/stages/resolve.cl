@@ -1,23 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Finished paths to the film: one work-item a pixel adds its samples in order with compensated sums (Kahan 1965), so that how
-// samples were split into batches cannot change a bit, and that a million of them lose nothing.
+// Finished paths to the film: one work-item a pixel adds its samples to sums that no order of adding can change.
+#include "math/exact.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
+#include "stages/layers.cl"
 #include "stages/path.cl"
 
-static inline void add_compensated(float* sum, float* low, float value) {
-  const float y = value - *low;
-  const float t = *sum + y;
-  *low = (t - *sum) - y;
-  *sum = t;
+// CIE XYZ of a sample; black, and counted, where it is not a number.
+static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
+  const float4 radiance = g->radiance.path_radiance[path];
+  const float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
+                                       g->carried.path_wavelength_pdfs[path]);
+  if (all(isfinite(radiance)) && all(isfinite(xyz))) return xyz;
+  if (counted) atomic_inc(&g->counters.counters[counter_not_finite]);
+  return (float3)(0.0f);
 }
 
-static inline void add_compensated3(float* sum, float* low, float3 value) {
-  add_compensated(sum, low, value.x);
-  add_compensated(sum + 1, low + 1, value.y);
-  add_compensated(sum + 2, low + 2, value.z);
+// Adds the samples of the batch's pixel `item` to `count` sums of `words` words at `film`, and goes on to what is behind. sample: a
+// float4 by the number `path` of a path.
+#define ADD_SAMPLES(count, words, unit, sample)                                                     \
+  {                                                                                                 \
+    ulong4 sums[words];                                                                             \
+    for (int w = 0; w < words; ++w)                                                                 \
+      sums[w] = (ulong4)(film[w], film[count > 1 ? words + w : 0], film[count > 2 ? 2 * words + w : 0], 0); \
+    for (uint i = 0; i < batch->sample_count; ++i) {                                                \
+      const uint path = item * batch->sample_count + i;                                             \
+      exact_add(sums, words, sample, unit);                                                         \
+    }                                                                                               \
+    for (int w = 0; w < words; ++w) {                                                               \
+      film[w] = sums[w].x;                                                                          \
+      if (count > 1) film[words + w] = sums[w].y;                                                   \
+      if (count > 2) film[2 * words + w] = sums[w].z;                                               \
+    }                                                                                               \
+    film += (count) * (words);                                                                      \
+  }
+
+// radiance_layer_<name>: the value of a sample.
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)                        \
+  static inline float4 radiance_layer_##name(float3 xyz, __global const ViewRecord* view) {          \
+    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);                                         \
+    (void)rgb;                                                                                        \
+    return (float4)(value, 0.0f);                                                                     \
+  }
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value)
+#define ID_LAYER(name, option, channel, value)
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
+
+static inline float4 layer_at(__global const float* values, const int count) {
+  return count == 3 ? (float4)(vload3(0, values), 0.0f) : (float4)(values[0], 0.0f, 0.0f, 0.0f);
 }
 
 static void stage_item(const Stage* g, uint item) {
@@ -26,33 +61,31 @@ static void stage_item(const Stage* g, uint item) {
   const uint pixel = batch->pixel_begin + item;
   const uint x = batch->window_x + pixel % batch->window_width, y = batch->window_y + pixel / batch->window_width;
   const uint place = (y - view->crop_y) * view->crop_width + (x - view->crop_x);
-  FilmRecord film = g->film.film[place];
-  for (uint i = 0; i < batch->sample_count; ++i) {
-    const uint path = item * batch->sample_count + i;
-    const float4 radiance = g->radiance.path_radiance[path];
-    float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
-                                   g->carried.path_wavelength_pdfs[path]);
-    if (!all(isfinite(radiance)) || !all(isfinite(xyz))) {
-      xyz = (float3)(0.0f);
-      atomic_inc(&g->counters.counters[counter_not_finite]);
-    }
-    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);
-    add_compensated3(film.xyz, film.xyz_low, xyz);
-    add_compensated3(film.rgb_squared, film.rgb_squared_low, rgb * rgb);
-
-    const FirstHitRecord hit = g->first_hit.path_first_hit[path];
-    if (film.samples == 0) {
-      film.object = hit.object;
-      film.primitive = hit.primitive;
-    }
-    film.samples += 1;
-    if (hit.object != CAPLET_NONE) {
-      film.hits += 1;
-      add_compensated3(film.albedo, film.albedo_low, vload3(0, hit.albedo));
-      add_compensated3(film.normal, film.normal_low, vload3(0, hit.normal));
-      add_compensated3(film.position, film.position_low, vload3(0, hit.position));
-      add_compensated(&film.depth, &film.depth_low, hit.depth);
-    }
+  __global ulong* film = g->film.film + (size_t)place * batch->film_words;
+  *film++ += batch->sample_count;
+  const uint layers = batch->layers;
+  const int color = batch->color_exponent, length = batch->length_exponent;
+  uint offset = 0;  // of the layer in path_layers
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
+  if (layers & (1u << layer_##name))                                           \
+    ADD_SAMPLES(count, words, unit, radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view))
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value)                                                 \
+  if (layers & (1u << layer_##name)) {                                                                                    \
+    ADD_SAMPLES(count, words, unit, layer_at(layers_of_path(batch, path, g->layers.path_layers) + offset, count))         \
+    offset += count;                                                                                                      \
   }
-  g->film.film[place] = film;
+#define ID_LAYER(name, option, channel, value)                                                                           \
+  if (layers & (1u << layer_##name)) {                                                                                   \
+    for (uint i = 0; i < batch->sample_count; ++i) {                                                                     \
+      const uint path = item * batch->sample_count + i;                                                                  \
+      const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]);                               \
+      *film = min(*film, ((ulong)(batch->sample_begin + i) << 32) | id);                                                 \
+    }                                                                                                                    \
+    ++film;                                                                                                              \
+    ++offset;                                                                                                            \
+  }
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
 }

@@ -8,23 +8,44 @@
 #include "shapes/surface.cl"
 #include "bsdf/bsdf.cl"
 #include "lights/lights.cl"
+#include "stages/layers.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
 
-// What the layers of the film tell.
-static inline FirstHitRecord first_hit(const Stage* g, const Surface* s, const Bsdf* bsdf, float3 wo_local, float3 wo, float depth,
-                                       float4 wavelengths, float4 pdfs, uint instance) {
-  FirstHitRecord out;
-  // Under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
+// CIE XYZ under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
+static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
   const float4 white = spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
-  vstore3(xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs), 0, out.albedo);
-  out.depth = depth;
-  vstore3(dot(s->ns, wo) < 0.0f ? -s->ns : s->ns, 0, out.normal);
-  out.object = g->surfaces.geometries[s->geometry].object;
-  if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE) out.object = g->tree.instances[instance].object;
-  vstore3(s->p, 0, out.position);
-  out.primitive = s->primitive - g->surfaces.geometries[s->geometry].primitive_begin;
-  return out;
+  return xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs);
+}
+
+// Number in the object-id layer: the shape's, or that of the instance which holds it.
+static inline uint first_hit_object(const Stage* g, const Surface* s, uint instance) {
+  if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE) return g->tree.instances[instance].object;
+  return g->surfaces.geometries[s->geometry].object;
+}
+
+// The values of layers.def.
+static inline void store_layers(const Stage* g, uint path, const HitRecord* hit, const Surface* s, const Bsdf* bsdf, float3 wo_local,
+                                float3 wo, float4 wavelengths, float4 pdfs) {
+  __global float* at = layers_of_path(g->batch.batch, path, g->layers.path_layers);
+  const uint layers = g->batch.batch->layers;
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value) \
+  if (layers & (1u << layer_##name)) {                                    \
+    const float3 v = value;                                               \
+    at[0] = v.x;                                                          \
+    if (count == 3) {                                                     \
+      at[1] = v.y;                                                        \
+      at[2] = v.z;                                                        \
+    }                                                                     \
+    at += count;                                                          \
+  }
+#define ID_LAYER(name, option, channel, value) \
+  if (layers & (1u << layer_##name)) *at++ = as_float((uint)(value));
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
@@ -91,8 +112,7 @@ static void stage_item(const Stage* g, uint item) {
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
   const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, wavelengths);
-  if (depth == 0)
-    g->first_hit.path_first_hit[path] = first_hit(g, &s, &bsdf, wo_local, wo, hit.t, wavelengths, pdfs, hit.instance);
+  if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
   if (depth >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.

@@ -101,7 +101,8 @@ void camera(const HostGroups* g, const Scene& scene, FuzzNumbers& numbers, float
   for (float& x : u) x = random_number(numbers);
   RayRecord ray;
   HostCameraSample sample;
-  host_kernels(8).camera(g, numbers.below(static_cast<unsigned>(scene.film.width)), numbers.below(static_cast<unsigned>(scene.film.height)), u, &ray, &sample);
+  host_kernels(8).camera(g, numbers.below(static_cast<unsigned>(scene.film.width)),
+                         numbers.below(static_cast<unsigned>(scene.film.height)), u, &ray, &sample);
   const float origin[3] = {ray.ox, ray.oy, ray.oz}, along[3] = {ray.dx, ray.dy, ray.dz};
   require(finite(origin) && unit(along));
   require(std::isfinite(sample.filter_weight));

@@ -26,7 +26,7 @@ SCENE_GROUPS VIEW_GROUPS
 #undef GROUP_END
 #undef ONE
 #undef IN
-struct HostGroups {
+    struct HostGroups {
 #define GROUP_BEGIN(Type, group) Type##Arrays group;
 #define BUFFER(name, type, access)
 #define GROUP_END(Type)

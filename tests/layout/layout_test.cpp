@@ -59,7 +59,7 @@ TEST(Layout, ReportsFieldsThatChangedPlaces) {
 TEST(Layout, ReportsADifferentSize) {
   std::vector<RecordLayout> larger = host_layout();
   larger.back().bytes += 16;
-  EXPECT_THAT(compare_layout(Device::choose(""), larger), ElementsAre("FilmRecord: size is 144 on the device, 160 on the host"));
+  EXPECT_THAT(compare_layout(Device::choose(""), larger), ElementsAre("PickRecord: size is 64 on the device, 80 on the host"));
 }
 
 TEST(Layout, ReportsAListOfAnotherLength) {

@@ -125,7 +125,7 @@ cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-  kernel.setArg(index++, cl_uint{0});
+      kernel.setArg(index++, cl_uint{0});
   return index;
 }
 

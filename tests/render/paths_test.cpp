@@ -106,7 +106,7 @@ TEST(ShadingNormals, LetNoScatteredRayThrough) {
   flat.lighting.sampled_light_count = 0;
   RenderOptions options;
   options.samples_per_pixel = 64;
-  EXPECT_EQ(mean_of(develop(render(flat, view, test_device(), options, {}).film, view.view, scene, Layers::all()), "G").value, 0);
+  EXPECT_EQ(mean_of(develop(render(flat, view, test_device(), options, {}).film, scene, Layers::all()), "G").value, 0);
 }
 
 // --- Shadows ---

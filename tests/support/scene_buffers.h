@@ -12,8 +12,8 @@
 
 namespace caplet::test {
 
-/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, the arguments that SceneOnDevice sets, and SCENE_STRUCTS,
-/// which defines `tree` and `surfaces` of them.
+/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, the arguments that SceneOnDevice sets, and
+/// SCENE_STRUCTS, which defines `tree` and `surfaces` of them.
 inline constexpr const char* scene_parameters = R"(
 #include "groups.cl"
 #define GROUP_BEGIN(Type, group)
@@ -47,11 +47,11 @@ class SceneOnDevice {
                           GROUP_TREE
 #undef BUFFER
 #define BUFFER(name, type, access) surfaces.name,
-                          GROUP_SURFACES
+                              GROUP_SURFACES
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-                          cl_uint{0},
+                                  cl_uint{0},
                           more...);
   }
 

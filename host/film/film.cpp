@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "film/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "film/image.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::uint64_t no_number = std::numeric_limits<std::uint64_t>::max();
+constexpr const char* format_name = "caplet.film";
+constexpr const char* format_version = "1";
+
+std::size_t words_of(std::size_t layer) {
+  return static_cast<std::size_t>(layer_rows[layer].count) * static_cast<std::size_t>(layer_rows[layer].words);
+}
+
+bool in_common(const Window& a, const Window& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+bool in_common(const FilmPart& a, const FilmPart& b) {
+  return in_common(a.window, b.window) && a.sample_begin < std::uint64_t{b.sample_begin} + b.sample_count &&
+         b.sample_begin < std::uint64_t{a.sample_begin} + a.sample_count;
+}
+
+/// Makes `a` both when they are next to each other.
+bool join(FilmPart& a, const FilmPart& b) {
+  if (a.window == b.window) {
+    if (std::uint64_t{a.sample_begin} + a.sample_count == b.sample_begin) {
+      a.sample_count += b.sample_count;
+      return true;
+    }
+    if (std::uint64_t{b.sample_begin} + b.sample_count == a.sample_begin) {
+      a.sample_begin = b.sample_begin;
+      a.sample_count += b.sample_count;
+      return true;
+    }
+  }
+  if (a.sample_begin != b.sample_begin || a.sample_count != b.sample_count) return false;
+  if (a.window.x == b.window.x && a.window.width == b.window.width) {
+    if (a.window.y + a.window.height != b.window.y && b.window.y + b.window.height != a.window.y) return false;
+    a.window.y = std::min(a.window.y, b.window.y);
+    a.window.height += b.window.height;
+    return true;
+  }
+  if (a.window.y == b.window.y && a.window.height == b.window.height) {
+    if (a.window.x + a.window.width != b.window.x && b.window.x + b.window.width != a.window.x) return false;
+    a.window.x = std::min(a.window.x, b.window.x);
+    a.window.width += b.window.width;
+    return true;
+  }
+  return false;
+}
+
+std::string text_of(const std::vector<FilmPart>& parts) {
+  std::string out;
+  for (const FilmPart& part : parts)
+    out += fmt::format("{}{} {} {} {} {} {}", out.empty() ? "" : ",", part.window.x, part.window.y, part.window.width,
+                       part.window.height, part.sample_begin, part.sample_count);
+  return out;
+}
+
+/// The next whole number of `text`, which is taken from it with the one character behind.
+bool take_number(std::string_view& text, std::int64_t low, std::int64_t high, std::int64_t& out) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (error != std::errc() || out < low || out > high) return false;
+  text.remove_prefix(std::min<std::size_t>(text.size(), static_cast<std::size_t>(end - text.data()) + 1));
+  return true;
+}
+
+class Metadata {
+ public:
+  Metadata(const std::filesystem::path& path, const LayeredImage& image) : path_(path), image_(image) {}
+
+  std::string_view text(const char* name) const {
+    const auto found = image_.metadata.find(name);
+    if (found == image_.metadata.end()) fail(fmt::format("it has no '{}'", name));
+    return found->second;
+  }
+  int number(const char* name) const {
+    std::string_view left = text(name);
+    std::int64_t value = 0;
+    if (!take_number(left, -1000, 1000, value) || !left.empty()) fail(fmt::format("'{}' is not a number", name));
+    return static_cast<int>(value);
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw InputError(SourceLocation{path_.string()}, "this is no film of caplet: " + why);
+  }
+
+ private:
+  std::filesystem::path path_;
+  const LayeredImage& image_;
+};
+
+}  // namespace
+
+bool Window::holds(const Window& other) const {
+  return x <= other.x && y <= other.y && other.x + other.width <= x + width && other.y + other.height <= y + height;
+}
+
+std::size_t FilmLayout::words_per_pixel() const {
+  std::size_t words = 1;
+  for (std::size_t i = 0; i < layer_rows.size(); ++i) words += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
+  return words;
+}
+
+std::size_t FilmLayout::first_word(Layer layer) const {
+  CHECK_EQ_(layers.has(layer), true);
+  std::size_t word = 1;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layer); ++i) word += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
+  return word;
+}
+
+std::size_t FilmLayout::floats_per_path() const {
+  std::size_t floats = 0;
+  for (std::size_t i = 0; i < layer_rows.size(); ++i)
+    if (layers.has(static_cast<Layer>(i)) && layer_rows[i].kind != LayerKind::radiance)
+      floats += static_cast<std::size_t>(layer_rows[i].count);
+  return floats;
+}
+
+void add_words(std::uint64_t* sum, const std::uint64_t* more, int words) {
+  std::uint64_t carry = 0;
+  for (int w = 0; w < words; ++w) {
+    const std::uint64_t partial = sum[w] + more[w], total = partial + carry;
+    carry = (partial < more[w] ? 1u : 0u) + (total < partial ? 1u : 0u);
+    sum[w] = total;
+  }
+}
+
+double value_of_words(const std::uint64_t* sum, int words, int unit) {
+  const bool negative = sum[words - 1] >> 63 != 0;
+  double value = 0;
+  std::uint64_t carry = negative ? 1 : 0;
+  for (int w = 0; w < words; ++w) {
+    // The magnitude, from its least word on: each addition rounds by half a unit in the last place at most.
+    const std::uint64_t flipped = negative ? ~sum[w] : sum[w], word = flipped + carry;
+    carry = word < flipped ? 1 : 0;
+    value += std::ldexp(static_cast<double>(word), 64 * w + unit);
+  }
+  return negative ? -value : value;
+}
+
+Film::Film(const FilmLayout& layout) : layout_(layout), words_per_pixel_(layout.words_per_pixel()) {
+  words_.resize(layout.window.pixels() * words_per_pixel_);
+  for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+    const auto layer = static_cast<Layer>(i);
+    if (layer_rows[i].kind != LayerKind::id || !layout.layers.has(layer)) continue;
+    for (std::size_t at = layout.first_word(layer); at < words_.size(); at += words_per_pixel_) words_[at] = no_number;
+  }
+}
+
+Film::Film(const FilmLayout& layout, std::vector<std::uint64_t> words, std::vector<FilmPart> parts)
+    : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(std::move(words)), parts_(std::move(parts)) {
+  CHECK_EQ_(words_.size(), layout.window.pixels() * words_per_pixel_);
+}
+
+double Film::sum(Layer layer, std::size_t c, std::size_t pixel) const {
+  const LayerRow& row = row_of(layer);
+  const auto words = static_cast<std::size_t>(row.words);
+  return value_of_words(&words_[pixel * words_per_pixel_ + layout_.first_word(layer) + c * words], row.words,
+                        row.unit(layout_.color_exponent, layout_.length_exponent));
+}
+
+std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
+  return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_ + layout_.first_word(layer)]);
+}
+
+void Film::add(const Film& other) {
+  if (!(layout_ == other.layout_)) throw InputError("films of different pictures, layers or scenes cannot be added");
+  std::vector<FilmPart> parts = parts_;
+  for (const FilmPart& part : other.parts_) add_part(parts, part);
+  for (std::size_t pixel = 0; pixel < words_.size(); pixel += words_per_pixel_) {
+    std::uint64_t* to = &words_[pixel];
+    const std::uint64_t* from = &other.words_[pixel];
+    *to++ += *from++;
+    for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+      const LayerRow& row = layer_rows[i];
+      if (!layout_.layers.has(static_cast<Layer>(i))) continue;
+      for (int c = 0; c < row.count; ++c, to += row.words, from += row.words) {
+        if (row.kind == LayerKind::id)
+          *to = std::min(*to, *from);
+        else
+          add_words(to, from, row.words);
+      }
+    }
+  }
+  parts_ = std::move(parts);
+}
+
+void add_part(std::vector<FilmPart>& parts, const FilmPart& part) {
+  for (const FilmPart& there : parts)
+    if (in_common(there, part))
+      throw InputError(fmt::format(
+          "samples {} to {} of pixel {},{} would be in the film twice", std::max(there.sample_begin, part.sample_begin),
+          std::min(std::uint64_t{there.sample_begin} + there.sample_count, std::uint64_t{part.sample_begin} + part.sample_count),
+          std::max(there.window.x, part.window.x), std::max(there.window.y, part.window.y)));
+  FilmPart joined = part;
+  for (std::size_t i = 0; i < parts.size();) {
+    if (join(joined, parts[i])) {
+      parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;
+    } else {
+      ++i;
+    }
+  }
+  parts.push_back(joined);
+}
+
+void Film::save(const std::filesystem::path& path) const {
+  LayeredImage image;
+  image.width = layout_.width;
+  image.height = layout_.height;
+  image.x = layout_.window.x;
+  image.y = layout_.window.y;
+  image.data_width = layout_.window.width;
+  image.data_height = layout_.window.height;
+  image.metadata = {{format_name, format_version},
+                    {"caplet.film.layers", std::to_string(layout_.layers.bits())},
+                    {"caplet.film.color_exponent", std::to_string(layout_.color_exponent)},
+                    {"caplet.film.length_exponent", std::to_string(layout_.length_exponent)},
+                    {"caplet.film.samples", text_of(parts_)}};
+  const std::size_t pixels = layout_.window.pixels();
+  for (std::size_t w = 0; w < words_per_pixel_; ++w)
+    for (const int half : {0, 1}) {
+      Channel channel{fmt::format("word{:02}.{}", w, half == 0 ? "low" : "high"), {}, std::vector<std::uint32_t>(pixels)};
+      for (std::size_t i = 0; i < pixels; ++i)
+        channel.uints[i] = static_cast<std::uint32_t>(words_[i * words_per_pixel_ + w] >> (32 * half));
+      image.channels.push_back(std::move(channel));
+    }
+  write_exr(path, image);
+}
+
+Film Film::load(const std::filesystem::path& path) {
+  const LayeredImage image = read_exr(path);
+  const Metadata of(path, image);
+  if (of.text(format_name) != format_version) of.fail(fmt::format("its version is not {}", format_version));
+  FilmLayout layout;
+  layout.width = image.width;
+  layout.height = image.height;
+  layout.window = {image.x, image.y, image.data_width, image.data_height};
+  std::string_view bits = of.text("caplet.film.layers");
+  std::int64_t value = 0;
+  if (!take_number(bits, 0, std::int64_t{Layers::all().bits()}, value) || !bits.empty())
+    of.fail("its layers are not those of this program");
+  layout.layers = Layers::of_bits(static_cast<std::uint32_t>(value));
+  layout.color_exponent = of.number("caplet.film.color_exponent");
+  layout.length_exponent = of.number("caplet.film.length_exponent");
+  Film film(layout);
+  for (std::string_view left = of.text("caplet.film.samples"); !left.empty();) {
+    std::array<std::int64_t, 6> numbers{};
+    for (std::int64_t& number : numbers)
+      if (!take_number(left, 0, std::numeric_limits<std::uint32_t>::max(), number)) of.fail("its list of samples is broken");
+    const auto as_int = [](std::int64_t number) { return static_cast<int>(std::min<std::int64_t>(number, 1 << 30)); };
+    const FilmPart part{{as_int(numbers[0]), as_int(numbers[1]), as_int(numbers[2]), as_int(numbers[3])},
+                        static_cast<std::uint32_t>(numbers[4]),
+                        static_cast<std::uint32_t>(numbers[5])};
+    if (!layout.window.holds(part.window)) of.fail("its list of samples is broken");
+    add_part(film.parts_, part);
+  }
+  const std::size_t pixels = layout.window.pixels();
+  for (std::size_t w = 0; w < film.words_per_pixel_; ++w) {
+    const Channel* low = image.find(fmt::format("word{:02}.low", w));
+    const Channel* high = image.find(fmt::format("word{:02}.high", w));
+    if (!low || !high || low->uints.size() != pixels || high->uints.size() != pixels)
+      of.fail(fmt::format("word {} is missing", w));
+    for (std::size_t i = 0; i < pixels; ++i)
+      film.words_[i * film.words_per_pixel_ + w] = low->uints[i] | std::uint64_t{high->uints[i]} << 32;
+  }
+  return film;
+}
+
+}  // namespace caplet

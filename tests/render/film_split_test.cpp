@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The same samples make the same film, however they are divided.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "film/develop.h"
+#include "film/film.h"
+#include "film/image.h"
+#include "import/import.h"
+#include "render/render.h"
+#include "render/renderer.h"
+#include "render/session.h"
+#include "render_scene.h"
+#include "support/data.h"
+
+namespace caplet::test {
+namespace {
+
+constexpr std::uint32_t samples = 64;
+
+/// Glass, metal, a sky, a blurred lens and a light, small.
+struct Model {
+  Model() {
+    scene = import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
+    scene.film.width = 24;
+    scene.film.height = 18;
+    flat = lower(scene);
+    view = lower_view(scene);
+  }
+  Scene scene;
+  FlatScene flat;
+  FlatView view;
+};
+const Model& model() {
+  static const Model made;
+  return made;
+}
+
+bool same(const Film& a, const Film& b) {
+  return a.layout() == b.layout() && a.parts() == b.parts() && std::ranges::equal(a.words(), b.words());
+}
+
+/// All samples in one pass over the whole window.
+const Film& whole() {
+  static const Film film = [] {
+    DeviceScene scene(test_device(), model().flat);
+    Renderer renderer(scene, model().view, {.layers = Layers::all()});
+    renderer.pass(renderer.film().layout.window, 0, samples);
+    return renderer.film().read();
+  }();
+  return film;
+}
+
+/// Cuts of `range`, `pieces` of them.
+std::vector<std::pair<int, int>> cuts(int range, int pieces, std::mt19937& random) {
+  std::vector<int> at{0, range};
+  while (static_cast<int>(at.size()) <= pieces) {
+    at.push_back(1 + static_cast<int>(random() % static_cast<unsigned>(range - 1)));
+    std::ranges::sort(at);
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+  }
+  std::vector<std::pair<int, int>> out;
+  for (std::size_t i = 1; i < at.size(); ++i) out.emplace_back(at[i - 1], at[i] - at[i - 1]);
+  return out;
+}
+
+std::vector<FilmPart> random_parts(std::mt19937& random) {
+  const Window window = whole().layout().window;
+  std::vector<FilmPart> parts;
+  for (const auto& [x, width] : cuts(window.width, 1 + static_cast<int>(random() % 3), random))
+    for (const auto& [y, height] : cuts(window.height, 1 + static_cast<int>(random() % 3), random))
+      for (const auto& [begin, count] : cuts(samples, 1 + static_cast<int>(random() % 4), random))
+        parts.push_back({{x, y, width, height}, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
+  std::ranges::shuffle(parts, random);
+  return parts;
+}
+
+TEST(FilmSplit, WindowsAndSamplesInAnyOrder) {
+  DeviceScene scene(test_device(), model().flat);
+  Renderer renderer(scene, model().view, {.layers = Layers::all(), .batch_paths = 3000});
+  std::mt19937 random(1);
+  for (int i = 0; i < 6; ++i) {
+    renderer.reset(model().view);
+    for (const FilmPart& part : random_parts(random)) renderer.pass(part.window, part.sample_begin, part.sample_count);
+    EXPECT_TRUE(std::ranges::equal(renderer.film().read().words(), whole().words())) << i;
+  }
+}
+
+TEST(FilmSplit, FilmsAddedInAnyOrder) {
+  DeviceScene scene(test_device(), model().flat);
+  std::mt19937 random(2);
+  std::vector<Film> films;
+  Renderer renderer(scene, model().view, {.layers = Layers::all()});
+  for (std::uint32_t begin = 0; begin < samples; begin += 16) {
+    renderer.reset(model().view);
+    renderer.pass(whole().layout().window, begin, 16);
+    films.push_back(renderer.film().read());
+  }
+  const auto folder = temporary_folder();
+  for (int i = 0; i < 4; ++i) {
+    std::ranges::shuffle(films, random);
+    Film sum(whole().layout());
+    for (const Film& film : films) {
+      film.save(folder / "film.exr");
+      sum.add(Film::load(folder / "film.exr"));
+    }
+    EXPECT_TRUE(same(sum, whole())) << i;
+  }
+}
+
+TEST(FilmSplit, PassesOfTheSameSamplesAreRefused) {
+  DeviceScene scene(test_device(), model().flat);
+  Renderer renderer(scene, model().view, {.layers = Layers::none()});
+  renderer.pass({0, 0, 12, 18}, 0, 8);
+  renderer.pass({12, 0, 12, 18}, 0, 8);
+  EXPECT_THROW(renderer.pass({11, 3, 2, 2}, 7, 2), InputError);
+  EXPECT_THAT(renderer.film().parts, testing::ElementsAre(FilmPart{{0, 0, 24, 18}, 0, 8}));
+}
+
+TEST(FilmSplit, DevicesShareTheSamples) {
+  const std::size_t units = test_device().info().compute_units;
+  if (!test_device().is_pocl() || units < 2) GTEST_SKIP() << "needs PoCL on two or more processors, to be divided";
+  for (std::size_t parts = 1; parts <= std::min<std::size_t>(units, 4); ++parts) {
+    const std::vector<Device> devices = test_device().split(parts);
+    ASSERT_EQ(devices.size(), parts);
+    Session session(model().flat, model().view, devices, {.sample_count = samples, .layers = Layers::all(), .pass_samples = 5});
+    std::uint32_t told = 0;
+    const Film film = session.run([&](const SessionProgress& progress) {
+      EXPECT_LT(told, progress.samples_done);
+      told = progress.samples_done;
+    });
+    EXPECT_TRUE(same(film, whole())) << parts;
+    EXPECT_EQ(told, samples);
+  }
+  EXPECT_THROW(test_device().split(units + 1), RunError);
+}
+
+TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
+  Session session(model().flat, model().view, {test_device()},
+                  {.sample_count = samples, .layers = Layers::all(), .pass_samples = 4});
+  const Film film = session.run([&](const SessionProgress& progress) {
+    if (progress.samples_done >= 8) session.cancel();
+  });
+  EXPECT_THAT(film.parts(), testing::ElementsAre(FilmPart{film.layout().window, 0, 8}));
+  Session rest(model().flat, model().view, {test_device()},
+               {.sample_begin = 8, .sample_count = samples - 8, .layers = Layers::all()});
+  Film sum = rest.run();
+  sum.add(film);
+  EXPECT_TRUE(same(sum, whole()));
+}
+
+// A layer that is not asked for takes no room, and changes nothing of the others.
+TEST(FilmSplit, LayersDoNotSeeEachOther) {
+  DeviceScene scene(test_device(), model().flat);
+  const LayeredImage all = develop(whole(), model().scene, Layers::all());
+  for (const Layers layers : {Layers::none(), Layers::usual(), Layers::none().with(Layer::variance).with(Layer::object)}) {
+    Renderer renderer(scene, model().view, {.layers = layers});
+    renderer.pass(whole().layout().window, 0, samples);
+    const Film film = renderer.film().read();
+    EXPECT_EQ(film.words().size(), film.layout().window.pixels() * film.layout().words_per_pixel());
+    const LayeredImage image = develop(film, model().scene, layers);
+    EXPECT_EQ(image.channels.size(), layers.channels());
+    for (const Channel& found : image.channels) {
+      EXPECT_EQ(found.floats, channel(all, found.name).floats) << found.name;
+      EXPECT_EQ(found.uints, channel(all, found.name).uints) << found.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace caplet::test
