@@ -72,12 +72,15 @@ std::string text_of(const std::vector<FilmPart>& parts) {
   return out;
 }
 
-/// The next whole number of `text`, which is taken from it with the one character behind.
+/// The next whole number of `text`, which is taken from it with the space or comma behind.
 bool take_number(std::string_view& text, std::int64_t low, std::int64_t high, std::int64_t& out) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (error != std::errc() || out < low || out > high) return false;
-  text.remove_prefix(std::min<std::size_t>(text.size(), static_cast<std::size_t>(end - text.data()) + 1));
-  return true;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (text.empty()) return true;
+  const bool separated = text.front() == ' ' || text.front() == ',';
+  text.remove_prefix(1);
+  return separated;
 }
 
 class Metadata {

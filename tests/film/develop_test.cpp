@@ -285,7 +285,7 @@ TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {
   const float most = std::numeric_limits<float>::max();
   // Finite sums that the exposure takes beyond a float: of the color, or of the variance alone.
   const Pixel bright = with_samples({{1e9, 0, 0}, {1e9, 0, 0}}), spread = with_samples({{0.5, 0, 0}, {1.5, 0, 0}});
-  const Pixel good = with_samples({{0.5, 0.25, 0.125}, {0.5, 0.25, 0.125}});
+  const Pixel good = with_samples({{0.5, 0.25, 0.125}});
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   Scene scene;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 
 #include "film/develop.h"
 #include "film/film.h"
@@ -102,12 +103,14 @@ TEST(FilmSplit, FilmsAddedInAnyOrder) {
     films.push_back(renderer.film().read());
   }
   const auto folder = temporary_folder();
+  int number = 0;
   for (int i = 0; i < 4; ++i) {
     std::ranges::shuffle(films, random);
     Film sum(whole().layout());
     for (const Film& film : films) {
-      film.save(folder / "film.exr");
-      sum.add(Film::load(folder / "film.exr"));
+      const auto file = folder / (std::to_string(number++) + ".exr");
+      film.save(file);
+      sum.add(Film::load(file));
     }
     EXPECT_TRUE(same(sum, whole())) << i;
   }
