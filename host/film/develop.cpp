@@ -46,7 +46,7 @@ class Planes {
   }
   explicit operator bool() const { return wanted_; }
 
-  /// False, and `instead` in all of the planes, when a value is infinite or not a number as a float.
+  /// When a value is infinite or NaN as a float: puts `instead` into all of the planes and returns false.
   bool set(std::size_t pixel, const Vector& values, float instead = 0) const {
     std::array<float, 3> floats{};
     std::ranges::transform(values, floats.begin(), to_float);
@@ -145,7 +145,7 @@ LayeredImage develop(const std::vector<FilmRecord>& film, const ParamsRecord& pa
       Vector of_mean{};
       for (std::size_t c = 0; c < 3; ++c) {
         const double spread = square[c] - rgb[c] * rgb[c];
-        of_mean[c] = gain * gain * (spread < 0 ? 0.0 : spread) / (record.samples - 1.0);  // what is not a number stays so
+        of_mean[c] = gain * gain * (spread < 0 ? 0.0 : spread) / (record.samples - 1.0);  // NaN stays NaN
       }
       finite &= variance.set(i, of_mean, std::numeric_limits<float>::max());
     }

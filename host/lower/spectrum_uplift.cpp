@@ -122,7 +122,7 @@ double solve(const Response& response, const glm::dvec3& target, double toleranc
   return largest(residual);
 }
 
-/// c of the constant spectrum of this value.
+/// The sigmoid's coefficient c of a constant spectrum of this value.
 glm::dvec3 constant(double value) {
   const double v = std::clamp(value, 1e-6, 1 - 1e-6);
   return {0, 0, (v - 0.5) / std::sqrt(v * (1 - v))};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The solver, shape by shape only where a surface is open.
+// The solver. Only open surfaces have code for single shapes.
 #include "reference/solver.h"
 
 #include <algorithm>
@@ -280,7 +280,7 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
   };
   std::vector<Cell> cells = {{0, 1, 0, 1}};
   std::vector<dvec2> found;
-  // Edge-on all cells fold: nothing is said then.
+  // Seen edge-on all cells fold: no crossing is reported then.
   for (int work = 0; !cells.empty() && work < 20000; ++work) {
     const Cell c = cells.back();
     cells.pop_back();
@@ -407,7 +407,7 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
 
 namespace {
 
-// Of open surfaces: the distance to where the number of crossings changes; with a limit, right only in whether it is above.
+// For open surfaces: how far the line is from where its number of crossings changes. Beyond `limit` any number above it will do.
 double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
   const Line line = line_near(primitive, ray);
   double distance = HUGE_VAL;

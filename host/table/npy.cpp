@@ -188,7 +188,7 @@ void for_each_character(std::string_view text, const Receive& receive) {
   }
 }
 
-/// Of an element: the number in its type, in characters of four bytes for text.
+/// Bytes of an element, by the number in its type, which for text counts characters of four bytes.
 std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
 
 }  // namespace

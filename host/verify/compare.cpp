@@ -103,7 +103,7 @@ std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   return {low, high};
 }
 
-/// The solid that a surface is of: of csg shapes the operand.
+/// The solid that a surface belongs to: for csg shapes the operand.
 struct Solid {
   const reference::Primitive* primitive;
   glm::dmat4 object_from_world;
@@ -230,7 +230,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
 
-  // Which crossings there are may be for rounding to say; what is said of each may not.
+  // Rounding may decide which crossings there are, but not what is reported of each.
   std::string different;
   Fault fault = Fault::hit;
   if (pair.expected.size() != pair.found.size()) {
@@ -277,7 +277,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     if (!matched || pick.surface != hit.surface) {
       const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
                                                            static_cast<int>(pick.surface));
-      // Seen edge-on, sheets are met beside themselves.
+      // An open surface seen edge-on may be met beside its edge.
       if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
         disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says {}", pick.surface, t, away,
                                              local.bound, matched ? std::to_string(hit.surface) : "otherwise"));

@@ -55,7 +55,7 @@ RaySource::RaySource(const Scene& scene, const reference::SceneWitness& witness,
   std::erase_if(by_kind_, [](const auto& primitives) { return primitives.empty(); });
 }
 
-/// Each kind as often as every other, however many of it there are.
+/// A random primitive: each kind as often as every other, however many primitives are of it.
 std::size_t RaySource::primitive(Random& random) const {
   const auto& primitives = by_kind_[random.below(by_kind_.size())];
   return primitives[random.below(primitives.size())];
@@ -191,7 +191,7 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
 
 VerifyRay RaySource::ray(std::uint64_t index) const {
   Random random(seed_, 0, index);
-  // Of sixteen rays two are the camera's, three bounces, two chords, the others hard.
+  // Two of sixteen rays are the camera's, three are bounces, two chords, the others hard.
   constexpr std::array<RayFamily, 16> turns = {
       RayFamily::camera, RayFamily::camera,   RayFamily::bounce,   RayFamily::bounce,    RayFamily::bounce,  RayFamily::chord,
       RayFamily::chord,  RayFamily::touching, RayFamily::touching, RayFamily::grazing,   RayFamily::grazing, RayFamily::rim,

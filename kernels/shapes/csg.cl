@@ -178,7 +178,7 @@ static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* si
     if (line->value == before || !seen) continue;
     if ((line->value != 0 ? ray->sees_entering : ray->sees_leaving) == 0) continue;
     const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
-    // A chord of no length keeps its order: left after it is entered.
+    // Each crossing is reported beyond the last one, so that a chord of no length still enters before it leaves.
     line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
     *t = line->last;
     *side = (int)surface | (line->value != 0 ? 0 : CAPLET_LEAVING);

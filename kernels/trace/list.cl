@@ -33,8 +33,8 @@ typedef struct {
   __global HitRecord* sorted;
   uint capacity, count;
   int more;       // some were left out
-  float t_end;    // crossings at or beyond cannot matter, or, full, beyond the last one
-  float t_begin;  // nor at or before
+  float t_end;    // crossings at or beyond this t cannot matter; of a full list, those beyond its last one
+  float t_begin;  // nor do those at or before this t
 } HitList;
 
 // By t; leaving before entering, so that solids that touch are not nested for an instant; then slot, instance, surface.
@@ -83,7 +83,7 @@ static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
     const uint i = lowest_bit(bits);
     const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
     if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
-    // A solid touched at one point is left just after it is entered, whatever rounding says.
+    // A solid that is touched at one point is reported as entered, then left one unit in the last place later, however t is rounded.
     const int solid = kind != shape_bilinear && kind != shape_partial_sphere && kind != shape_open_cylinder;
     const int touched = solid && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
     const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
