@@ -36,7 +36,7 @@ finds() {
   local planted=$folder/planted-$1
   mkdir -p "$planted"
   cp -r "$root/kernels" "$planted"
-  awk -v line="$2" '{ print } /const uint path = g->queue/ { print line }' "$root/kernels/stages/extend.cl" >"$planted/kernels/stages/extend.cl"
+  awk -v line="$2" '{ print } /const uint path = / { print line }' "$root/kernels/stages/extend.cl" >"$planted/kernels/stages/extend.cl"
   CAPLET_KERNELS=$planted/kernels watched "planted-$1" render "$root/scenes/capsules.pbrt" -o "$planted/out.exr" --size 2x2 --spp 1 --max-depth 1 \
     >"$planted/output" 2>&1 || true
   if grep -q "$3" "$folder/planted-$1.log"; then
@@ -64,9 +64,11 @@ fi
 rm -rf "$folder"
 mkdir -p "$folder"
 bad=0 running=0
-finds access "g->path_hit[path + 100000000u].t = 0.0f;" "Invalid write" || bad=1
-finds race "g->counters[9] = item;" "data race" || bad=1
-finds uninitialised "float never[2]; never[1] = 0.0f; if (never[item % 2u] > 0.0f) g->counters[9] = 1u;" "ninitialized" || bad=1
+# The array that `extend` writes its hits into, as the stage names it.
+hits=$(grep -oE 'g->[a-z_.]*path_hit' "$root/kernels/stages/extend.cl" | head -n 1)
+finds access "$hits[path + 100000000u].t = 0.0f;" "Invalid write" || bad=1
+finds race "$hits[0].t = (float)item;" "data race" || bad=1
+finds uninitialised "float never[2]; never[1] = 0.0f; if (never[item % 2u] > 0.0f) $hits[path].t = 1.0f;" "ninitialized" || bad=1
 # From around to the middle: most scenes lie there.
 awk 'BEGIN { srand(1); for (i = 0; i < 24; ++i) { x = 8 * rand() - 4; y = 8 * rand() - 4; z = 8 * rand() - 4;
   print x, y, z, rand() - 0.5 - x, rand() - 0.5 - y, rand() + 0.5 - z } }' >"$folder/rays.txt"
