@@ -49,7 +49,7 @@ class Totals:
     def ctest(self, preset, folder):
         """The tests of a preset, which run in build/FOLDER."""
         lines = []
-        command = ["ctest", "--preset", preset, "-j", str(os.cpu_count())]
+        command = ["ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0)))]
         with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
                               errors="replace") as process, open(BUILD / folder / "ctest.log", "w") as log:
             for line in process.stdout:

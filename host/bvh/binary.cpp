@@ -212,7 +212,7 @@ class Builder {
           left = partition(first, count, [&](const Reference& r) { return binning.bin(r, split.axis) < split.bin; });
       }
     }
-    if (left == 0 || left == count) left = count / 2;  // all centroids are in one bin: halve the list
+    if (left == 0 || left == count) left = count / 2;  // nothing tells them apart, or the depth is used up: halve the list
 
     const std::uint32_t children = next_.fetch_add(2);
     node.left = children;

@@ -42,8 +42,8 @@ class SecondTry {
   SecondTry(const SecondTry&) = delete;
   SecondTry& operator=(const SecondTry&) = delete;
 
-  /// From here to driver_works() a crash of PoCL, whatever handlers of signals it has set before, starts the second process.
-  /// Nothing on other platforms, and without a SecondTry.
+  /// From this call to driver_works() a crash of PoCL starts the second process, whatever signal handlers PoCL has set.
+  /// Does nothing on other platforms, and without a SecondTry.
   static void guard(const Device& device);
   /// To be called once the driver has run the kernels: later crashes are not its cache's fault. In the second process: says which
   /// folder to delete.

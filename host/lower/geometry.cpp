@@ -200,7 +200,7 @@ class GeometryLowering {
                                                                               : CAPLET_INSTANCE_NO_LEAVING;
   }
 
-  /// Winding turns with a mirroring transform; a disk's and a solid's own normal do not.
+  /// A mirroring transform turns normals that follow the winding, but not those of disks and solids.
   static bool turns_normals(const Shape& shape, const Matrix& m) {
     const bool wound =
         std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);

@@ -182,7 +182,7 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
   static std::array<std::unique_ptr<const ChromaticityTable>, 4> tables;
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
-  // Isolated: the thread that makes the table must not take a task that waits for it.
+  // Isolated: while it makes the table, the thread must not take up another task, which may wait for the table.
   std::call_once(once[s],
                  [&] { tbb::this_task_arena::isolate([&] { tables[s] = std::make_unique<const ChromaticityTable>(space); }); });
   return *tables[s];

@@ -43,7 +43,7 @@ double angle_around(const dvec3& axis, const dvec3& w) {
   return angle < 0 ? angle + full_turn : angle;
 }
 
-/// The same around z, brought to the nearer end of [0, phi_max] where it is beyond.
+/// angle_around z; beyond phi_max the nearer end of [0, phi_max].
 double angle_within(const dvec3& x, double phi_max) {
   const double angle = angle_around({0, 0, 1}, x);
   if (angle <= phi_max) return angle;

@@ -208,7 +208,8 @@ class Search {
     const Beyond at_center = beyond(center);
     if (at_center.least > reach) return Side::outside;
     if (at_center.most > 0) return Side::unknown;
-    // Convex: what holds the corners holds the box. It matters for what is taken away, which may end where the box does.
+    // The solid is convex: if it holds the corners, it holds the box. Only solids that are taken away need to be known to hold
+    // it.
     if (!solid.subtracted) return Side::unknown;
     for (const dvec3& corner : corners)
       if (beyond(center + corner).most > 0 || beyond(center - corner).most > 0) return Side::unknown;

@@ -171,7 +171,7 @@ class Validator {
     if (planes > max_polyhedron_planes)
       return error(
           where, "the polyhedron has " + std::to_string(planes) + " planes, more than " + std::to_string(max_polyhedron_planes));
-    double reach = 0;  // of the points from the first
+    double reach = 0;  // greatest distance of a point from the first
     for (std::size_t i = 0; i < planes; ++i) {
       const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
       if (!finite(polyhedron.points[i]) || !finite(polyhedron.normals[i])) return error(where, plane() + "is not finite");
@@ -180,7 +180,7 @@ class Validator {
     }
     std::size_t bad = 0;
     if (!polyhedron_corners(polyhedron, &bad).empty()) return;
-    // A box far outside tells one without bounds from one without an inside.
+    // Cut by a far box, an unbounded polyhedron has corners; one without an inside still has none.
     PolyhedronShape boxed = polyhedron;
     for (int side = 0; side < 6; ++side) {
       glm::dvec3 n(0);

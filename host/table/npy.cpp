@@ -110,7 +110,7 @@ class HeaderParser {
       const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
       if (error != std::errc()) return std::nullopt;
       text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-      take('L');  // Python 2 wrote long numbers so
+      take('L');  // Python 2 wrote long integers as 123L
       out.push_back(value);
       if (!take(',') && peek() != ')') return std::nullopt;
     }

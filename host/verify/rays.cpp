@@ -84,7 +84,7 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
   return out;
 }
 
-/// Between two points of different surfaces, where one goes over into the other; on the boundary of open shapes.
+/// A point where one surface of a shape meets another, or on the boundary of an open shape.
 std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random) const {
   const auto placed = witness_.placed(index);
   if (const auto curves = reference::boundary(placed.primitive);
@@ -96,7 +96,7 @@ std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random
   const Point a = surface_point(index, random), b = surface_point(index, random);
   const int surface = reference::surface_at(placed.primitive, a.at).surface;
   if (reference::surface_at(placed.primitive, b.at).surface == surface) return std::nullopt;
-  // Bisection over the segment between them, seen from the ball's centre, to where the surface changes.
+  // Bisection along the segment between them, whose points are projected from the ball's centre, to where the surface changes.
   const dvec3 from = placed.ball.center;
   double low = 0, high = 1;
   Point out = a;

@@ -65,7 +65,7 @@ std::optional<std::uint64_t> free_memory(const Surroundings& machine) {
   return out ? std::min(*out, left) : left;
 }
 
-/// Why nothing can be written in the folder, which need not be there yet; empty: it can.
+/// Why no file can be written in the folder (which may not exist yet); empty: one can.
 std::string unwritable(const Surroundings& machine, const fs::path& folder) {
   std::error_code error;
   fs::path there = folder;
