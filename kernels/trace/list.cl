@@ -83,7 +83,7 @@ static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
     const uint i = lowest_bit(bits);
     const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
     if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
-    // A solid that is touched at one point is reported as entered, then left one unit in the last place later, however t is rounded.
+    // A solid touched at one point is left just after it is entered, whatever rounding says.
     const int solid = kind != shape_bilinear && kind != shape_partial_sphere && kind != shape_open_cylinder;
     const int touched = solid && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
     const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
