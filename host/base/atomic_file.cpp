@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A file's, or of one that is not there yet its folder's with the name in it.
+/// What two names of one file share: its device and inode; of a file that is not there yet those of its folder, and its name.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -38,9 +38,9 @@ enum class Kind { fresh, file, stream, refused };
 
 struct Place {
   Kind kind = Kind::refused;
-  fs::path path;             // where links lead
-  struct stat status {};     // unless fresh or refused
-  int descriptor = -1;       // of a standard stream
+  fs::path path;             // after following symbolic links
+  struct stat status {};     // not set when fresh or refused
+  int descriptor = -1;       // when it is a standard stream: its number
   std::string problem = {};  // why it is refused
 };
 
@@ -51,7 +51,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int operator()() const { return number_; }
-  /// The result of close(2), which may bring a write's error.
+  /// The result of close(2), which may report the error of an earlier write.
   int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
 
  private:
@@ -72,7 +72,7 @@ int standard_stream(const struct stat& status) {
   return -1;
 }
 
-/// What is not there: itself, or where its links lead.
+/// For a path without a file: the path itself, or the one that its symbolic links end at.
 fs::path end_of_links(fs::path path) {
   std::error_code error;
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
@@ -118,7 +118,7 @@ Place place_of(const fs::path& target) {
   return out;
 }
 
-/// Nothing when the folder cannot be asked.
+/// No value when the folder of a file that is not there yet cannot be read.
 std::optional<Identity> identity_of(const Place& place) {
   if (place.kind != Kind::fresh) return Identity{place.status.st_dev, place.status.st_ino, {}};
   struct stat folder {};
@@ -176,7 +176,7 @@ void copy(int from, int to, const fs::path& target) {
   }
 }
 
-/// Into what is no regular file, by way of one that has no name.
+/// Writes into a fifo, a device or a standard stream: first into a temporary file without a name, which is then copied.
 void write_through(const Place& place, const fs::path& target, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "caplet-XXXXXX").string();
@@ -196,20 +196,20 @@ void write_through(const Place& place, const fs::path& target, const std::functi
   if (to.close() != 0) fail(target, "cannot be written", errno);
 }
 
-/// A file with the mode and, where allowed, the owner of the one it is to replace.
+/// Creates a file with the mode and, where allowed, the owner of the one it is to replace.
 void create(const fs::path& temporary, const Place& place, const fs::path& target) {
   const bool fresh = place.kind == Kind::fresh;
   const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, fresh ? 0666 : 0600));
   if (file() < 0) fail(target, "cannot be written", errno);
   if (fresh) return;
-  // Who may not give a file away keeps it; the mode comes last, for a change of the owner takes bits away.
+  // Users who may not change the owner keep the file. The mode comes last: a change of the owner clears bits of it.
   if (::fchown(file(), place.status.st_uid, place.status.st_gid) != 0 &&
       ::fchown(file(), static_cast<uid_t>(-1), place.status.st_gid) != 0)
     errno = 0;
   ::fchmod(file(), place.status.st_mode & 07777);
 }
 
-/// Where the target cannot be replaced as a name, as a mount point cannot.
+/// For targets that no file can be renamed to, such as mount points.
 void copy_over(const fs::path& temporary, const fs::path& target) {
   const Descriptor from(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
   Descriptor to(::open(target.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
@@ -218,7 +218,7 @@ void copy_over(const fs::path& temporary, const fs::path& target) {
   if (to.close() != 0) fail(target, "cannot be written", errno);
 }
 
-/// Names that a handler of signals may read.
+/// A file name that a signal handler may read.
 struct Slot {
   std::atomic<int> state = 0;  // 0 free, 1 being named, 2 in use
   std::array<char, PATH_MAX> name{};
@@ -226,7 +226,7 @@ struct Slot {
 std::array<Slot, 8> slots;
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
-/// A file that remove_temporary_files removes while the object lives. The ninth at a time, and one with a longer name, stay.
+/// While the object lives, remove_temporary_files removes this file. A ninth one at a time, or one with a longer name, it leaves.
 class Listed {
  public:
   explicit Listed(const fs::path& path) {
@@ -250,7 +250,7 @@ class Listed {
   Slot* slot_ = nullptr;
 };
 
-/// In the target's folder, short enough for its file system.
+/// A name for a temporary file in the target's folder, short enough for its file system.
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<int> serial = 0;
   constexpr std::size_t longest = 100;
@@ -283,7 +283,7 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
     fs::remove(temporary, error);
     throw;
   }
-  fs::remove(temporary, error);  // is there only after copy_over
+  fs::remove(temporary, error);  // it still exists only after copy_over
 }
 
 void remove_temporary_files() noexcept {
@@ -330,7 +330,7 @@ void Outputs::add(const std::string& flag, const fs::path& target) {
   const auto identity = identity_of(place);
   for (const Output& other : outputs_) {
     const Place there = place_of(other.target);
-    // A device takes what several write, as /dev/null does.
+    // Several outputs may go to one device, such as /dev/null.
     if (!identity || identity != identity_of(there) || (place.kind == Kind::stream && S_ISCHR(place.status.st_mode))) continue;
     throw InputError(SourceLocation{flag}, fmt::format("'{}' is the output of {} as well", target.string(), other.flag));
   }

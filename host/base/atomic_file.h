@@ -26,10 +26,10 @@ namespace caplet {
 /// (note_input).
 void write_atomically(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);
 
-/// The same of a file that is these bytes.
+/// The same for contents that are in memory.
 void write_bytes(const std::filesystem::path& target, std::string_view bytes);
 
-/// Removes the files that write_atomically is writing in this process, for an end that unwinds nothing. Safe in handlers of
+/// Removes the files that write_atomically is writing in this process, for ends that run no destructors. Safe in handlers of
 /// signals.
 void remove_temporary_files() noexcept;
 
@@ -41,13 +41,13 @@ void check_writable(const std::filesystem::path& target, const std::string& flag
 /// then says nothing of a format.
 bool is_stream(const std::filesystem::path& target);
 
-/// To be called for each file that a run reads, so that no output replaces it. One that is not there is left out.
+/// To be called for each file that a run reads, so that no output replaces it. A file that does not exist is ignored.
 void note_input(const std::filesystem::path& path);
 
 /// The outputs of a run, by option. No two may be the same file, whatever their names and links, nor one that is read.
 class Outputs {
  public:
-  /// Throws InputError naming `flag`, as check_writable and for an earlier output.
+  /// Throws InputError naming `flag` when check_writable does, and when `target` is an earlier output.
   void add(const std::string& flag, const std::filesystem::path& target);
   /// Throws InputError naming the output that is among the files noted as input.
   void check_inputs() const;

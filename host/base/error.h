@@ -43,18 +43,18 @@ class RunError : public std::runtime_error {
 /// others; of what goes beyond `limit` lines only the number is said.
 class Diagnostics {
  public:
-  /// Where so much is wrong, reading on tells nothing new: `error` throws.
+  /// With so many errors there is no use in reading on: `error` throws.
   static constexpr std::size_t most_errors = 100'000;
 
   explicit Diagnostics(std::size_t limit = 20) : limit_(limit) {}
   /// `kind` is what groups errors, such as a feature that is not rendered yet; empty: the error has a line of its own. Throws
   /// InputError with all errors when they are `most_errors`.
   void error(const SourceLocation& where, const std::string& message, const std::string& kind = {});
-  /// Errors that nobody has put into words.
+  /// Counts errors whose messages were never made.
   void add_more(std::size_t count);
   void warning(const SourceLocation& where, const std::string& message);  // logged at once
   bool has_errors() const { return count_ > 0; }
-  /// No more lines will be shown: their texts need no care.
+  /// True when no further line will be shown, so that no work need go into its text.
   bool is_full() const { return lines_.size() >= limit_; }
   /// Throws InputError with all errors, if there are any.
   void finish() const;
@@ -62,11 +62,11 @@ class Diagnostics {
  private:
   struct Line {
     std::string text, kind;
-    std::size_t others = 0;  // of its kind
+    std::size_t others = 0;  // further errors of its kind
   };
   std::size_t limit_;
   std::vector<Line> lines_;
-  std::size_t count_ = 0, beyond_ = 0;  // beyond_: in no line
+  std::size_t count_ = 0, beyond_ = 0;  // beyond_: those that are in no line
   bool stopped_ = false;
 };
 

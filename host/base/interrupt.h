@@ -7,10 +7,10 @@
 namespace caplet {
 
 /// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless that is ignored, as nohup asks) that set the flag. After a SIGINT or
-/// SIGTERM the next one has its default action; SIGHUP comes more than once when a terminal goes, and only ever asks.
+/// SIGTERM the next one has its default action; SIGHUP comes more than once when a terminal closes, and only sets the flag.
 void install_interrupt_handlers();
 bool interrupt_requested();
-/// For tests.
+/// Sets or clears the flag, for tests.
 void set_interrupt_requested(bool requested);
 
 }  // namespace caplet

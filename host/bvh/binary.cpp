@@ -74,8 +74,8 @@ struct Binning {
   }
 };
 
-/// Leaf blocks that `count` references come to: a block costs the same however many of its lanes are used, and leaves of a
-/// finished tree are about three quarters full.
+/// Leaf blocks that `count` references will probably fill: a block costs the same however many of its lanes are used, and leaves
+/// of a finished tree are about three quarters full.
 double blocks(std::uint32_t count) { return count <= width ? 1.0 : static_cast<double>(count) / (0.75 * width); }
 
 struct Split {
@@ -212,7 +212,7 @@ class Builder {
           left = partition(first, count, [&](const Reference& r) { return binning.bin(r, split.axis) < split.bin; });
       }
     }
-    if (left == 0 || left == count) left = count / 2;  // nothing tells them apart: by order
+    if (left == 0 || left == count) left = count / 2;  // nothing tells them apart, or the depth is used up: halve the list
 
     const std::uint32_t children = next_.fetch_add(2);
     node.left = children;

@@ -14,8 +14,8 @@ namespace {
 constexpr double node_cost = 1.0, leaf_cost = 1.0;
 constexpr std::uint32_t parallel_threshold = 4096;
 
-/// cost[i]: of the subtree as at most i + 1 roots (each a wide node or a leaf). left[i]: how many of these the left child gets;
-/// 0: the subtree stays one root.
+/// cost[i]: least cost of the subtree as at most i + 1 roots (each a wide node or a leaf). left[i]: how many of these the left
+/// child gets; 0: the subtree stays one root.
 struct Choice {
   std::array<float, width> cost;
   std::array<std::uint8_t, width> left;
@@ -78,7 +78,7 @@ class Collapser {
       }
   }
 
-  /// The roots of subtree `index` when it may have `allowed`; `open`: it must be opened.
+  /// Adds the roots of subtree `index`, at most `allowed`; `open`: the subtree itself must not be one of them.
   void gather(std::uint32_t index, std::size_t allowed, bool open, std::vector<std::uint32_t>& roots) const {
     const BinaryNode& node = binary_.nodes[index];
     const std::size_t left = node.left == 0 ? 0 : choices_[index].left[allowed - 1];

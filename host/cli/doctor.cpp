@@ -18,7 +18,7 @@ namespace caplet::cli {
 
 namespace {
 
-/// One line: drivers' messages may have several.
+/// `text` as one line: drivers' messages may have several.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
-/// One line: control characters of names and files would break it, or the terminal.
+/// Prints one line. Control characters in names and files would break the line, or the terminal: they become blanks.
 void print_error(std::string message) {
   for (char& c : message)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
@@ -41,14 +41,14 @@ int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return exit_wrong_input;
 }
 
-/// What the standard streams lack would be given to the next file that is opened. A closed stdout stays one that cannot be
-/// written, which end() tells.
+/// The number of a standard stream that is closed would go to the next file that is opened. A closed stdout stays one that cannot
+/// be written, which end() reports.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream) return;
 }
 
-/// Exit code `code`, or that results did not reach stdout.
+/// `code`, or exit_failed when results did not reach stdout.
 int end(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
@@ -62,7 +62,7 @@ int run(CLI::App& app, int argc, char** argv) {
     return 0;
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
-  } catch (const CLI::RuntimeError& end) {  // a command's own exit code, all being said
+  } catch (const CLI::RuntimeError& end) {  // a command's own exit code; it has printed everything
     return end.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return print_usage_error(app, error);
@@ -84,7 +84,7 @@ int run(CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  // A reader that goes, and a file that may not grow, are errors of the write: there are other outputs, and files to remove.
+  // A closed pipe and a file size limit shall be write errors, not signals: there are other outputs, and files to remove.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   const caplet::SecondTry second_try(argv);

@@ -101,7 +101,8 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Query query(flat, device);
-  // Kernels are compiled at the first question: before anything is read that may not come twice.
+  // Compiles the kernels before the rays are read: after a driver's crash the program starts again, and a pipe cannot be read
+  // twice.
   const RayRecord any{0, 0, 0, 0, 0, 0, 1, std::numeric_limits<float>::infinity()};
   std::vector<std::uint64_t> ignored;
   answer(query, std::span(&any, 1), 0, options, ignored);
@@ -123,7 +124,7 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
       const std::vector<PickRow> rows = answer(query, rays, ray_count, options, overflowed);
       device_seconds += seconds() - before;
       SecondTry::driver_works();
-      if (overflowed.empty()) table->append(rows);  // otherwise only the other rays to blame are looked for
+      if (overflowed.empty()) table->append(rows);  // otherwise read on only to name all rays that overflow
       ray_count += rays.size();
       row_count += rows.size();
       if (rays.size() < chunk) break;

@@ -33,7 +33,7 @@ struct PickReport {
   std::optional<std::vector<ReferenceCrossing>> reference;
 };
 
-/// The same ray, with the numbers the device has, answered by the witness. Takes time and memory with every primitive of the
+/// What the witness finds for the same ray, as the device has it in floats. Time and memory grow with the primitives of the
 /// scene.
 std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all);
 

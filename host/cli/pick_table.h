@@ -29,7 +29,7 @@ class PickTable {
 
 enum class TableFormat { csv, npy };
 
-/// By the extension; a stream (is_stream) that has none takes CSV.
+/// The format by the extension; CSV for a stream (is_stream) that has none; no value when unknown.
 std::optional<TableFormat> table_format(const std::filesystem::path& path);
 /// Throws InputError naming `flag` when there is no format for it.
 void check_table_format(const std::filesystem::path& path, const std::string& flag);

@@ -57,7 +57,7 @@ class Stopwatch {
 
 constexpr const char* no_picture = "none";
 
-/// What is written, and where; empty: not.
+/// The outputs and their paths; empty: not wanted.
 struct Files {
   fs::path picture, preview, stats;
   Outputs all;
@@ -71,7 +71,7 @@ void add_picture(Files& files, const fs::path& path) {
                      fmt::format("'{}': pictures are written as .exr (use --preview for other formats)", path.string()));
 }
 
-/// What can be known to be wrong before anything is loaded.
+/// Reports what is wrong with options and outputs before anything is loaded.
 Overrides check_options(const Options& options, Files& files) {
   Overrides overrides;
   if (!options.size.empty()) overrides.size = parse_size(options.size);
@@ -119,13 +119,13 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
-        SecondTry::guard(device);  // again: what compiled the kernels may have set handlers
+        SecondTry::guard(device);  // again: the kernels' compiler may have set signal handlers
       reporter.update(progress.fraction, progress.samples_per_second,
                       fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
                                   render_options.samples_per_pixel));
     });
   } catch (const RunError&) {
-    // A driver's compiler gives up on the signal: that is no fault of its own.
+    // A driver's compiler may fail because of the signal: then the interrupt is the reason, not the driver.
     if (interrupt_requested()) throw RunError(interrupted_early);
     throw;
   }

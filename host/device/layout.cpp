@@ -27,7 +27,7 @@ constexpr std::size_t largest_record_bytes = std::max({
 #undef RECORD_END
 });
 
-/// What the kernel writes for `expected` layouts, the count at the front left out, and what each value is.
+/// The values that the kernel should write (without the count at the front), and what each one means.
 struct Expectation {
   std::vector<cl_uint> values;
   std::vector<std::string> meanings;

@@ -24,18 +24,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* marker = "CAPLET_DRIVER_FAILED";  // of the second process: the signal, 0 for an error
+constexpr const char* marker = "CAPLET_DRIVER_FAILED";  // set for the second process: the first one's signal, 0 for an error
 constexpr int signals[] = {SIGABRT, SIGBUS, SIGSEGV, SIGILL};
 
 enum State : int { off, guarded, second, ending };
 std::atomic<int> state{off};
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
-// What the handler needs, made before.
+// What the signal handler needs, prepared since it may not allocate.
 struct sigaction before[std::size(signals)];
 char** program_arguments = nullptr;
 bool is_second = false;
-std::string damaged;  // the folder
+std::string damaged;  // the folder with the damaged cache
 std::vector<std::string> variables;
 std::vector<char*> environment;
 char* signal_digits = nullptr;  // two, within `variables`

@@ -33,7 +33,7 @@ class FreshPoclCache {
   std::optional<std::string> before_;
 };
 
-/// In main, before anything else, for as long as the program runs.
+/// To be made in main before anything else, for as long as the program runs.
 class SecondTry {
  public:
   /// `arguments` as main has them. In the second process: makes the fresh cache folder.
@@ -42,10 +42,11 @@ class SecondTry {
   SecondTry(const SecondTry&) = delete;
   SecondTry& operator=(const SecondTry&) = delete;
 
-  /// From here to driver_works() a crash of PoCL, whatever handlers of signals it has set before, starts the second process.
-  /// Nothing on other platforms, and without a SecondTry.
+  /// From this call to driver_works() a crash of PoCL starts the second process, whatever signal handlers PoCL has set.
+  /// Does nothing on other platforms, and without a SecondTry.
   static void guard(const Device& device);
-  /// The driver has run the kernels: what comes is no fault of its cache. In the second process: says which folder to delete.
+  /// To be called once the driver has run the kernels: later crashes are not its cache's fault. In the second process: says which
+  /// folder to delete.
   static void driver_works();
   /// Starts the second process in place of this one if the driver is guarded and its error may come of its cache. Returns
   /// otherwise.

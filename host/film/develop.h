@@ -18,7 +18,7 @@ inline constexpr float depth_of_nothing = 1e10f;
 
 /// Developed pixels that are beyond the range of a float.
 struct NotFinite {
-  std::size_t count = 0, of = 0;  // of all that were developed
+  std::size_t count = 0, of = 0;  // `of`: how many were developed
   std::size_t x = 0, y = 0;       // the first one
 
   /// Logs a warning when there are any.

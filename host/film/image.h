@@ -68,7 +68,7 @@ LayeredImage read_exr(const std::filesystem::path& path);
 /// Tone-maps the R G B channels (film/preview.h) and writes the data window with 8 bits a channel, in the format of the
 /// extension, atomically. Throws RunError or InputError.
 void write_preview(const std::filesystem::path& path, const LayeredImage& image);
-/// The same of bytes that preview_rgb8 (film/preview.h) made: 3 a pixel.
+/// The same from bytes that preview_rgb8 (film/preview.h) made, 3 a pixel.
 void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
 /// Throws InputError naming `flag` when write_preview could not write a file of that name's extension.
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);

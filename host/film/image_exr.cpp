@@ -139,7 +139,7 @@ LayeredImage read_part(const fs::path& path, std::uintmax_t file_bytes, Imf::Mul
   return image;
 }
 
-/// A file whose every failure to write is told: OpenEXR's own drops those of its last bytes and of its table of rows.
+/// A file that reports every failure to write: OpenEXR's own stream drops those of its last bytes and of its table of rows.
 class CheckedFile : public Imf::OStream {
  public:
   /// `name`: for messages.
@@ -236,7 +236,7 @@ void write_bands(const fs::path& path, const LayeredImage& whole, int step, ExrC
 }  // namespace
 
 ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores) {
-  // Of layers as these, OpenEXR 3.1 packs some 60 MB/s on each core of a server of 2020.
+  // OpenEXR 3.1 packs some 60 MB/s of such layers on each core of a server of 2020.
   constexpr double zip_bytes_per_second = 6e7, share = 0.1;
   const double zip_seconds = static_cast<double>(bytes) / (zip_bytes_per_second * std::max(1u, cores));
   return zip_seconds <= share * seconds ? ExrCompression::zip : ExrCompression::rle;

@@ -127,7 +127,7 @@ Pixels read_linear(const std::filesystem::path& path) {
 bool can_write(const std::filesystem::path& path) {
   if (path.extension().empty()) return false;
   const bool known = OIIO::ImageOutput::create(path.string()) != nullptr;
-  if (!known) OIIO::geterror();  // taken, or it would surface at the end of the program
+  if (!known) OIIO::geterror();  // fetched, or OpenImageIO would print it at the end of the program
   return known;
 }
 
@@ -137,7 +137,7 @@ bool can_hold(const std::filesystem::path& path, int width, int height) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const Limit& limit : limits)
     if (limit.extension == extension) return width <= limit.side && height <= limit.side;
-  // Others tell when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
+  // The other formats say so when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
   const MemoryFile file;
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   const bool opened = output && output->open(file.path(), rgb8_spec(width, height));

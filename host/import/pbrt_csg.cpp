@@ -31,7 +31,7 @@ std::string objection(const Shape& shape) {
   return {};
 }
 
-/// The operand in a form whose materials are all its surfaces'.
+/// The operand with a material for each of its surfaces.
 std::shared_ptr<const Shape> operand_of(const Shape& shape) {
   auto operand = std::make_shared<Shape>(shape);
   if (auto* capsules = std::get_if<CapsulesShape>(&operand->geometry); capsules && !capsules->materials.empty()) {
@@ -50,7 +50,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
   const Parameter* operands = parameters.values("operands", {"string"});
   if (!operands) return {};
   bool good = true;
-  std::set<std::string> said;  // an object may be named twice
+  std::set<std::string> said;  // messages already reported: an object may be named twice
   const auto wrong = [&](const std::string& message) {
     if (said.insert(message).second) parameters.error("operands", message);
     good = false;
@@ -64,7 +64,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
       continue;
     }
     if (object->shapes.empty() && parameters.diagnostics().has_errors()) {
-      good = false;  // its shape may be what was refused
+      good = false;  // it may be empty since its shape was refused
       continue;
     }
     if (object->shapes.size() != 1) {

@@ -23,7 +23,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-constexpr std::size_t most_attributes = 256;  // of different names; no target knows as many
+constexpr std::size_t most_attributes = 256;  // most Attributes of different names; no statement knows as many parameters
 
 }  // namespace
 
@@ -352,7 +352,7 @@ void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visi
 
 }  // namespace
 
-/// By statement: does a shape have its material?
+/// For each Material statement: does a shape have its material?
 std::vector<bool> Parser::used_materials() {
   std::vector<bool> used(materials_.size(), false);
   each_material(scene_, [&](std::uint32_t& index) {

@@ -24,7 +24,7 @@ namespace {
 }
 
 /// What a gzipped file of `size` bytes may unpack to. Deflate packs 1032 to 1 at best, text and meshes less than a tenth of that:
-/// what unpacks further is made to fill the memory.
+/// a file that unpacks to more was made to fill the memory.
 std::uintmax_t most_unpacked(std::uintmax_t size) { return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size); }
 
 }  // namespace

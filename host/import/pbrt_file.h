@@ -17,10 +17,10 @@ namespace caplet::pbrt {
 /// to more than 64 MiB and 100 times its size.
 std::string read_file(const std::filesystem::path& path, const SourceLocation& where, std::size_t limit = std::size_t{1} << 32);
 
-/// As read_file, for text: bytes that no text has are an error with their place.
+/// As read_file, for text: bytes that cannot be in a text file are an error with their place.
 std::string read_text(const std::filesystem::path& path, const SourceLocation& where);
 
-/// Throws InputError at the first byte of `text` that no text has (control characters other than blanks).
+/// Throws InputError at the first control character of `text` that is not a blank: the file is not text.
 void check_text(const std::string& text, const std::string& file);
 
 }  // namespace caplet::pbrt

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t deepest_include = 64;
-// What a tree of files that include each other many times over may come to; scenes stay far below.
+// Limits for files that include each other many times over; scenes stay far below.
 constexpr std::size_t most_included_files = 1 << 16;
 constexpr std::size_t most_included_again = std::size_t{1} << 28;  // bytes of files that were read before
 }  // namespace
@@ -310,7 +310,7 @@ void Parser::world_begin() {
 // --- The end ---
 
 void Parser::finish_attributes() {
-  // What a later one of the same name was read for counts for the earlier: later ones are further on in the list.
+  // An earlier Attribute counts as used where a later one of the same name, which replaced it, was: hence from the end.
   for (auto it = all_attributes_.rbegin(); it != all_attributes_.rend(); ++it)
     if ((*it)->replaced_by && (*it)->replaced_by->used) (*it)->used = true;
   for (const auto& parameter : all_attributes_)
@@ -337,7 +337,7 @@ void Parser::present() {
   if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
   if (has_camera_) return;
   const Bounds bounds = bounds_of(scene_);
-  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min))) return;  // validate says why
+  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min))) return;  // validate reports it
   if (lit)
     frame_camera(scene_);
   else

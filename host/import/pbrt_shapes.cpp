@@ -68,7 +68,7 @@ Geometry make_geometry(const std::string& type, Parameters& parameters, const Ma
 void set_materials(Parameters& parameters, const MaterialIndex& material_index, Shape& shape) {
   const Parameter* names = parameters.values("materials", {"string"});
   const std::size_t surfaces = surface_count(shape);
-  if (!names || surfaces == 0) return;  // without surfaces the geometry was wrong
+  if (!names || surfaces == 0) return;  // no surfaces: the geometry was wrong, and is reported
   if (names->strings.size() != surfaces) {
     parameters.error("materials", "takes " + std::to_string(surfaces) + (surfaces == 1 ? " name" : " names") +
                                       ", one a surface, not " + std::to_string(names->strings.size()));
@@ -96,7 +96,7 @@ Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t 
   };
   shape.geometry = make_geometry(type, parameters, material_or_default, context);
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry); csg && !csg->operands.empty())
-    shape.material = csg->operands[0]->material;  // the statement's is nowhere seen
+    shape.material = csg->operands[0]->material;  // the statement's own material is on no surface
   if (type != "capsules") set_materials(parameters, context.material_index, shape);
   parameters.finish();
   return shape;

@@ -14,7 +14,7 @@ namespace caplet::pbrt {
 /// `pbrt --upgrade`.
 std::string v3_name(std::string_view directive, std::string_view name);
 
-/// The same for the name of a parameter: of a statement of `directive`.
+/// The same for the name of a parameter in a statement of `directive`.
 std::string v3_parameter(std::string_view directive, std::string_view name);
 
 }  // namespace caplet::pbrt

@@ -20,7 +20,7 @@ namespace caplet {
 
 namespace {
 
-/// Files are written with normals that were 0 / 0: what does not hold for all vertices is of no use.
+/// Some programs write normals that are NaN (0 / 0). Values that are not finite at every vertex are of no use.
 template <class Vector>
 void drop_unless_finite(std::vector<Vector>& values, const std::string& file, const char* what, const char* instead) {
   const auto finite = [](const Vector& v) {

@@ -33,7 +33,7 @@ struct Descriptor {
 }  // namespace
 
 TextFile::TextFile(const std::filesystem::path& path) {
-  // Not to wait for a writer: what is a fifo is refused below.
+  // O_NONBLOCK: opening a fifo shall not wait for a writer; it is refused below.
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.number < 0) cannot_read(path, std::strerror(errno));
   struct stat status {};

@@ -14,7 +14,7 @@
 
 namespace caplet {
 
-/// More than the layout's number of capsules takes (host/lower/encode.h).
+/// Bytes; more than the text of the most capsules that device data can hold (host/lower/encode.h).
 inline constexpr std::size_t longest_text_file = std::size_t{1} << 34;
 
 /// The bytes of a regular file. Throws InputError when it is missing, no regular file, unreadable or longer than

@@ -40,7 +40,7 @@ struct Solid {
   bool subtracted;
 };
 
-/// A solid as its kernel reads it, in csg space or, placed, in its own.
+/// A solid as its kernel reads it: in csg space or, where `placed`, in a space of its own.
 struct Operand {
   FlatPrimitive flat, grown;
   std::uint32_t surface;  // with CAPLET_CSG_SUBTRACTED
@@ -87,7 +87,7 @@ class Flattening {
   std::uint32_t surfaces_ = 0;
 };
 
-/// What a solid's kernel form is: the same overloads as for shapes by themselves.
+/// A solid's kernel data, by the same functions as for shapes that are no operands.
 struct FlatOf {
   const Matrix& m;
   std::vector<float>& leaves;
@@ -194,13 +194,13 @@ FlatPrimitive grown_by(FlatPrimitive p, double b, std::vector<float>& leaves) {
   return p;
 }
 
-/// `solid` around csg space's centre, whose ball of `radius` the rays come from.
+/// `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of `radius` around it.
 Operand make_operand(const Solid& solid, const dvec3& center, double radius, std::vector<float>& leaves) {
   Operand out{};
   Shape moved = *solid.shape;
   moved.world_from_object = glm::translate(Matrix(1), -center) * solid.space_from_solid;
   out.placed = !bakes(moved);
-  // Where rays begin in the operand's space, and where it lies itself.
+  // from: how far from the origin of the operand's space rays may begin; scale: of lengths from there to csg space.
   double from = radius, scale = 1;
   if (out.placed) {
     out.csg_from_object = moved.world_from_object;
@@ -301,11 +301,11 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
   whole.geometry = csg;
   whole.world_from_object = m;
   Bounds box = bounds_of(whole);
-  for (int k = 0; k < 3; ++k)  // an intersection of boxes that do not meet: nothing, somewhere
+  for (int k = 0; k < 3; ++k)  // no bounds (boxes of an intersection that do not meet): an empty box at any place will do
     if (!(box.min[k] <= box.max[k])) box.min[k] = box.max[k] = 0.5 * (box.min[k] + box.max[k]);
   dvec3 center;
   for (int k = 0; k < 3; ++k) center[k] = static_cast<float>(0.5 * (box.min[k] + box.max[k]));
-  // Rays that begin on the surface begin within; 2^-16 is more than any rounding on the way.
+  // Rays that begin on the shape's surface must begin within this ball: 2^-16 is more than their rounding.
   const double radius = glm::length(glm::max(box.max - center, center - box.min)) * (1 + 0x1p-16);
 
   std::vector<Operand> operands;

@@ -51,7 +51,7 @@ uint append_axis(const PixelFilter& filter, double radius, std::vector<float>& t
   }
   for (const double x : nodes) {
     const double value = filter_value(filter, x, radius);
-    // What bisection leaves of a zero crossing must not give its cell a second sign.
+    // A node at a zero crossing is exact to bisection only: its value becomes 0, lest its cell have both signs.
     values.push_back(std::abs(value) < 1e-12 * std::abs(filter_value(filter, 0, radius)) ? 0 : value);
   }
   std::vector<double> running = {0};

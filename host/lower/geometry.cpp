@@ -30,9 +30,9 @@ struct Part {
   Matrix placed{1};  // object_from_part
   uint flags = 0;    // of its instances
   std::vector<FlatPrimitive> primitives;
-  std::vector<const Shape*> shapes;  // that contributed
+  std::vector<const Shape*> shapes;  // those that gave primitives
   struct Emissive {
-    std::size_t first, count;  // in primitives
+    std::size_t first, count;  // a range of `primitives`
     const Shape* shape;
   };
   std::vector<Emissive> emissive;
@@ -124,7 +124,7 @@ class GeometryLowering {
     Matrix world_from_part;
   };
 
-  /// Before anything is made of them: what can be too many are the primitives of capsules and meshes.
+  /// Counted before memory is taken for them: only capsules and meshes can have too many primitives.
   void check_counts() const {
     std::array<std::uint64_t, shape_count> counts{};
     const auto add = [&](const Shape& shape) {
@@ -200,7 +200,7 @@ class GeometryLowering {
                                                                               : CAPLET_INSTANCE_NO_LEAVING;
   }
 
-  /// Winding turns with a mirroring transform; a disk's and a solid's own normal do not.
+  /// A mirroring transform turns normals that follow the winding, but not those of disks and solids.
   static bool turns_normals(const Shape& shape, const Matrix& m) {
     const bool wound =
         std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
@@ -403,7 +403,7 @@ class GeometryLowering {
     placed_.push_back({&part, index, world_from_part});
   }
 
-  /// Of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
+  /// Bounds of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
   static Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
     Bounds box;
     if (part.primitives.size() <= 256) {
@@ -453,7 +453,7 @@ class GeometryLowering {
         emitter.geometry = out_.primitive_geometry[part.primitives[at].id];
         emitter.area = areas[i];
         set_ball(part.primitives[at], world_from_part, emitter);
-        // For the choice among lights alone: half of the ball's area, whatever is left of the solid in it.
+        // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
         if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
         out.push_back(emitter);
       }

@@ -11,7 +11,7 @@ Identity identity_of(const Scene& scene, const PickRecord& pick) {
   if (pick.object < in_world) return {&scene.shapes[pick.object], std::nullopt};
   const std::size_t instance = pick.object - in_world;
   CHECK_LT_(instance, scene.instances.size());
-  // Every object numbers its shapes on from those of the world (lower/geometry.cpp).
+  // The numbers of an object's shapes continue those of the world's (lower/geometry.cpp).
   const auto& shapes = scene.objects[scene.instances[instance].object].shapes;
   CHECK_LT_(pick.shape - in_world, shapes.size());
   return {&shapes[pick.shape - in_world], static_cast<std::uint32_t>(instance)};

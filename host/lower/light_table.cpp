@@ -31,7 +31,7 @@ std::vector<double> wanted_chances(const std::vector<LightShare>& lights) {
   return chances;
 }
 
-/// How many of `units` each light gets: they add up, and none with a chance gets none.
+/// How many of `units` each light gets: their sum is `units`, and every light with a chance gets at least one.
 std::vector<std::uint64_t> whole_shares(const std::vector<double>& chances, std::uint64_t units) {
   std::vector<std::uint64_t> counts;
   std::uint64_t sum = 0;

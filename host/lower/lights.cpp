@@ -86,7 +86,7 @@ class LightLowering {
     return of.luminance * pi * radius_ * radius_ * record.scale;
   }
 
-  /// What the spectrum is multiplied with so that the quantity which it makes `of_unit` of becomes `wanted`.
+  /// The factor for a spectrum that by itself gives a power or illuminance of `of_unit`, so that it gives `wanted`.
   static double replaced(const std::optional<double>& wanted, double of_unit) {
     if (!wanted) return 1;
     return of_unit > 0 ? *wanted / of_unit : 0;

@@ -122,7 +122,7 @@ double solve(const Response& response, const glm::dvec3& target, double toleranc
   return largest(residual);
 }
 
-/// c of the constant spectrum of this value.
+/// The sigmoid's coefficient c of a constant spectrum of this value.
 glm::dvec3 constant(double value) {
   const double v = std::clamp(value, 1e-6, 1 - 1e-6);
   return {0, 0, (v - 0.5) / std::sqrt(v * (1 - v))};
@@ -182,7 +182,7 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
   static std::array<std::unique_ptr<const ChromaticityTable>, 4> tables;
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
-  // Isolated: the thread that makes the table must not take a task that waits for it.
+  // Isolated: while it makes the table, the thread must not take up another task, which may wait for the table.
   std::call_once(once[s],
                  [&] { tbb::this_task_arena::isolate([&] { tables[s] = std::make_unique<const ChromaticityTable>(space); }); });
   return *tables[s];

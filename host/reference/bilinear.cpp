@@ -88,7 +88,7 @@ Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   return best;
 }
 
-/// Of the whole patch: the nearest point lies on an edge, which is a ruling of one family, or is nearest on both its rulings.
+/// The patch's point nearest to x. It lies on an edge, which is a ruling of one family, or is nearest on both its rulings.
 Nearest nearest_of(const Bilinear& b, const dvec3& x) {
   const Nearest by_u = nearest_by_u(b, x);
   const Nearest by_v = nearest_by_u({b.p00, b.p01, b.p10, b.p11}, x);
@@ -101,7 +101,7 @@ double value_of(const Bilinear& b, const dvec3& x) { return nearest_of(b, x).dis
 
 dvec2 parameters_of(const Bilinear& b, const dvec3& x) {
   dvec2 uv = nearest_of(b, x).uv;
-  // Where the distance has its minimum the search knows the parameters to the root of its precision; two steps of Gauss and
+  // A search for a minimum finds parameters only to the square root of the distance's precision; two steps of Gauss and
   // Newton bring the rest.
   const dvec3 twist = b.p11 - b.p01 - b.p10 + b.p00;
   for (int i = 0; i < 2; ++i) {

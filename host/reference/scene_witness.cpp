@@ -31,7 +31,7 @@ bool may_touch(const Ball& ball, const Ray& ray) {
   return glm::dot(moment, moment) <= (ball.radius * ball.radius + slack) * glm::dot(ray.direction, ray.direction);
 }
 
-/// By surface; empty when all have the shape's own.
+/// The material of each surface; empty when all have the shape's own.
 std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
   const auto* csg = std::get_if<CsgShape>(&shape.geometry);
   if (!csg) return shape.materials;
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
   return out;
 }
 
-/// Of the corners of each triangle (three are used) or patch.
+/// The uvs at the corners of each triangle (the first three entries) or patch; empty when the mesh has none.
 std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
   std::vector<std::array<glm::dvec2, 4>> out;
   const auto add = [&](const auto& faces, const std::vector<glm::vec2>& uvs) {

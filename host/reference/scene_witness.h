@@ -61,7 +61,7 @@ class SceneWitness {
     const SceneHit& identity;  // instance, object, shape, primitive, index
   };
   PlacedPrimitive placed(std::size_t index) const;
-  /// Of a surface of a primitive, index into Scene::materials.
+  /// The material of a primitive's surface: an index into Scene::materials.
   std::uint32_t material(std::size_t index, std::uint32_t surface) const;
   bool is_reversed(std::size_t index) const { return placed_.at(index).reversed; }  // by ReverseOrientation
   /// Its index by the numbers of SceneHit; none when there is no such primitive.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The solver, shape by shape only where a surface is open.
+// The solver. Only open surfaces have code for single shapes.
 #include "reference/solver.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ Line line_near(const Primitive& primitive, const Ray& ray) {
   return line;
 }
 
-// Halves the bracket around the least value until it is <= `enough`, surely above it (the Lipschitz bound), or cannot be
+// Halves the bracket around the least value until that is <= `enough`, cannot be (the Lipschitz bound), or the bracket cannot be
 // narrowed. Returns where, and the value there.
 std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough, double low, double high) {
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
@@ -102,7 +102,7 @@ double bisect(const Primitive& primitive, const Line& line, double outside, doub
 std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray) {
   const Line line = line_near(primitive, ray);
   if (line.miss_distance > 0) return {};
-  // Within its value of a point outside there is no crossing (the Lipschitz bound): both ends come closer by that first.
+  // By the Lipschitz bound no crossing is nearer to a point outside than the value there: both ends move inward by it first.
   double low = -line.reach, high = line.reach;
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
   for (int i = 0; i < 4; ++i) {
@@ -116,7 +116,7 @@ std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray
   std::vector<Crossing> out;
   for (const bool leaving : {false, true}) {
     double end = leaving ? high : low;
-    // Rounding may have taken an end to the surface.
+    // Rounding may have moved an end onto the surface.
     if (!(f(end) > 0)) end = leaving ? line.reach : -line.reach;
     const double s = bisect(primitive, line, end, inside);
     const SurfaceAt at = surface_at(primitive, line.foot + s * line.unit);
@@ -125,13 +125,13 @@ std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray
   return out;
 }
 
-// Parts of the boundary of solids.
+// The crossings of open shapes that are part of a solid's boundary.
 std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& ray) {
   const Primitive carrier = carrier_of(primitive);
   std::vector<Crossing> out;
   const Line line = line_near(primitive, ray);
   for (const Crossing& c : solid_crossings(carrier, ray))
-    // From the foot: the ray's origin may be far.
+    // The point is computed from the foot, since the ray's origin may be far.
     if (keeps(primitive, line.foot + (c.t - line.t_foot) * line.speed * line.unit, c.surface)) out.push_back(c);
   if (!std::holds_alternative<Spool>(primitive))
     for (Crossing& c : out) c.surface = 0, c.surface_margin = HUGE_VAL;
@@ -280,7 +280,7 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
   };
   std::vector<Cell> cells = {{0, 1, 0, 1}};
   std::vector<dvec2> found;
-  // Edge-on all cells fold: nothing is said then.
+  // Seen edge-on all cells fold: no crossing is reported then.
   for (int work = 0; !cells.empty() && work < 20000; ++work) {
     const Cell c = cells.back();
     cells.pop_back();
@@ -407,7 +407,7 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
 
 namespace {
 
-// Of open surfaces: the distance to where the number of crossings changes; with a limit, right only in whether it is above.
+// For open surfaces: how far the line is from where its number of crossings changes. Beyond `limit` any number above it will do.
 double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
   const Line line = line_near(primitive, ray);
   double distance = HUGE_VAL;

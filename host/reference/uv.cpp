@@ -43,7 +43,7 @@ double angle_around(const dvec3& axis, const dvec3& w) {
   return angle < 0 ? angle + full_turn : angle;
 }
 
-/// The same around z, brought to the nearer end of [0, phi_max] where it is beyond.
+/// angle_around z; beyond phi_max the nearer end of [0, phi_max].
 double angle_within(const dvec3& x, double phi_max) {
   const double angle = angle_around({0, 0, 1}, x);
   if (angle <= phi_max) return angle;
@@ -55,7 +55,7 @@ dvec2 uv_of(const Sphere& s, const dvec3& x, int) {
   return {share(angle_around({0, 0, 1}, w), full_turn), share(std::atan2(w.z, std::hypot(w.x, w.y)) + pi / 2, pi)};
 }
 
-/// Of the hull of two ends: x along and across the axis, and its turn.
+/// A point relative to the hull of two ends: p, along and across the axis, and u, its turn around it.
 struct OnSpool {
   dvec2 p;
   double u;
@@ -69,7 +69,7 @@ OnSpool on_spool(const Spool& s, const dvec3& x) {
 /// Angle of the half plane's vector w from the pole against the axis, in [0, pi].
 double angle_from_pole(const dvec2& w) { return std::atan2(w.y, -w.x); }
 
-/// Position of p between a and b, and how far from there it is.
+/// Where on the segment from a to b the point nearest to p lies (0 to 1), and how far p is from it.
 struct Position {
   double share, away;
 };

@@ -56,7 +56,7 @@ Beyond beyond_hull(double y, double rho, double l, const End& a, const End& b) {
 
 Beyond exactly(double distance) { return {distance, distance}; }
 
-/// At a point of the solid's own space.
+/// How far outside a point of the solid's own space is.
 struct BeyondAt {
   const dvec3& p;
 
@@ -118,8 +118,8 @@ class Search {
  public:
   Search(const CsgShape& csg, const glm::dmat4& world_from_csg) : csg_(csg) { add(csg, world_from_csg, false); }
 
-  /// How far the solid reaches towards `sign` along `axis`, no less, seen in parts of `share` of the box; -infinity when it is
-  /// empty.
+  /// An upper bound of how far the solid reaches along `axis`, up or down by `sign`, found in parts of `share` of the box;
+  /// -infinity when it is empty.
   double reach(const Box& whole, int axis, double sign, double share) const {
     const auto extreme = [&](const Box& box) { return sign > 0 ? box.max[axis] : -box.min[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return extreme(a) < extreme(b); };
@@ -172,7 +172,7 @@ class Search {
     return side_of(csg_, box, bit);
   }
 
-  /// Of the expression; `bit` is that of its first solid, and is moved on to that after its last.
+  /// On which side of the solid the box lies; `bit` stands for its first operand, and then for the one after its last.
   static Side side_of(const CsgShape& csg, const Box& box, std::uint32_t& bit) {
     using enum CsgShape::Operation;
     Side result = Side::unknown;
@@ -208,7 +208,8 @@ class Search {
     const Beyond at_center = beyond(center);
     if (at_center.least > reach) return Side::outside;
     if (at_center.most > 0) return Side::unknown;
-    // Convex: what holds the corners holds the box. It matters for what is taken away, which may end where the box does.
+    // The solid is convex: if it holds the corners, it holds the box. Only solids that are taken away need to be known to hold
+    // it.
     if (!solid.subtracted) return Side::unknown;
     for (const dvec3& corner : corners)
       if (beyond(center + corner).most > 0 || beyond(center - corner).most > 0) return Side::unknown;
@@ -225,7 +226,7 @@ Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bo
   const dvec3 size = bounds.max - bounds.min;
   const double least = std::min({size.x, size.y, size.z});
   if (least < 0) return {};
-  if (csg.operation == CsgShape::Operation::set_union) return bounds;  // of tight ones: as tight
+  if (csg.operation == CsgShape::Operation::set_union) return bounds;  // a union of tight bounds is tight
   std::size_t solids = 0;
   for (const auto& operand : csg.operands) solids += solid_count(*operand);
   if (!(least > 0) || !std::isfinite(glm::length(size)) || solids > max_csg_operands) return bounds;

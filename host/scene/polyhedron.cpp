@@ -49,7 +49,7 @@ class Body {
       }
   }
 
-  /// Keeps what lies below the plane. False when nothing is left but what lies in it, to rounding.
+  /// Keeps what lies below the plane. False when nothing is left, or to rounding only points in the plane.
   bool cut(const Plane& plane, std::size_t number) {
     // Coordinates are within `half`, rounded to 2^-53 of it; a few operations on them are within 2^-46.
     const auto above = [&](const dvec3& x) { return glm::dot(plane.normal, x) - plane.offset; };
@@ -131,7 +131,7 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
   }
   if (size == 0) size = 1;  // all planes through one point: a cone or nothing
 
-  // Roughly first, then again within bounds that fit: rounding goes with the box that is cut.
+  // Twice, the second time from a box that fits: rounding errors grow with the box that is cut.
   double half = 1e6 * size;
   for (int pass = 0; pass < 2; ++pass) {
     Body body(half);
@@ -150,7 +150,7 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
       for (const dvec3& x : face.corners) faces[face.plane].push_back(center + x);
     }
     if (endless) {
-      // A face without end reaches the box.
+      // A face that is unbounded reaches the box.
       while (first_endless + 1 < n && std::ranges::none_of(faces[first_endless], [&](const dvec3& x) {
                const dvec3 a = glm::abs(x - center);
                return std::max({a.x, a.y, a.z}) >= half * (1 - 1e-9);

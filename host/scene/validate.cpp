@@ -47,7 +47,7 @@ class Validator {
   }
 
  private:
-  /// Once: a csg's operand is also a shape of its object.
+  /// Reports an error once: a csg's operand is visited as a shape of its object too.
   void error(const SourceLocation& where, const std::string& message) {
     if (said_.insert(where.to_string() + message).second) diagnostics_.error(where, message);
   }
@@ -171,7 +171,7 @@ class Validator {
     if (planes > max_polyhedron_planes)
       return error(
           where, "the polyhedron has " + std::to_string(planes) + " planes, more than " + std::to_string(max_polyhedron_planes));
-    double reach = 0;  // of the points from the first
+    double reach = 0;  // greatest distance of a point from the first
     for (std::size_t i = 0; i < planes; ++i) {
       const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
       if (!finite(polyhedron.points[i]) || !finite(polyhedron.normals[i])) return error(where, plane() + "is not finite");
@@ -180,7 +180,7 @@ class Validator {
     }
     std::size_t bad = 0;
     if (!polyhedron_corners(polyhedron, &bad).empty()) return;
-    // A box far outside tells one without bounds from one without an inside.
+    // Cut by a far box, an unbounded polyhedron has corners; one without an inside still has none.
     PolyhedronShape boxed = polyhedron;
     for (int side = 0; side < 6; ++side) {
       glm::dvec3 n(0);
@@ -236,7 +236,7 @@ class Validator {
     if (!(phi_max > 0 && phi_max <= full_turn)) error(where, what + "'s greatest phi must be above 0 and at most a full turn");
   }
 
-  /// Where instances come to lie, by the boxes of their objects.
+  /// Checks where instances come to lie, by the boxes of their objects.
   void instances() {
     std::vector<Bounds> boxes(scene_.objects.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -256,7 +256,7 @@ class Validator {
     }
   }
 
-  /// Transform, geometry and materials: what operands have too.
+  /// Checks transform, geometry and materials, which operands have as well.
   void geometry(const Shape& s) {
     transform(s.world_from_object, s.where);
     std::visit([&](const auto& own) { check(own, s.where); }, s.geometry);

@@ -110,7 +110,7 @@ class HeaderParser {
       const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
       if (error != std::errc()) return std::nullopt;
       text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-      take('L');  // Python 2 wrote long numbers so
+      take('L');  // Python 2 wrote long integers as 123L
       out.push_back(value);
       if (!take(',') && peek() != ')') return std::nullopt;
     }
@@ -188,7 +188,7 @@ void for_each_character(std::string_view text, const Receive& receive) {
   }
 }
 
-/// Of an element: the number in its type, in characters of four bytes for text.
+/// Bytes of an element, by the number in its type, which for text counts characters of four bytes.
 std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace caplet {
 /// Origin, then direction (of any length).
 using RayNumbers = std::array<float, 6>;
 
-/// Larger coordinates, and directions longer than this or shorter than its inverse, have no squares among floats.
+/// Squares of larger coordinates, and of directions longer than this or shorter than its inverse, do not fit into floats.
 inline constexpr double largest_ray_number = 0x1p60;  // 1.15e18
 
 /// The six numbers as floats. Otherwise what is wrong (not finite, too large, no direction) and with which number.

@@ -53,7 +53,7 @@ double altitude(const dvec3& a, const dvec3& b, const dvec3& c) {
   return glm::length(glm::cross(b - a, c - a)) / longest;
 }
 
-// Points that move by `moved` turn what they span by as much over its least extent.
+// The angle by which a plane or axis turns when the points that span it move by `moved`: that over their least extent.
 double tilt_of(const reference::Primitive& primitive, double moved);
 
 struct TiltOf {

@@ -32,7 +32,7 @@ double ulp_of(double x) {
   return static_cast<double>(std::nextafter(at, HUGE_VALF)) - static_cast<double>(at);
 }
 
-/// Shapes whose sides are told apart by a normal alone, which ReverseOrientation turns.
+/// Open shapes: only their normal, which ReverseOrientation turns, tells entering from leaving.
 bool is_sheet(const reference::Primitive& primitive) {
   return !reference::is_solid(primitive) && !std::holds_alternative<reference::Spool>(primitive);
 }
@@ -80,7 +80,7 @@ bool is_grazing(const LocalRay& local) {
   return has_thin_wall(*csg, local) || reference::comes_within(*local.primitive, local.ray, local.bound);
 }
 
-/// How far the ray goes from the surface between two parameters of the same crossing, in bounds. It may well pass the hole or the
+/// How far from the surface the ray goes between two parameters of one crossing, in bounds. It may pass the hole or the
 /// gap of a partial disk there; from the disk's plane it is furthest at an end.
 double apart(const LocalRay& local, double t, double other) {
   const double at_end = std::abs(local.value(t));
@@ -103,7 +103,7 @@ std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   return {low, high};
 }
 
-/// The solid that a surface is of: of csg shapes the operand.
+/// The solid that a surface belongs to: for csg shapes the operand.
 struct Solid {
   const reference::Primitive* primitive;
   glm::dmat4 object_from_world;
@@ -140,14 +140,14 @@ Expected Comparison::expected(const RayRecord& r) const {
   return out;
 }
 
-/// no_primitive where the scene has no such thing.
+/// The witness's index of what the device names; no_primitive where the scene has no such primitive.
 std::size_t Comparison::primitive_of(const PickRecord& pick) const {
   const std::size_t in_world = scene_.shapes.size();
   std::optional<std::size_t> index;
   if (pick.object < in_world) {
     if (pick.shape == pick.object) index = witness_.index_of(reference::no_instance, pick.shape, pick.primitive);
   } else if (pick.shape >= in_world) {
-    // Every object numbers its shapes on from those of the world (lower/identity.h).
+    // The numbers of an object's shapes continue those of the world's (lower/identity.h).
     index = witness_.index_of(static_cast<std::uint32_t>(pick.object - in_world),
                               static_cast<std::uint32_t>(pick.shape - in_world), pick.primitive);
   }
@@ -230,7 +230,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
 
-  // Which crossings there are may be for rounding to say; what is said of each may not.
+  // Rounding may decide which crossings there are, but not what is reported of each.
   std::string different;
   Fault fault = Fault::hit;
   if (pair.expected.size() != pair.found.size()) {
@@ -277,7 +277,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     if (!matched || pick.surface != hit.surface) {
       const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
                                                            static_cast<int>(pick.surface));
-      // Seen edge-on, sheets are met beside themselves.
+      // An open surface seen edge-on may be met beside its edge.
       if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
         disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says {}", pick.surface, t, away,
                                              local.bound, matched ? std::to_string(hit.surface) : "otherwise"));

@@ -43,7 +43,7 @@ inline constexpr std::array fault_names = {"hit", "id", "surface", "order", "sid
 
 struct Disagreement {
   Fault fault = Fault::hit;
-  std::size_t primitive = 0;  // witness index; no_primitive: of none
+  std::size_t primitive = 0;  // witness index; no_primitive: it is about none
   std::string text;
 };
 inline constexpr std::size_t no_primitive = ~std::size_t{0};

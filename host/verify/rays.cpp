@@ -55,7 +55,7 @@ RaySource::RaySource(const Scene& scene, const reference::SceneWitness& witness,
   std::erase_if(by_kind_, [](const auto& primitives) { return primitives.empty(); });
 }
 
-/// Each kind as often as every other, however many of it there are.
+/// A random primitive: each kind as often as every other, however many primitives are of it.
 std::size_t RaySource::primitive(Random& random) const {
   const auto& primitives = by_kind_[random.below(by_kind_.size())];
   return primitives[random.below(primitives.size())];
@@ -84,7 +84,7 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
   return out;
 }
 
-/// Between two points of different surfaces, where one goes over into the other; on the boundary of open shapes.
+/// A point where one surface of a shape meets another, or on the boundary of an open shape.
 std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random) const {
   const auto placed = witness_.placed(index);
   if (const auto curves = reference::boundary(placed.primitive);
@@ -96,7 +96,7 @@ std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random
   const Point a = surface_point(index, random), b = surface_point(index, random);
   const int surface = reference::surface_at(placed.primitive, a.at).surface;
   if (reference::surface_at(placed.primitive, b.at).surface == surface) return std::nullopt;
-  // Bisection over the segment between them, seen from the ball's centre, to where the surface changes.
+  // Bisection along the segment between them, whose points are projected from the ball's centre, to where the surface changes.
   const dvec3 from = placed.ball.center;
   double low = 0, high = 1;
   Point out = a;
@@ -191,7 +191,7 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
 
 VerifyRay RaySource::ray(std::uint64_t index) const {
   Random random(seed_, 0, index);
-  // Of sixteen rays two are the camera's, three bounces, two chords, the others hard.
+  // Two of sixteen rays are the camera's, three are bounces, two chords, the others hard.
   constexpr std::array<RayFamily, 16> turns = {
       RayFamily::camera, RayFamily::camera,   RayFamily::bounce,   RayFamily::bounce,    RayFamily::bounce,  RayFamily::chord,
       RayFamily::chord,  RayFamily::touching, RayFamily::touching, RayFamily::grazing,   RayFamily::grazing, RayFamily::rim,

@@ -30,7 +30,7 @@ class Distribution {
   double worst_ = 0;
 };
 
-/// Of one shape kind.
+/// What is counted for one kind of shape.
 struct KindStatistics {
   std::uint64_t rays = 0;    // whose line passes the ball of a primitive of this kind
   std::uint64_t hits = 0;    // crossings compared

@@ -48,7 +48,8 @@ class Maker {
   }
 
  private:
-  /// Somewhere, turned, and as large as 10^-scales to 10^scales; every third one stretched and half of those mirrored.
+  /// A random transform: moved, turned, and scaled by 10^-scales to 10^scales; every third one stretched and half of those
+  /// mirrored.
   dmat4 placement(double scales) {
     const double size = random_.power(-scales, scales);
     const double away = std::min(random_.power(-1, 5), most_sizes * size);

@@ -59,7 +59,7 @@ void count(Difference& out, const PickRecord& a, const PickRecord& b) {
   }
   const auto bits_a = std::bit_cast<std::int32_t>(a.t), bits_b = std::bit_cast<std::int32_t>(b.t);
   ++(bits_a == bits_b ? out.same : out.other_t);
-  // Both are positive: their bits count units in the last place.
+  // Both are positive, so the difference of their bits counts units in the last place.
   out.worst_ulps = std::max(out.worst_ulps, std::abs(static_cast<double>(bits_a) - static_cast<double>(bits_b)));
 }
 

@@ -96,7 +96,7 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   const real scale = real_power_of_two_below_inverse(extent);
   x00 *= scale, y00 *= scale, x10 *= scale, y10 *= scale;
   x01 *= scale, y01 *= scale, x11 *= scale, y11 *= scale;
-  // Of both families of lines the one whose roots are known better is sought: f0, F and f1 are off by eps of their size, and that
+  // The family of lines whose roots are known better is chosen: f0, F and f1 are off by eps of their size, and that
   // over the length of the lines is an error of distance. Where the patch crosses over itself, seen along the ray, the lines of
   // one family are short and many while those of the other are long and few.
   const real along_u = fabs(x10 - x00) + fabs(y10 - y00) + fabs(x11 - x01) + fabs(y11 - y01);

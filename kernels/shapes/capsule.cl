@@ -82,7 +82,7 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
   *t = shift + capsule_end(ray, &c, -1.0f, &hit);
   const real_mask leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
   if (mask_bits(leaving) != 0) {
-    // What is entered is left: where rounding lets the end's sphere disown the exit, it is where the ray passes nearest to it.
+    // A capsule that is entered is also left: where rounding lets the ray miss the end's sphere, at the point nearest to that sphere.
     real_mask exits = hit;
     const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
     *t = leaving ? t_exit : *t;

@@ -105,8 +105,8 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
   __global const uint* numbers = (__global const uint*)header;
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   float3 o = (float3)(ray->ox, ray->oy, ray->oz) - load3(header);
-  // From outside the ray goes to its point nearest to c first, once for all operands: what is lost on the way is the same for all, and
-  // the rest does not grow with the distance.
+  // A ray from outside is moved to its point nearest to c first, once for all operands: the rounding of that is the same for all, and
+  // later errors do not grow with the distance.
   const float radius = header[3], nearest = -dot(o, d) * ray->inv_dd;
   const float3 near = o + nearest * d;
   if (!(dot(near, near) <= radius * radius)) return 0;
@@ -172,13 +172,13 @@ static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* si
       if (line->pending == 0) break;
       event = csg_earliest(line);
     }
-    // Where the ray begins at several surfaces at once it has them all behind it: unless the instants that they have in common, and the
-    // crossing itself, lie ahead. (One of them may be grazed for long, and its own crossing be far behind.)
+    // Several surfaces at which the ray begins are all behind it, unless the instants that they have in common, and the crossing itself,
+    // lie ahead. (The ray may graze one of them for long, so that the crossing of that one is far behind.)
     const int seen = line->t[crossed] > ray->t_min && (first_seen || low > ray->t_min);
     if (line->value == before || !seen) continue;
     if ((line->value != 0 ? ray->sees_entering : ray->sees_leaving) == 0) continue;
     const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
-    // A chord of no length keeps its order: left after it is entered.
+    // Each crossing is reported beyond the last one, so that a chord of no length still enters before it leaves.
     line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
     *t = line->last;
     *side = (int)surface | (line->value != 0 ? 0 : CAPLET_LEAVING);

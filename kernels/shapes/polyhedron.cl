@@ -12,7 +12,7 @@
 
 #include "shapes/real.cl"
 
-// Of one polyhedron: whether the line meets it, where it goes in and out, through which planes.
+// Whether the line meets one polyhedron, where it goes in and out, and through which planes.
 static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit, int* surface_enter,
                                     int* surface_exit) {
   __global const float* head = ray->leaves + begin;
@@ -35,7 +35,7 @@ static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_en
       exit = s;
       exit_plane = (int)i;
     }
-    // Along a plane: below it all the way, or above.
+    // A line along a plane is inside of it all the way, or nowhere.
     hit &= along != 0.0f || room >= 0.0f;
   }
   *t_enter = shift + enter;

@@ -137,7 +137,7 @@ typedef struct {
   real_mask surface_enter, surface_exit;  // integers
 } Span;
 
-// Of a closed solid of one surface.
+// The span of a closed solid that has one surface.
 static inline Span span_of(real_mask hit, real t_enter, real t_exit) {
   Span span;
   span.t_enter = t_enter;
@@ -147,7 +147,7 @@ static inline Span span_of(real_mask hit, real t_enter, real t_exit) {
   return span;
 }
 
-// Of an open shape that lines cross once; `side`: HitRecord.surface.
+// The span of an open shape that a line crosses once; `side`: HitRecord.surface.
 static inline Span span_of_one(real_mask hit, real t, real_mask side) {
   const real_mask leaving = (side & int_of(CAPLET_LEAVING)) != 0;
   Span span;

@@ -33,8 +33,8 @@ typedef struct {
   __global HitRecord* sorted;
   uint capacity, count;
   int more;       // some were left out
-  float t_end;    // crossings at or beyond cannot matter, or, full, beyond the last one
-  float t_begin;  // nor at or before
+  float t_end;    // crossings at or beyond this t cannot matter; of a full list, those beyond its last one
+  float t_begin;  // nor do those at or before this t
 } HitList;
 
 // By t; leaving before entering, so that solids that touch are not nested for an instant; then slot, instance, surface.

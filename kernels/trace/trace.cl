@@ -88,7 +88,7 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
 // Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
 static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
 
-// Zero, infinite and NaN rays would find their way to children that are not there.
+// With zero, infinite and NaN rays traversal would follow children that do not exist.
 static inline int line_is_valid(float3 o, float3 d) {
   const float dd = dot(d, d), oo = fabs(o.x) + fabs(o.y) + fabs(o.z);
   return dd > 0.0f && dd < INFINITY && oo < INFINITY;

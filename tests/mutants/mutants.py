@@ -3,8 +3,9 @@
 # Copyright Caplet authors
 """Seeded faults: each is put into a copy of the sources, where the test that it names must fail.
 
-usage: mutants.py [--jobs N] [--write] [NAME...]   run all mutants, or those named; --write: their table into docs/testing.md
-       mutants.py --check                          is every mutant's place still there, once, and its test? Runs nothing.
+usage: mutants.py [--jobs N] [--write] [NAME...]   run all mutants, or those named; --write: when all are caught, docs/mutants.md
+       mutants.py --check                          is every mutant's place still there, once, its test, and its row in docs/mutants.md?
+       mutants.py --page                           what docs/mutants.md should be. The last two run no test.
 
 A mutant is an entry of a *.toml file of this folder: `old` is the text of `file` that becomes `new`, `test` a test program and a
 filter of its tests. Kernels are mutated for the device alone (CAPLET_KERNELS), so one of kernels/shared makes host and device differ.
@@ -28,8 +29,12 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(__file__).resolve().parent
-PAGE = ROOT / "docs/testing.md"
-BEGIN, END = "<!-- mutants: begin (./run mutants --write) -->", "<!-- mutants: end -->"
+PAGE = ROOT / "docs/mutants.md"
+INTRODUCTION = """# Seeded faults
+
+Written by `./run mutants --write`; [testing](testing.md#mutants) says what they are for. Each of these faults, put into the sources alone, must
+make its test fail.
+"""
 WORK = ROOT / "build/mutants"
 TREE = WORK / "tree"  # the copy of the sources
 BUILD = TREE / "build/release"
@@ -64,9 +69,9 @@ class Mutant:
     def is_kernel(self):
         return self.file.startswith("kernels/")
 
-    def row(self, result):
+    def row(self):
         tests = ", ".join(f"`{self.program}.{t}`" for t in self.filter.split(":"))
-        return f"| {self.name} | `{self.file}` | {self.fault} | {tests} | {result} |"
+        return f"| {self.name} | `{self.file}` | {self.fault} | {tests} |"
 
 
 def listed():
@@ -112,18 +117,8 @@ def complaints(mutants):
     return out
 
 
-def table(mutants, results):
-    lines = ["| mutant | file | fault | test | result |", "|---|---|---|---|---|"]
-    return "\n".join(lines + [m.row(results[m.name]) for m in mutants])
-
-
-def page_parts():
-    text = PAGE.read_text()
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
-        raise ListError(f"{PAGE.relative_to(ROOT)}: the marks around the table are missing")
-    before, rest = text.split(BEGIN)
-    inside, after = rest.split(END)
-    return before, inside, after
+def page(mutants):
+    return "\n".join([INTRODUCTION, "| mutant | file | fault | test |", "|---|---|---|---|", *(m.row() for m in mutants), ""])
 
 
 def check():
@@ -131,8 +126,8 @@ def check():
     bad = complaints(mutants)
     for line in bad:
         print(line)
-    if page_parts()[1].strip() != table(mutants, {m.name: CAUGHT for m in mutants}):
-        bad.append("docs/testing.md: the table is not that of the list: ./run mutants --write")
+    if not PAGE.is_file() or PAGE.read_text() != page(mutants):
+        bad.append("docs/mutants.md is not that of the list: ./run mutants --write")
         print(bad[-1])
     print(f"{len(mutants)} mutants, {len(bad)} complaints")
     return 2 if bad else 0
@@ -343,12 +338,16 @@ def main():
     parser = argparse.ArgumentParser(prog="mutants", description="Seeded faults: each must be caught by the test that it names.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="these mutants only")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at the same time")
-    parser.add_argument("--write", action="store_true", help="the table of all of them into docs/testing.md")
-    parser.add_argument("--check", action="store_true", help="look at the list alone")
+    parser.add_argument("--write", action="store_true", help="run all, and write docs/mutants.md when all are caught")
+    parser.add_argument("--check", action="store_true", help="look at the list and docs/mutants.md alone")
+    parser.add_argument("--page", action="store_true", help="print what docs/mutants.md should be")
     options = parser.parse_args()
     if options.check:
         return check()
     mutants = listed()
+    if options.page:
+        print(page(mutants), end="")
+        return 0
     if bad := complaints(mutants):
         raise ListError("\n".join(bad))
     if unknown := set(options.names) - {m.name for m in mutants}:
@@ -361,13 +360,13 @@ def main():
     lock = open(WORK / ".lock", "w")
     fcntl.flock(lock, fcntl.LOCK_EX)
     results = Run(chosen, max(1, options.jobs)).run()
-    print(table(chosen, results))
+    for m in chosen:
+        print(f"{results[m.name]:10} {m.name}: {m.fault} ({m.file})")
     caught = sum(r.startswith(CAUGHT) for r in results.values())
     print(f"\n{caught} of {len(chosen)} mutants caught, {time.monotonic() - start:.0f} s "
           f"(output of their tests: {(WORK / 'logs').relative_to(ROOT)})")
     if options.write and caught == len(chosen):
-        before, _, after = page_parts()
-        PAGE.write_text(f"{before}{BEGIN}\n{table(chosen, {m.name: CAUGHT for m in chosen})}\n{END}{after}")
+        PAGE.write_text(page(mutants))
     return 0 if caught == len(chosen) else 1
 
 

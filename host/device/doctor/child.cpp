@@ -62,7 +62,7 @@ void write_all(int to, const std::string& text) {
 [[noreturn]] void be_child(const std::function<std::string()>& work, pid_t parent, const Pipe& answer, const Pipe& noise) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(exit_threw);  // it ended before the line above
+  if (::getppid() != parent) ::_exit(exit_threw);  // the parent ended before the line above
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(noise.ends[1], STDOUT_FILENO);

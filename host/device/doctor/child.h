@@ -14,7 +14,7 @@ struct ChildEnd {
   std::string answer;     // what it returned
   std::string how;        // else: "ended with signal 6 (Aborted)", "gave no answer in 20 s", the exception's message
   std::string said;       // the last line the child printed
-  int exit_code = 0;      // where it ended by one
+  int exit_code = 0;      // if the child ended by one
 };
 
 /// Runs `work` in a child that has no terminal, for at most `seconds`. The child is gone when this returns, and dies with this

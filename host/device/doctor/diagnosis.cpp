@@ -111,7 +111,7 @@ class Examination {
     }
   }
 
-  /// As a command of Caplet would find them; where a driver prevents that, one driver after the other.
+  /// Asks all platforms at once, as a command of Caplet does; where a driver crashes or hangs, one driver after the other.
   void ask_platforms() {
     const bool broken = std::any_of(answers_.begin(), answers_.end(), [](const auto& each) { return !each.second.end.finished; });
     if (!broken) {

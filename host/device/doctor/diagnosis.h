@@ -16,11 +16,11 @@
 
 namespace caplet::doctor {
 
-/// Of one driver. `needed`: no other offers a device, so that a driver without a platform is not merely idle.
+/// The finding about one driver. `needed`: no other offers a device, so a driver without a platform is wrong, not just unused.
 Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine, bool needed);
 /// A platform and its number of devices. `needed` as above.
 Finding judge_platform(const PlatformFacts& platform, bool needed);
-/// What a device is, then what it lacks. `least_bytes`: of device memory that a render takes at least.
+/// What a device is, then what it lacks. `least_bytes`: device memory that a render needs at least.
 Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes);
 /// What is known of platforms, with its source.
 Findings known_quirks(const std::vector<PlatformFacts>& platforms);
@@ -28,7 +28,7 @@ Findings known_quirks(const std::vector<PlatformFacts>& platforms);
 struct Options {
   std::string device;   // test this one alone, chosen as Device::choose does; empty: all
   double seconds = 30;  // for an answer of a driver; the self-test, which compiles, has four times as long
-  /// Of device memory for a full batch of paths on a CPU or another device.
+  /// Bytes of device memory for a full batch of paths, on a CPU or on another device.
   std::function<std::uint64_t(bool cpu)> least_bytes = [](bool) { return std::uint64_t{0}; };
   /// Throws RunError that says what a device gets wrong.
   std::function<void(const Device&)> test = self_test;

@@ -19,7 +19,7 @@ namespace {
 
 // With PoCL 3.1 on four cores, a picture of one capsule took 236 MB of memory.
 constexpr std::uint64_t least_memory = std::uint64_t{256} << 20;
-// There, with an address space of 500 MB no device was found, with 1 GB a render hung, with 1.5 GB it ran.
+// There, with an address space of 500 MB no device was found, with 1 GB a render hung, with 1.5 GB it finished.
 constexpr std::uint64_t least_address_space = 1500ull * 1000 * 1000;
 // The kernels of one render took 1.1 MB of both caches with PoCL 3.1: room for some fifty versions of them.
 constexpr std::uint64_t least_cache_space = std::uint64_t{64} << 20;
@@ -65,7 +65,7 @@ std::optional<std::uint64_t> free_memory(const Surroundings& machine) {
   return out ? std::min(*out, left) : left;
 }
 
-/// Why nothing can be written in the folder, which need not be there yet; empty: it can.
+/// Why no file can be written in the folder (which may not exist yet); empty: one can.
 std::string unwritable(const Surroundings& machine, const fs::path& folder) {
   std::error_code error;
   fs::path there = folder;
@@ -158,7 +158,7 @@ Findings check_unused_gpus(const Surroundings& machine, const std::vector<Platfo
   for (const fs::path& node : nodes(machine)) {
     std::ifstream in(machine.root / "sys/class/drm" / node.filename() / "device/vendor");
     std::string vendor;
-    in >> vendor;  // of PCI
+    in >> vendor;  // PCI's number of the maker
     if (vendor == "0x1002")
       out.push_back({State::note, node.string(), "a GPU of AMD, which no OpenCL platform offers",
                      "install ROCm's OpenCL, or sudo apt-get install mesa-opencl-icd"});

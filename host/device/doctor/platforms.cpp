@@ -98,7 +98,7 @@ Loader ask_loader() {
   constexpr double seconds = 20;
   const ChildEnd end = in_child(
       [] {
-        // Neither kind of loader finds a driver so.
+        // So that neither kind of loader finds (and loads) a driver.
         set({{"OCL_ICD_VENDORS", "/nonexistent/none"}, {"OCL_ICD_FILENAMES", ""}});
         using Ask = cl_int(CL_API_CALL*)(cl_uint, std::size_t, void*, std::size_t*);
         // CL_ICDL_VERSION, CL_ICDL_NAME, CL_ICDL_VENDOR of the extension cl_loader_info

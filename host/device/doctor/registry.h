@@ -36,7 +36,7 @@ struct Registry {
 
 Registry read_registry(const Surroundings& machine, const Loader& loader);
 
-/// Of the place and the .icd files; not of the libraries.
+/// Findings about the place and the .icd files, not about the libraries.
 Findings check_registry(const Registry& registry);
 
 /// The variables that make the loader use `library` alone.

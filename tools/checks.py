@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""The checks of `./run test`, which builds the release folder first, and their totals.
+
+usage: checks.py           test preset `default`, clang-format
+       checks.py --fast    test preset `fast`
+       checks.py --all     also clang-tidy, and the builds and test presets `asan` and `minimal`
+
+Each preset stands in CMakePresets.json. A check that fails does not keep those after it from being done.
+Exit status: 0 when all passed, 1 when not, 2 for wrong usage.
+"""
+import collections
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+BUILD = ROOT / "build"
+RUN = str(ROOT / "run")
+# What a test that passes, or any test that begins, says.
+QUIET = re.compile(r"^ *(\d+/\d+ Test +#.*Passed|Start +\d+)")
+
+
+class Totals:
+    def __init__(self):
+        self.passed = self.failed = self.skipped = 0
+        self.failures, self.left_out = [], []
+        self.skip_reasons = collections.Counter()
+
+    def check(self, name, command):
+        """One command that either passes or fails, as it does then. True when it passed."""
+        start = time.monotonic()
+        log = BUILD / f"check-{name}.log"
+        with open(log, "wb") as out:
+            code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL).returncode
+        if code == 0:
+            self.passed += 1
+        else:
+            self.failed += 1
+            self.failures.append(name)
+            print("\n".join(log.read_text(errors="replace").splitlines()[-100:]))
+        print(f"check {name}: {'passed' if code == 0 else 'FAILED'} ({time.monotonic() - start:.0f} s)", flush=True)
+        return code == 0
+
+    def ctest(self, preset, folder):
+        """The tests of a preset, which run in build/FOLDER."""
+        lines = []
+        command = ["ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0)))]
+        with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
+                              errors="replace") as process, open(BUILD / folder / "ctest.log", "w") as log:
+            for line in process.stdout:
+                lines.append(line)
+                log.write(line)
+                if not QUIET.match(line):
+                    print(line, end="", flush=True)
+        text = "".join(lines)
+        counts = re.findall(r"tests? passed, (\d+) tests? failed out of (\d+)", text)
+        bad, total = map(int, counts[-1]) if counts else (1, 1)
+        if total == 0 or (process.returncode != 0 and bad == 0):
+            bad, total = bad + 1, total + 1
+        self.passed += total - bad
+        self.failed += bad
+        if bad:
+            self.failures.append(f"build/{folder}: {bad} of {total} tests (build/{folder}/ctest.log)")
+        if bare := text.count("***Skipped"):
+            self.skipped += bare
+            details = (BUILD / folder / "Testing/Temporary/LastTest.log").read_text(errors="replace")
+            self.skip_reasons.update(re.findall(r": Skipped\n(.*)", details))
+
+    def summary(self):
+        if self.failures:
+            print("\nFailed:", *self.failures, sep="\n  ")
+        total = self.passed + self.failed
+        print(f"\n{100 * self.passed // max(1, total)}% tests passed, {self.failed} tests failed out of {total}")
+        if self.skipped:
+            reasons = "; ".join(f"{reason} ({count})" for reason, count in sorted(self.skip_reasons.items()))
+            print(f"SKIPPED: {self.skipped} of these tests did not run: {reasons}")
+        for what in self.left_out:
+            print(f"LEFT OUT: {what}")
+        return total > 0 and self.failed == 0
+
+
+def has_format_14():
+    """Versions of clang-format differ in taste: the tree is in that of 14 (Debian 12)."""
+    version = subprocess.run(["clang-format", "--version"], stdout=subprocess.PIPE, text=True).stdout
+    return "version 14." in version
+
+
+def main(arguments):
+    if arguments not in ([], ["--fast"], ["--all"]):
+        print(__doc__, file=sys.stderr)
+        return 2
+    totals = Totals()
+    if arguments == ["--fast"]:
+        totals.ctest("fast", "release")
+        return 0 if totals.summary() else 1
+    totals.ctest("default", "release")
+    if has_format_14():
+        totals.check("format", [RUN, "format", "--check"])
+    else:
+        totals.left_out.append("check format: needs clang-format 14")
+    if arguments == ["--all"]:
+        totals.check("clang-tidy", [RUN, "tidy"])
+        for preset in ("asan", "minimal"):
+            if totals.check(f"{preset}-build", [RUN, "build", preset]):
+                totals.ctest(preset, preset)
+    return 0 if totals.summary() else 1
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)
