@@ -20,6 +20,7 @@
 #include "host_kernels/model_maker.h"
 #include "host_kernels/scene_arrays.h"
 #include "support/data.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -60,13 +61,8 @@ std::string device_text() {
   return flatten(*read("host_kernels.cl") + entry_text, "host_kernels", read);
 }
 
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
-
 Program device_program(int width) {
-  return Program::from_source(device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
+  return Program::from_source(test_device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
 }
 
 template <class T>
@@ -86,19 +82,19 @@ std::vector<HostAnswer> ask_device(Program& program, const FlatScene& scene, con
     kernel.setArg(index++, buffer.handle());
     kept.push_back(std::move(buffer));
   };
-#define IN(name, type) add(Buffer<type>(device(), contents<type>(scene.name)));
-#define STATE(name, type) add(Buffer<type>(device(), std::size_t{1}));
+#define IN(name, type) add(Buffer<type>(test_device(), contents<type>(scene.name)));
+#define STATE(name, type) add(Buffer<type>(test_device(), std::size_t{1}));
 #define BUFFER(name, type, access) access(name, type)
 #include "shared/buffers.def"
 #undef BUFFER
 #undef STATE
 #undef IN
-  const Buffer<HostQuestion> in(device(), std::span<const HostQuestion>(questions));
-  Buffer<HostAnswer> out(device(), questions.size());
+  const Buffer<HostQuestion> in(test_device(), std::span<const HostQuestion>(questions));
+  Buffer<HostAnswer> out(test_device(), questions.size());
   kernel.setArg(index++, in.handle());
   kernel.setArg(index++, out.handle());
   kernel.setArg(index++, static_cast<cl_uint>(questions.size()));
-  launch(device(), kernel, questions.size(), 16);
+  launch(test_device(), kernel, questions.size(), 16);
   return out.read();
 }
 

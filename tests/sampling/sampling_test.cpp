@@ -15,6 +15,7 @@
 #include "lower/camera.h"
 #include "lower/filter.h"
 #include "support/filters.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -71,7 +72,7 @@ __kernel void sums(__global const float* values, uint count, __global float* out
 )";
 
 struct Bench {
-  Device device = Device::choose("");
+  Device device = test_device();
   Program program = Program::from_source(device, "sampling_test", flatten_kernels(kernel_text), "");
 };
 Bench& bench() {
