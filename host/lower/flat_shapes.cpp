@@ -20,8 +20,6 @@ namespace {
 using Matrix = glm::dmat4;
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
-
 /// The common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise 0.
 double disk_scale(const Matrix& m) {
   const glm::dmat3 a(m);

@@ -3,6 +3,9 @@
 #include "bsdf_device.h"
 
 #include <cmath>
+#include <random>
+
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -90,8 +93,15 @@ Direction direction(double theta, double phi) {
           static_cast<float>(std::cos(theta))};
 }
 
+std::vector<float> random_numbers(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> u(count);
+  for (float& value : u) value = static_cast<float>(random() >> 8) * 0x1p-24f;
+  return u;
+}
+
 BsdfOnDevice::BsdfOnDevice()
-    : device_(Device::choose("")), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels), "")) {}
+    : device_(test_device()), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels), "")) {}
 
 cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf) const {
   cl::Kernel kernel = program_.kernel(name);

@@ -24,6 +24,9 @@ struct BsdfParameters {
 using Direction = std::array<float, 3>;
 Direction direction(double theta, double phi);
 
+/// Of [0, 1), from a fixed seed.
+std::vector<float> random_numbers(std::size_t count, unsigned seed);
+
 /// What a call of bsdf_sample gave, and bsdf_eval at the direction it took.
 struct SampleRow {
   Direction wi;

@@ -9,6 +9,9 @@
 
 namespace caplet::test {
 
+/// Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to the fourth power.
+inline constexpr double mitsuba_tolerance = 2e-4;
+
 struct MitsubaRow {
   uint kind;
   float alpha_u, alpha_v;

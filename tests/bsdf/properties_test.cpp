@@ -9,28 +9,37 @@
 #include <complex>
 #include <numbers>
 #include <random>
+#include <set>
+#include <variant>
 
-#include "bsdf_device.h"
-#include "mitsuba_values.h"
+#include "lower/lower.h"
+#include "trials.h"
 
 namespace caplet::test {
 namespace {
 
+/// Those that scatter over directions, of every material of the list.
 std::vector<BsdfParameters> rough_ones() {
   std::vector<BsdfParameters> all;
-  for (const auto& [u, v] : {std::pair(0.05f, 0.05f), std::pair(0.3f, 0.3f), std::pair(0.8f, 0.8f), std::pair(0.1f, 0.4f)}) {
-    all.push_back({"conductor " + std::to_string(u), material_conductor, 0, 1, 0.2f, 3.9f, u, v});
-    all.push_back({"dielectric " + std::to_string(u), material_dielectric, 0, 1, 1.5f, 0, u, v});
-  }
-  all.push_back({"diffuse", material_diffuse, 0, 0.7f});
+  for (const MaterialOnTrial& material : materials_on_trial())
+    for (const BsdfTrial::Case& one : material.trial.cases) all.push_back(one.bsdf);
   return all;
 }
 
-std::vector<float> random_numbers(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<float> u(count);
-  for (float& value : u) value = static_cast<float>(random() >> 8) * 0x1p-24f;
-  return u;
+TEST(BsdfTrials, EveryMaterialOfTheModelIsOnTrial) {
+  std::set<std::size_t> models;
+  for (const MaterialOnTrial& material : materials_on_trial()) {
+    EXPECT_FALSE(material.trial.cases.empty()) << material.name;
+    EXPECT_FALSE(material.trial.values.empty()) << material.name;
+    for (const BsdfTrial::Case& one : material.trial.cases)
+      EXPECT_EQ(one.bsdf.kind, static_cast<uint>(material.kind)) << material.name;
+    Scene scene;
+    scene.materials = {material.trial.model};
+    scene.shapes.emplace_back().geometry = SphereShape{1};
+    EXPECT_EQ(lower(scene).materials.at(0).kind, static_cast<uint>(material.kind)) << material.name;
+    models.insert(material.trial.model.model.index());
+  }
+  EXPECT_EQ(models.size(), std::variant_size_v<decltype(Material::model)>);
 }
 
 // The weight is computed without dividing by the density; eval computes the half vector anew from wo and wi, which moves it by
@@ -45,7 +54,7 @@ TEST(BsdfSampling, WeightIsValueOverDensity) {
         ASSERT_NEAR(row.value_pdf / row.pdf, 1, 3e-3) << bsdf.name << " at " << theta;
         ASSERT_NEAR(row.value / row.value_pdf, row.weight, 3e-3 * row.weight) << bsdf.name << " at " << theta;
         ASSERT_EQ(row.transmitted, row.wi[2] * std::cos(theta) < 0 ? 1.0f : 0.0f);
-        ASSERT_FLOAT_EQ(row.eta_scale, row.transmitted == 0 ? 1 : theta < 1.6 ? 2.25f : 1 / 2.25f);
+        ASSERT_FLOAT_EQ(row.eta_scale, row.transmitted == 0 ? 1 : theta < 1.6 ? bsdf.eta * bsdf.eta : 1 / (bsdf.eta * bsdf.eta));
       }
 }
 
@@ -68,7 +77,8 @@ TEST(BsdfReciprocity, ReflectionAndRefraction) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double forward = double{values[i].value} / std::abs(double{wi[i][2]});
       double backward = double{values[i].exchanged} / std::abs(double{wo[i][2]});
-      if (wo[i][2] * wi[i][2] < 0) backward /= wo[i][2] > 0 ? 2.25 : 1 / 2.25;
+      const double squared = double{bsdf.eta} * double{bsdf.eta};
+      if (wo[i][2] * wi[i][2] < 0) backward /= wo[i][2] > 0 ? squared : 1 / squared;
       if (!(std::abs(wo[i][2]) > 0.01f && std::abs(wi[i][2]) > 0.01f)) continue;
       ASSERT_NEAR(forward, backward, 4e-3 * std::max(forward, backward) + 1e-5) << bsdf.name;
       compared += forward > 1e-4;
@@ -171,7 +181,8 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
   const double thetas[] = {0, 1e-4, 0.5, 1.57, 1.5707, 1.570796, 1.5708, 1.571, 2.5, std::numbers::pi};
   for (int i = 0; i < 400; ++i) {
     BsdfParameters bsdf;
-    bsdf.kind = i % 5 == 0 ? material_diffuse : i % 2 == 0 ? material_conductor : material_dielectric;
+    const MaterialOnTrial& material = materials_on_trial()[static_cast<std::size_t>(i) % materials_on_trial().size()];
+    bsdf.kind = static_cast<uint>(material.kind);
     bsdf.alpha_u = alphas[random() % 7];
     bsdf.alpha_v = alphas[random() % 7];
     if (std::max(bsdf.alpha_u, bsdf.alpha_v) >= CAPLET_ALPHA_SMOOTH) {  // as bsdf_make
@@ -183,13 +194,13 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
     const Direction wo = direction(thetas[random() % 10], 6 * uniform(random));
     std::vector<float> u = random_numbers(3 * 128, static_cast<unsigned>(i));
     for (std::size_t j = 0; j < 96; ++j) u[j] = edges[random() % 4];
-    const float most = bsdf.kind == material_dielectric ? std::max(bsdf.eta * bsdf.eta, 1 / (bsdf.eta * bsdf.eta)) : 1.0f;
+    const double most = material.trial.most(bsdf, wo[2] < 0);
     std::vector<Direction> other, same;
     for (const SampleRow& row : bsdf_on_device().sample(bsdf, wo, u)) {
       for (const float value : {row.wi[0], row.wi[1], row.wi[2], row.pdf, row.weight, row.value, row.value_pdf, row.eta_scale})
         ASSERT_TRUE(std::isfinite(value)) << i;
       ASSERT_GE(row.weight, 0) << i;
-      ASSERT_LE(row.weight, most * 1.00001f) << i;
+      ASSERT_LE(row.weight, most * 1.00001) << i;
       if (row.scattered == 0) continue;
       ASSERT_GT(row.pdf, 0) << i;
       ASSERT_NEAR(std::hypot(row.wi[0], row.wi[1], row.wi[2]), 1, 2e-6) << i;
@@ -205,17 +216,15 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
   }
 }
 
-// --- Another renderer ---
+// --- Closed forms, and another renderer ---
 
 TEST(BsdfAgainstMitsuba, ValuesAndDensities) {
-  for (const MitsubaRow& row : mitsuba_rows) {
-    const bool metal = row.kind == material_conductor;
-    const BsdfParameters bsdf = {"", row.kind, 0, 1, metal ? 0.2f : 1.5f, metal ? 3.9f : 0, row.alpha_u, row.alpha_v};
-    const EvalRow ours = bsdf_on_device().evaluate(bsdf, {row.wo}, {row.wi}).front();
-    // Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to the fourth power.
-    EXPECT_NEAR(ours.value, row.value, 2e-4 * row.value) << row.kind << ' ' << row.alpha_u;
-    EXPECT_NEAR(ours.pdf, row.pdf, 2e-4 * row.pdf) << row.kind << ' ' << row.alpha_u;
-  }
+  for (const MaterialOnTrial& material : materials_on_trial())
+    for (const KnownValue& known : material.trial.values) {
+      const EvalRow ours = bsdf_on_device().evaluate(known.bsdf, {known.wo}, {known.wi}).front();
+      EXPECT_NEAR(ours.value, known.value, known.tolerance * known.value) << known.bsdf.name;
+      EXPECT_NEAR(ours.pdf, known.pdf, known.tolerance * known.pdf) << known.bsdf.name;
+    }
 }
 
 }  // namespace

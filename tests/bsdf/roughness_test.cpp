@@ -9,6 +9,7 @@
 
 #include "device/device.h"
 #include "lower/lower.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -47,7 +48,7 @@ Straight straight_back(double alpha_u, double alpha_v) {
   scene.shapes.emplace_back().geometry = SphereShape{1};
   FlatScene flat = lower(scene);
   flat.spectrum_tables.push_back(0);  // never empty
-  static const Device device = Device::choose("");
+  const Device& device = test_device();
   static const Program program = Program::from_source(device, "roughness", flatten_kernels(kernel_text), "");
   const Buffer<MaterialRecord> materials(device, std::span<const MaterialRecord>(flat.materials));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));

@@ -10,6 +10,7 @@
 #include "device_tracer.h"
 #include "random_scene.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -18,7 +19,7 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 
 class HardRays : public testing::TestWithParam<int> {
  protected:
-  DeviceTracer tracer_{Device::choose("cpu"), GetParam()};
+  DeviceTracer tracer_{test_device(), GetParam()};
 
   /// Traces and compares with brute force; returns how many rays hit.
   int check(const std::vector<FlatPrimitive>& primitives, const std::vector<RayRecord>& rays) {
@@ -112,7 +113,7 @@ TEST_P(HardRays, ThinCapsules) {
   std::vector<FlatPrimitive> primitives;
   std::vector<RayRecord> rays;
   Random random(46);
-  for (int i = 0; i < 100 * static_cast<int>(test_scale()); i++) {
+  for (int i = 0; i < 100 * test_scale(); i++) {
     FlatPrimitive p = random_primitive(random, i % 2 == 0 ? shape_capsule : shape_tapered_capsule, 1);
     p.data[6] = p.data[7] = 1e-4f;
     if (i % 4 == 1) p.data[7] = 3e-5f;

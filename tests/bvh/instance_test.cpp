@@ -15,6 +15,7 @@
 #include "device_tracer.h"
 #include "random_scene.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -71,7 +72,7 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
   for (RayRecord& r : rays) r.ox *= 2, r.oy *= 2, r.oz *= 2;
 
   for (const int width : {8, 1}) {
-    DeviceTracer tracer(Device::choose("cpu"), width);
+    DeviceTracer tracer(test_device(), width);
     tracer.upload(scene.nodes, scene.leaves, instances, world.root);
     const auto hits = tracer.closest(rays);
     const auto any = tracer.any(rays);
@@ -135,7 +136,7 @@ TEST(Instances, EqualHitsGoToTheSmallerInstance) {
     top.push_back(box);
   }
   const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
-  DeviceTracer tracer(Device::choose("cpu"), 8);
+  DeviceTracer tracer(test_device(), test_width());
   tracer.upload(scene.nodes, scene.leaves, instances, world.root);
   int hit = 0;
   for (const HitRecord& h : tracer.closest(random_rays(32, 500))) {

@@ -28,12 +28,6 @@ using glm::dvec3;
 constexpr double eps = 0x1p-24;
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-const ListTracer& tracer(int width) {
-  static const Device device = Device::choose("");
-  static const ListTracer wide(device, 8), scalar(device, 1);
-  return width == 8 ? wide : scalar;
-}
-
 dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 
 reference::Primitive witness_of(const FlatPrimitive& p) {
@@ -207,7 +201,7 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
 }
 
 void check_lists(const ListScene& scene, const std::vector<RayRecord>& rays, int width, std::size_t least) {
-  const auto lists = tracer(width).trace(scene.flat, rays, 512);
+  const auto lists = list_tracer(width).trace(scene.flat, rays, 512);
   Tally tally;
   tbb::parallel_for(std::size_t(0), rays.size(), [&](std::size_t i) { check_list(scene, rays[i], lists[i], tally); });
   std::printf("%zu rays, %zu crossings, %zu primitives touched or begun at, %zu failures\n", rays.size(), tally.crossings,
@@ -257,9 +251,9 @@ bool same_hit(const HitRecord& a, const HitRecord& b) {
 TEST_P(HitLists, ShortListsAreTheNearestAndSaySo) {
   const ListScene scene(mixed_primitives(11, 200, 0.6f));
   const auto rays = random_rays(12, 2000);
-  const auto whole = tracer(GetParam()).trace(scene.flat, rays, 512);
+  const auto whole = list_tracer(GetParam()).trace(scene.flat, rays, 512);
   for (const std::uint32_t capacity : {0u, 1u, 2u, 3u, 7u, 20u}) {
-    const auto lists = tracer(GetParam()).trace(scene.flat, rays, capacity);
+    const auto lists = list_tracer(GetParam()).trace(scene.flat, rays, capacity);
     std::size_t overflows = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(lists[i].overflow, whole[i].hits.size() > capacity);
@@ -275,7 +269,7 @@ TEST_P(HitLists, FirstIsTheNearestHit) {
   const ListScene scene(mixed_primitives(13, 400, 0.4f));
   const auto rays = random_rays(14, 20000);
   std::size_t hits = 0, other = 0;
-  for (const RayList& list : tracer(GetParam()).trace(scene.flat, rays, 1)) {
+  for (const RayList& list : list_tracer(GetParam()).trace(scene.flat, rays, 1)) {
     if (list.closest.slot == CAPLET_NONE && list.hits.empty()) continue;
     ++hits;
     other += list.hits.empty() || !same_hit(list.closest, list.hits[0]);
@@ -297,7 +291,7 @@ struct Expected {
 };
 
 void expect_list(const ListScene& scene, const RayRecord& ray, const std::vector<Expected>& expected, int width) {
-  const RayList list = tracer(width).trace(scene.flat, std::span(&ray, 1), 64)[0];
+  const RayList list = list_tracer(width).trace(scene.flat, std::span(&ray, 1), 64)[0];
   ASSERT_EQ(list.hits.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) {
     EXPECT_NEAR(double(list.hits[k].t), expected[k].t, 1e-5) << k;
@@ -308,18 +302,18 @@ void expect_list(const ListScene& scene, const RayRecord& ray, const std::vector
 
 TEST_P(HitLists, TouchingBoxesAreLeftBeforeTheNextIsEntered) {
   const ListScene scene({solid_box({1, 0, 0}, {2, 1, 1}), solid_box({0, 0, 0}, {1, 1, 1}), solid_box({2, 0, 0}, {3, 1, 1})});
-  expect_list(scene, list_ray({-1, 0.3, 0.4}, {1, 0, 0}),
+  expect_list(scene, make_ray({-1, 0.3, 0.4}, {1, 0, 0}),
               {{1, false, 1}, {2, true, 1}, {2, false, 0}, {3, true, 0}, {3, false, 2}, {4, true, 2}}, GetParam());
-  expect_list(scene, list_ray({4, 0.3, 0.4}, {-2, 0, 0}),
+  expect_list(scene, make_ray({4, 0.3, 0.4}, {-2, 0, 0}),
               {{0.5, false, 2}, {1, true, 2}, {1, false, 0}, {1.5, true, 0}, {1.5, false, 1}, {2, true, 1}}, GetParam());
   // Obliquely, at any angle, they are left and entered at the same t.
   Random random(15);
   std::vector<RayRecord> rays;
   for (int i = 0; i < 5000; ++i)
-    rays.push_back(list_ray({-1, double(random.uniform(-1, 2)), double(random.uniform(-1, 2))},
+    rays.push_back(make_ray({-1, double(random.uniform(-1, 2)), double(random.uniform(-1, 2))},
                             {double(random.uniform(0.2f, 2)), double(random.uniform(-1, 1)), double(random.uniform(-1, 1))}));
   std::size_t through = 0;
-  for (const RayList& list : tracer(GetParam()).trace(scene.flat, rays, 16)) {
+  for (const RayList& list : list_tracer(GetParam()).trace(scene.flat, rays, 16)) {
     for (std::size_t k = 0; k < list.hits.size(); ++k) EXPECT_EQ(is_leaving(list.hits[k]), k % 2 == 1);
     through += list.hits.size() > 2;
   }
@@ -328,17 +322,17 @@ TEST_P(HitLists, TouchingBoxesAreLeftBeforeTheNextIsEntered) {
 
 TEST_P(HitLists, NestedSolidsAndABeginningInside) {
   const ListScene scene({solid_sphere({0, 0, 0}, 3), solid_sphere({0, 0, 0}, 1), solid_sphere({0, 0, 0}, 2)});
-  expect_list(scene, list_ray({-5, 0, 0}, {1, 0, 0}),
+  expect_list(scene, make_ray({-5, 0, 0}, {1, 0, 0}),
               {{2, false, 0}, {3, false, 2}, {4, false, 1}, {6, true, 1}, {7, true, 2}, {8, true, 0}}, GetParam());
-  expect_list(scene, list_ray({0, 0, 0}, {0, 0, 0.5}), {{2, true, 1}, {4, true, 2}, {6, true, 0}}, GetParam());
-  expect_list(scene, list_ray({0, 1.5, 0}, {0, -1, 0}), {{0.5, false, 1}, {2.5, true, 1}, {3.5, true, 2}, {4.5, true, 0}},
+  expect_list(scene, make_ray({0, 0, 0}, {0, 0, 0.5}), {{2, true, 1}, {4, true, 2}, {6, true, 0}}, GetParam());
+  expect_list(scene, make_ray({0, 1.5, 0}, {0, -1, 0}), {{0.5, false, 1}, {2.5, true, 1}, {3.5, true, 2}, {4.5, true, 0}},
               GetParam());
 }
 
 TEST_P(HitLists, OverlappingAndEqualSolids) {
   const ListScene scene({solid_sphere({0, 0, 0}, 1), solid_sphere({1, 0, 0}, 1), solid_sphere({0, 0, 0}, 1)});
   const std::size_t low = scene.slots[0] < scene.slots[2] ? 0 : 2, high = 2 - low;
-  expect_list(scene, list_ray({-2, 0, 0}, {1, 0, 0}),
+  expect_list(scene, make_ray({-2, 0, 0}, {1, 0, 0}),
               {{1, false, low}, {1, false, high}, {2, false, 1}, {3, true, low}, {3, true, high}, {4, true, 1}}, GetParam());
 }
 
@@ -347,8 +341,8 @@ TEST_P(HitLists, WhatIsTouchedIsEnteredBeforeItIsLeft) {
   const FlatPrimitive capsule{shape_capsule, 0, {-1, 0, 0, 1, 0, 0, 1}};
   for (const FlatPrimitive& solid : {solid_sphere({0, 0, 0}, 1), capsule}) {
     const ListScene scene({solid});
-    const std::vector<RayRecord> rays = {list_ray({0, 1, -2}, {0, 0, 1})};
-    const auto hits = tracer(GetParam()).trace(scene.flat, rays, 8)[0].hits;
+    const std::vector<RayRecord> rays = {make_ray({0, 1, -2}, {0, 0, 1})};
+    const auto hits = list_tracer(GetParam()).trace(scene.flat, rays, 8)[0].hits;
     ASSERT_EQ(hits.size(), 2u);
     EXPECT_EQ(hits[0].t, 2);
     EXPECT_FALSE(is_leaving(hits[0]));
@@ -361,9 +355,9 @@ TEST_P(HitLists, SidesThatAreNotSeenAreNotListed) {
   const dmat4 placed = glm::translate(dmat4(1), dvec3(0.5, 0, 0));
   const auto primitives = mixed_primitives(17, 60, 0.8f);
   const auto rays = random_rays(18, 1500);
-  const auto all = tracer(GetParam()).trace(ListScene(primitives, {placed}).flat, rays, 512);
+  const auto all = list_tracer(GetParam()).trace(ListScene(primitives, {placed}).flat, rays, 512);
   for (const uint flag : {CAPLET_INSTANCE_NO_LEAVING, CAPLET_INSTANCE_NO_ENTERING}) {
-    const auto some = tracer(GetParam()).trace(ListScene(primitives, {placed}, flag).flat, rays, 512);
+    const auto some = list_tracer(GetParam()).trace(ListScene(primitives, {placed}, flag).flat, rays, 512);
     std::size_t seen = 0, hidden = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       std::size_t k = 0;
@@ -421,10 +415,10 @@ TEST_P(HitLists, ClosedMeshesAreEnteredAndLeft) {
   for (int i = 0; i < 20000; ++i) {
     const bool inside = i % 2 == 0;
     const dvec3 o = (inside ? 0.9 * u(0, 1) : u(1.2f, 4)) * glm::normalize(dvec3(u(-1, 1), u(-1, 1), u(-1, 1)));
-    rays.push_back(list_ray(o, inside ? dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) : dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) - o));
+    rays.push_back(make_ray(o, inside ? dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) : dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) - o));
     begins_inside.push_back(inside);
   }
-  const auto lists = tracer(GetParam()).trace(scene.flat, rays, 16);
+  const auto lists = list_tracer(GetParam()).trace(scene.flat, rays, 16);
   std::size_t shared = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Edges belong to both faces: their crossings come twice, at the same place. Once each, they take turns.
@@ -455,7 +449,7 @@ TEST_P(HitLists, UselessRaysHaveNone) {
   rays.push_back({0, 0, 0, 0, 0, 0, 0, inf});
   rays.push_back({0, 0, 0, 2, 1, 0, 0, 1});
   rays.push_back({0, 0, 0, 0, 1, 0, 0, nan});
-  for (const RayList& list : tracer(GetParam()).trace(scene.flat, rays, 8)) {
+  for (const RayList& list : list_tracer(GetParam()).trace(scene.flat, rays, 8)) {
     EXPECT_TRUE(list.hits.empty());
     EXPECT_FALSE(list.overflow);
   }

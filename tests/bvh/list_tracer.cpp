@@ -4,9 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <map>
 
 #include "support/scene_buffers.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -82,9 +83,9 @@ std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const R
   return out;
 }
 
-RayRecord list_ray(const glm::dvec3& o, const glm::dvec3& d) {
-  return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,
-          static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
+const ListTracer& list_tracer(int width) {
+  static std::map<int, ListTracer> tracers;
+  return tracers.try_emplace(width, test_device(), width).first->second;
 }
 
 }  // namespace caplet::test

@@ -11,6 +11,8 @@
 #include "device/device.h"
 #include "lower/lower.h"
 #include "shared/records.h"
+#include "support/rays.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -43,6 +45,7 @@ class ListTracer {
   cl::Kernel kernel_;
 };
 
-RayRecord list_ray(const glm::dvec3& origin, const glm::dvec3& direction);
+/// The one of the test program, on test_device(); compiled once a width.
+const ListTracer& list_tracer(int width = test_width());
 
 }  // namespace caplet::test

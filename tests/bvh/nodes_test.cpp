@@ -16,6 +16,7 @@
 #include "device/device.h"
 #include "shared/kinds.h"
 #include "shared/records.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -71,7 +72,7 @@ std::vector<float> deepest_tree() {
 // A point of a ray, in double; around it eight boxes of no or little extent that it only just touches, moved out by what a
 // shape's own error, 16 eps of the origin's distance, may ask of them.
 TEST(Slabs, BoxesThatARayMeetsAreMet) {
-  const Device device = Device::choose("cpu");
+  const Device& device = test_device();
   constexpr std::uint32_t count = 20000;
   std::mt19937 engine(11);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -122,7 +123,7 @@ TEST(Slabs, BoxesThatARayMeetsAreMet) {
 }
 
 TEST(Stack, HoldsWhatTheDeepestTreesLeave) {
-  const Device device = Device::choose("cpu");
+  const Device& device = test_device();
   const std::vector<float> tree = deepest_tree();
   const Buffer<float> nodes(device, std::span<const float>(tree));
   for (const char* width : {"-DCAPLET_REAL_WIDTH=8", "-DCAPLET_REAL_WIDTH=1"}) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 
@@ -51,15 +50,10 @@ std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned 
   return out;
 }
 
-unsigned test_scale() {
-  const char* text = std::getenv("CAPLET_TEST_SCALE");
-  return text ? static_cast<unsigned>(std::clamp(std::atoi(text), 1, 1000)) : 1;
-}
-
-std::vector<RayRecord> random_rays(unsigned seed, unsigned count) {
+std::vector<RayRecord> random_rays(unsigned seed, int count) {
   Random random(seed);
   std::vector<RayRecord> out;
-  for (unsigned i = 0; i < count; i++) {
+  for (int i = 0; i < count; i++) {
     const float reach = i % 3 == 0 ? 1.0f : 3.0f, speed = std::exp2(random.uniform(-6, 6));
     RayRecord r{};
     float* o[] = {&r.ox, &r.oy, &r.oz};

@@ -10,6 +10,7 @@
 #include "lower/encode.h"
 #include "shared/kinds.h"
 #include "shared/records.h"
+#include "support/test_scale.h"
 
 namespace caplet::test {
 
@@ -30,10 +31,8 @@ inline constexpr unsigned random_kinds[] = {shape_sphere, shape_capsule, shape_t
 FlatPrimitive random_primitive(Random& random, unsigned shape, float size);
 /// `count` primitives of one kind, or, with shape_instance, of all these kinds mixed.
 std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned count, float size);
-/// CAPLET_TEST_SCALE=N in the environment makes the comparisons with brute force N times as long (1 to 1000; default 1: 20 s).
-unsigned test_scale();
 /// Rays from around and inside [-1, 1]^3, of all lengths.
-std::vector<RayRecord> random_rays(unsigned seed, unsigned count);
+std::vector<RayRecord> random_rays(unsigned seed, int count);
 
 struct Encoded {
   std::vector<float> nodes, leaves;

@@ -11,6 +11,7 @@
 #include "device_tracer.h"
 #include "random_scene.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -20,11 +21,11 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 class Trace : public testing::TestWithParam<unsigned> {
  protected:
   static DeviceTracer& wide() {
-    static DeviceTracer tracer(Device::choose("cpu"), 8);
+    static DeviceTracer tracer(test_device(), 8);
     return tracer;
   }
   static DeviceTracer& scalar() {
-    static DeviceTracer tracer(Device::choose("cpu"), 1);
+    static DeviceTracer tracer(test_device(), 1);
     return tracer;
   }
 };

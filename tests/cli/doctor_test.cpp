@@ -12,6 +12,7 @@
 
 #include "program.h"
 #include "support/data.h"
+#include "support/device_choice.h"
 
 namespace caplet {
 namespace {
@@ -70,7 +71,8 @@ TEST(Doctor, AHealthyMachineHasNothingWrong) {
 }
 
 TEST(Doctor, JsonHoldsFindingsPlatformsAndDevices) {
-  const Result result = test::run_program({"doctor", "--json", "--device", "0", "--timeout", "100"}, test::temporary_folder());
+  const std::string device = test::test_device_choice().empty() ? "0" : test::test_device_choice();
+  const Result result = test::run_program({"doctor", "--json", "--device", device, "--timeout", "100"}, test::temporary_folder());
   EXPECT_EQ(result.code, 0) << result.out;
   const auto json = nlohmann::json::parse(result.out);
   int tests = 0;

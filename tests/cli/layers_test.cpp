@@ -9,6 +9,7 @@
 #include <array>
 
 #include "film/image.h"
+#include "film/layers.h"
 #include "program.h"
 #include "support/data.h"
 
@@ -19,25 +20,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::filesystem::path folder_with_scene() {
-  const auto folder = test::temporary_folder();
-  test::write_file(folder / "scene.pbrt",
-                   "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 2\n"
-                   "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6\nWorldBegin\nLightSource \"infinite\"\n"
-                   "Shape \"sphere\"\nShape \"capsule\" \"point3 p0\" [ 1 0 1 ] \"point3 p1\" [ -1 0 1 ] \"float radius\" 0.3\n");
-  return folder;
-}
-
-test::Result render(const std::filesystem::path& folder, std::vector<std::string> options) {
-  std::vector<std::string> arguments = {"render", "scene.pbrt", "-o", "out.exr", "-q"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  return test::run_program(arguments, folder);
-}
-
 TEST(Layers, AreThoseOfTheList) {
-  const auto folder = folder_with_scene();
+  const auto folder = test::folder_with_scene();
   const auto image_with = [&](std::vector<std::string> options) {
-    const test::Result result = render(folder, std::move(options));
+    options.insert(options.begin(), {"-o", "out.exr"});
+    const test::Result result = test::render(folder, std::move(options));
     EXPECT_EQ(result.code, 0) << result.err;
     return read_exr(folder / "out.exr");
   };
@@ -48,9 +35,14 @@ TEST(Layers, AreThoseOfTheList) {
     return out;
   };
   const LayeredImage all = image_with({"--layers", "all"});
-  EXPECT_EQ(all.channels.size(), 19u);
+  EXPECT_EQ(all.channels.size(), Layers::all().channels());
   EXPECT_EQ(names(image_with({"--variance"})), names(all));
-  EXPECT_EQ(image_with({}).channels.size(), 16u);
+  EXPECT_EQ(image_with({}).channels.size(), Layers::usual().channels());
+  for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+    const std::string option = layer_rows[i].option;
+    if (option.empty()) continue;
+    EXPECT_EQ(image_with({"--layers", option}).channels.size(), Layers::none().with(static_cast<Layer>(i)).channels()) << option;
+  }
   const LayeredImage alone = image_with({"--layers", "none"});
   EXPECT_THAT(names(alone), ElementsAre("A", "B", "G", "R"));
   EXPECT_EQ(alone.metadata.at("caplet.scene"), "scene.pbrt");
@@ -68,13 +60,12 @@ TEST(Layers, AreThoseOfTheList) {
 }
 
 TEST(Layers, PixelsBeyondAFloatAreSaidOnceForThePicture) {
-  const auto folder = test::temporary_folder();
   // Radiance 10^4 at an exposure of 10^36; enough rows for several bands.
-  test::write_file(folder / "scene.pbrt",
-                   "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 1\n"
-                   "Film \"rgb\" \"integer xresolution\" 2600 \"integer yresolution\" 1300 \"float iso\" 1e38\nWorldBegin\n"
-                   "LightSource \"infinite\" \"rgb L\" [ 10000 10000 10000 ]\nShape \"sphere\" \"float radius\" 0.01\n");
-  const test::Result result = render(folder, {"--layers", "none"});
+  const auto folder = test::folder_with_scene(
+      "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 1\n"
+      "Film \"rgb\" \"integer xresolution\" 2600 \"integer yresolution\" 1300 \"float iso\" 1e38\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [ 10000 10000 10000 ]\nShape \"sphere\" \"float radius\" 0.01\n");
+  const test::Result result = test::render(folder, {"-o", "out.exr", "--layers", "none"});
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err,
               HasSubstr("3380000 of 3380000 pixels are beyond the range of a float and written black (the first: 0,0)"));
@@ -82,12 +73,12 @@ TEST(Layers, PixelsBeyondAFloatAreSaidOnceForThePicture) {
 }
 
 TEST(Layers, UnknownOnesAreRefusedByTheNearestName) {
-  const auto folder = folder_with_scene();
+  const auto folder = test::folder_with_scene();
   for (const auto& [list, wrong, nearest] : {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
                                              {"Z,objects", "'objects'", "'object'"},
                                              {"Z,", "''", "--layers"},
                                              {"all,Z", "'all'", "--layers"}}) {
-    const test::Result result = render(folder, {"--layers", list});
+    const test::Result result = test::render(folder, {"-o", "out.exr", "--layers", list});
     EXPECT_EQ(result.code, 2) << list;
     EXPECT_THAT(result.err, StartsWith("caplet: error: --layers: ")) << list;
     EXPECT_THAT(result.err, HasSubstr(wrong)) << list;

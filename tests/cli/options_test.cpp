@@ -21,14 +21,7 @@ using Names = std::vector<std::string>;
 
 class Options : public testing::Test {
  protected:
-  void SetUp() override {
-    test::write_file(folder_ / "scene.pbrt",
-                     "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-                     "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
-                     "Sampler \"independent\" \"integer pixelsamples\" 4\nWorldBegin\nLightSource \"infinite\"\n"
-                     "Shape \"capsule\" \"point3 p0\" [-.5 0 0] \"point3 p1\" [.5 0 0] \"float radius\" 0.6\n");
-    test::write_file(folder_ / "rays.txt", "0 0 5 0 0 -1\n");
-  }
+  void SetUp() override { test::write_file(folder_ / "rays.txt", "0 0 5 0 0 -1\n"); }
   Result run(Names arguments, const std::map<std::string, std::string>& environment = {}) const {
     const Result result = test::run_program(arguments, folder_, environment);
     EXPECT_EQ(result.code, 0) << testing::PrintToString(arguments) << result.err;
@@ -43,7 +36,7 @@ class Options : public testing::Test {
     return nlohmann::json::parse(run(arguments, environment).out);
   }
 
-  const fs::path folder_ = test::temporary_folder();
+  const fs::path folder_ = test::folder_with_scene();
 };
 
 TEST_F(Options, SeedMakesOtherSamples) {

@@ -6,10 +6,12 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -25,29 +27,13 @@ namespace caplet {
 namespace {
 
 namespace fs = std::filesystem;
+using test::folder_with_scene;
+using test::render;
 using test::Result;
 using testing::AllOf;
 using testing::HasSubstr;
 
 using Names = std::vector<std::string>;
-
-const std::string head =
-    "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
-    "Sampler \"independent\" \"integer pixelsamples\" 2\nWorldBegin\n";
-const std::string light = "LightSource \"infinite\"\n";
-const std::string capsule = "Shape \"capsule\" \"point3 p0\" [-.5 0 0] \"point3 p1\" [.5 0 0] \"float radius\" 0.6\n";
-
-fs::path folder_with_scene() {
-  const fs::path folder = test::temporary_folder();
-  test::write_file(folder / "scene.pbrt", head + light + capsule);
-  return folder;
-}
-
-Result render(const fs::path& folder, std::vector<std::string> arguments, const std::function<void()>& in_child = {}) {
-  arguments.insert(arguments.begin(), {"render", "scene.pbrt", "-q"});
-  return test::run_program(arguments, folder, {}, in_child);
-}
 
 struct stat status_of(const fs::path& path) {
   struct stat out {};
@@ -200,8 +186,9 @@ fs::path folder_with_inputs() {
   for (const char* name : {"R", "G", "B"}) sky.channels.push_back({name, std::vector<float>(16, 1.0f), {}});
   write_exr(folder / "env.exr", sky);
   test::write_file(folder / "grey.spd", "300 0.5\n900 0.5\n");
-  test::write_file(folder / "part.pbrt", capsule);
-  std::string text = head + "LightSource \"infinite\" \"string filename\" \"env.exr\"\n" +
+  const std::string small = test::small_scene;
+  test::write_file(folder / "part.pbrt", small.substr(small.find("Shape ")));
+  std::string text = small.substr(0, small.find("LightSource ")) + "LightSource \"infinite\" \"string filename\" \"env.exr\"\n" +
                      "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\nInclude \"part.pbrt\"\n";
 #ifdef CAPLET_WITH_PLY
   test::write_file(folder / "mesh.ply",
@@ -295,6 +282,33 @@ class SmallDisk {
   fs::path folder_;
   bool mounted_ = false;
 };
+
+/// In a process of its own: a namespace in which `target` is a mount point, with `source` mounted there. 0, or the error's
+/// number.
+int mount_file(const fs::path& source, const fs::path& target) {
+  const uid_t user = ::geteuid();
+  if (::unshare(CLONE_NEWNS | (user == 0 ? 0 : CLONE_NEWUSER)) != 0) return errno;
+  if (user != 0) test::write_file("/proc/self/uid_map", "0 " + std::to_string(user) + " 1");
+  if (::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return errno;
+  return ::mount(source.c_str(), target.c_str(), nullptr, MS_BIND, nullptr) == 0 ? 0 : errno;
+}
+
+// As files are in containers: no file can take a mount point's place, so that it is written over.
+TEST(Outputs, AFileThatIsMountedIsWrittenOver) {
+  const fs::path folder = folder_with_scene(), source = folder / "source.exr", target = folder / "target.exr";
+  test::write_file(source, "what was there");
+  test::write_file(target, "behind it");
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(mount_file(source, target));
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  if (status != 0) GTEST_SKIP() << "no file can be mounted here: " << std::strerror(WEXITSTATUS(status));
+  const Result result = render(folder, {"-o", "target.exr"}, [&] { mount_file(source, target); });
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(read_exr(source).data_width, 24);
+  EXPECT_EQ(test::read_file(target), "behind it");
+  EXPECT_EQ(test::names_in(folder), (Names{"scene.pbrt", "source.exr", "target.exr"}));
+}
 
 TEST(Outputs, AFullDiskCostsNothing) {
   const fs::path folder = folder_with_scene(), disk = folder / "disk";

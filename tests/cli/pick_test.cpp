@@ -29,21 +29,19 @@ using testing::Not;
 /// A ball whose name needs quotes in CSV, a capsule without a name, an object of a named and an unnamed ball placed twice, and a
 /// floor: in rows along x, so that rays along -z through (x, 0) tell them apart. No shape at x = -2.
 std::filesystem::path folder_with_scene() {
-  const auto folder = test::temporary_folder();
-  test::write_file(folder / "scene.pbrt",
-                   "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 90\n"
-                   "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
-                   "MakeNamedMaterial \"mat, \xc3\xa9\" \"string type\" \"diffuse\"\nNamedMaterial \"mat, \xc3\xa9\"\n"
-                   "Shape \"sphere\" \"string name\" \"ball, \\\"big\\\"\"\n"
-                   "Material \"diffuse\"\n"
-                   "Shape \"capsule\" \"point3 p0\" [3 -1 0] \"point3 p1\" [3 1 0] \"float radius\" 0.5\n"
-                   "ObjectBegin \"pair\"\n"
-                   "Shape \"sphere\" \"float radius\" 0.5 \"string name\" \"left\"\n"
-                   "Translate 2 0 0\nShape \"sphere\" \"float radius\" 0.25\nObjectEnd\n"
-                   "AttributeBegin\nTranslate 5 0 0\nObjectInstance \"pair\"\nAttributeEnd\n"
-                   "AttributeBegin\nTranslate 9 0 1\nScale 1 1 2\nObjectInstance \"pair\"\nAttributeEnd\n"
-                   "Translate 0 0 -3\nShape \"disk\" \"float radius\" 1.5\n");
-  return folder;
+  return test::folder_with_scene(
+      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 90\n"
+      "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
+      "MakeNamedMaterial \"mat, \xc3\xa9\" \"string type\" \"diffuse\"\nNamedMaterial \"mat, \xc3\xa9\"\n"
+      "Shape \"sphere\" \"string name\" \"ball, \\\"big\\\"\"\n"
+      "Material \"diffuse\"\n"
+      "Shape \"capsule\" \"point3 p0\" [3 -1 0] \"point3 p1\" [3 1 0] \"float radius\" 0.5\n"
+      "ObjectBegin \"pair\"\n"
+      "Shape \"sphere\" \"float radius\" 0.5 \"string name\" \"left\"\n"
+      "Translate 2 0 0\nShape \"sphere\" \"float radius\" 0.25\nObjectEnd\n"
+      "AttributeBegin\nTranslate 5 0 0\nObjectInstance \"pair\"\nAttributeEnd\n"
+      "AttributeBegin\nTranslate 9 0 1\nScale 1 1 2\nObjectInstance \"pair\"\nAttributeEnd\n"
+      "Translate 0 0 -3\nShape \"disk\" \"float radius\" 1.5\n");
 }
 
 const char* const header = "ray,t,object,primitive,surface,material,entering,x,y,z,nx,ny,nz,u,v";

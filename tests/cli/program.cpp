@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "support/data.h"
+#include "support/device_choice.h"
 
 namespace caplet::test {
 
@@ -24,13 +25,29 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
+std::vector<std::string> on_test_device(std::vector<std::string> arguments,
+                                        const std::map<std::string, std::string>& environment) {
+  const std::string device = test_device_choice();
+  const auto says = [&](const char* word) { return std::ranges::find(arguments, word) != arguments.end(); };
+  const bool own_drivers = environment.contains("POCL_DEVICES") || environment.contains("OCL_ICD_VENDORS") ||
+                           environment.contains("OPENCL_VENDOR_PATH");
+  if (device.empty() || arguments.empty() || own_drivers || says("--device") || says("--all-devices")) return arguments;
+  for (const char* command : {"render", "pick", "verify"})
+    if (arguments[0] == command) {
+      arguments.insert(arguments.begin() + 1, {"--device", device});
+      break;
+    }
+  return arguments;
+}
+
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const fs::path& folder,
                                  const std::map<std::string, std::string>& environment) {
   if (::chdir(folder.c_str()) != 0) ::_exit(126);
   for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   const char* other = std::getenv("CAPLET_TEST_PROGRAM");  // a mutant's
   std::vector<std::string> owned{other ? other : CAPLET_PROGRAM};
-  owned.insert(owned.end(), arguments.begin(), arguments.end());
+  const std::vector<std::string> given = on_test_device(arguments, environment);
+  owned.insert(owned.end(), given.begin(), given.end());
   std::vector<char*> argv;
   for (std::string& argument : owned) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -128,6 +145,27 @@ Result run_on_terminal(const std::vector<std::string>& arguments, const fs::path
   ::close(terminal);
   set_exit(result, status);
   return result;
+}
+
+fs::path folder_with_scene(const std::string& text) {
+  const fs::path folder = temporary_folder();
+  write_file(folder / "scene.pbrt", text);
+  return folder;
+}
+
+Result render(const fs::path& folder, std::vector<std::string> arguments, const std::function<void()>& in_child) {
+  arguments.insert(arguments.begin(), {"render", "scene.pbrt", "-q"});
+  return run_program(arguments, folder, {}, in_child);
+}
+
+fs::path changed_kernels(const char* file, const std::string& from, const std::string& to) {
+  const fs::path folder = temporary_folder();
+  fs::copy(source_folder() / "kernels", folder, fs::copy_options::recursive);
+  std::string text = read_file(folder / file);
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error(std::string(file) + " does not hold: " + from);
+  write_file(folder / file, text.replace(at, from.size(), to));
+  return folder;
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {

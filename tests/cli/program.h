@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Runs the built program in a folder of its own.
+// Runs the built program in a folder of its own, on the device that tests run on.
 #pragma once
 
 #include <sys/types.h>
@@ -22,6 +22,8 @@ struct Result {
 };
 
 /// The program at work: its streams go to files beside `folder`, so that the folder shows only what the program makes.
+/// Where CAPLET_TEST_DEVICE is set, `render`, `pick` and `verify` get it as their `--device`, unless the test says which device
+/// or which drivers they are to see.
 class Running {
  public:
   /// `in_child`: called in the process before it becomes the program.
@@ -51,6 +53,23 @@ Result run_program(const std::vector<std::string>& arguments, const std::filesys
 
 /// Runs with a terminal as its stderr and stdout; what it printed there.
 Result run_on_terminal(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+
+/// A capsule under a white sky: 24 x 16 pixels, 2 samples.
+inline constexpr const char* small_scene =
+    "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
+    "Sampler \"independent\" \"integer pixelsamples\" 2\nWorldBegin\nLightSource \"infinite\"\n"
+    "Shape \"capsule\" \"point3 p0\" [-.5 0 0] \"point3 p1\" [.5 0 0] \"float radius\" 0.6\n";
+
+/// A fresh folder with this text as scene.pbrt.
+std::filesystem::path folder_with_scene(const std::string& text = small_scene);
+
+/// `render scene.pbrt -q` with more arguments.
+Result render(const std::filesystem::path& folder, std::vector<std::string> arguments,
+              const std::function<void()>& in_child = {});
+
+/// A copy of the kernels in which `from` of one file became `to`. Throws std::logic_error where the file does not hold it.
+std::filesystem::path changed_kernels(const char* file, const std::string& from, const std::string& to);
 
 /// Names in a folder, sorted.
 std::vector<std::string> names_in(const std::filesystem::path& folder);

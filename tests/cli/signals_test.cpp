@@ -19,21 +19,12 @@ using testing::HasSubstr;
 
 constexpr const char* endless = "16000000";  // samples
 
-fs::path folder_with_scene() {
-  const fs::path folder = test::temporary_folder();
-  test::write_file(folder / "scene.pbrt",
-                   "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-                   "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nWorldBegin\nLightSource \"infinite\"\n"
-                   "Shape \"sphere\"\n");
-  return folder;
-}
-
 class Signals : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& number) { return std::string(::sigabbrev_np(number.param)); });
 
 TEST_P(Signals, WriteTheFinishedPasses) {
-  const fs::path folder = folder_with_scene();
+  const fs::path folder = test::folder_with_scene();
   test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless}, folder);
   ASSERT_TRUE(running.wait_for_stderr("paths/s"));
   running.send(GetParam());
@@ -45,7 +36,7 @@ TEST_P(Signals, WriteTheFinishedPasses) {
 }
 
 TEST(Signals, NohupIsHeard) {
-  const fs::path folder = folder_with_scene();
+  const fs::path folder = test::folder_with_scene();
   test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--time", "8"}, folder, {},
                         [] { ::signal(SIGHUP, SIG_IGN); });
   ASSERT_TRUE(running.wait_for_stderr("paths/s"));
@@ -55,7 +46,7 @@ TEST(Signals, NohupIsHeard) {
 }
 
 TEST(Signals, TheSecondEndsAtOnce) {
-  const fs::path folder = folder_with_scene();
+  const fs::path folder = test::folder_with_scene();
   // One pass of many pixels, so that the first signal cannot end the program before the second comes.
   test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--size", "4096x4096"}, folder);
   ASSERT_TRUE(running.wait_for_stderr("samples per pixel on"));
@@ -67,7 +58,7 @@ TEST(Signals, TheSecondEndsAtOnce) {
 }
 
 TEST(NoDevice, IsAFailureNotAUsageError) {
-  const fs::path folder = folder_with_scene();
+  const fs::path folder = test::folder_with_scene();
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"render", "scene.pbrt"}, {"pick", "scene.pbrt", "--pixel", "1,1"}, {"verify", "--rays", "10"}}) {
     const Result result =

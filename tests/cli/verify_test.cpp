@@ -12,6 +12,7 @@
 #include "film/image.h"
 #include "program.h"
 #include "support/data.h"
+#include "support/kinds.h"
 
 namespace caplet {
 namespace {
@@ -22,25 +23,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 fs::path folder_with_scene() {
-  const auto folder = test::temporary_folder();
-  test::write_file(folder / "scene.pbrt",
-                   "LookAt 0 -8 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
-                   "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
-                   "Shape \"sphere\" \"float radius\" 0.7\n"
-                   "Shape \"capsule\" \"point3 p0\" [-2 0 0] \"point3 p1\" [-1 1 1] \"float radius\" [0.5 0.2]\n"
-                   "Shape \"cylinder\" \"point3 p0\" [2 0 -1] \"point3 p1\" [2 0 1] \"float radius\" 0.5\n");
-  return folder;
-}
-
-/// A copy of the kernels in which the text of one file is changed.
-fs::path changed_kernels(const char* file, const std::string& from, const std::string& to) {
-  const auto folder = test::temporary_folder() / "kernels";
-  fs::copy(test::source_folder() / "kernels", folder, fs::copy_options::recursive);
-  std::string text = test::read_file(folder / file);
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::runtime_error(std::string(file) + " does not hold: " + from);
-  test::write_file(folder / file, text.replace(at, from.size(), to));
-  return folder;
+  return test::folder_with_scene(
+      "LookAt 0 -8 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
+      "Shape \"sphere\" \"float radius\" 0.7\n"
+      "Shape \"capsule\" \"point3 p0\" [-2 0 0] \"point3 p1\" [-1 1 1] \"float radius\" [0.5 0.2]\n"
+      "Shape \"cylinder\" \"point3 p0\" [2 0 -1] \"point3 p1\" [2 0 1] \"float radius\" 0.5\n");
 }
 
 TEST(Verify, ASceneAgrees) {
@@ -59,7 +47,7 @@ TEST(Verify, JsonOfTheTortureSet) {
   EXPECT_EQ(json.at("disagreements"), 0);
   EXPECT_GT(json.at("seconds").get<double>(), 0);
   EXPECT_EQ(json.at("verdict"), "agrees");
-  EXPECT_EQ(json.at("kinds").size(), 14u);
+  EXPECT_EQ(json.at("kinds").size(), test::shape_kinds().size());
   for (const auto& [name, kind] : json.at("kinds").items()) {
     EXPECT_GT(kind.at("rays").get<int>(), 0) << name;
     EXPECT_GT(kind.at("hits").get<int>(), 0) << name;
@@ -76,7 +64,7 @@ TEST(Verify, JsonOfTheTortureSet) {
 // A cylinder whose caps are half as far away, on a device that believes it.
 TEST(Verify, AWrongDeviceIsFoundAndItsCasesReplayed) {
   const auto folder = folder_with_scene();
-  const auto kernels = changed_kernels("shapes/sphere.cl", "sqrt(", "0.9f * sqrt(");
+  const auto kernels = test::changed_kernels("shapes/sphere.cl", "sqrt(", "0.9f * sqrt(");
   const std::map<std::string, std::string> wrong = {{"CAPLET_KERNELS", kernels.string()}};
   const Result found =
       test::run_program({"verify", "scene.pbrt", "--rays", "3000", "--save-failures", "cases", "--json"}, folder, wrong);

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "device/device.h"
+#include "support/test_device.h"
 
 namespace caplet {
 namespace {
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 
 class BufferTest : public testing::Test {
  protected:
-  Device device_ = Device::choose("");
+  Device device_ = test::test_device(Encoding::automatic);
 
   std::string refusal(std::size_t bytes) {
     try {

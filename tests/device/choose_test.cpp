@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Choosing among the devices that are there, and where there is none.
+// Choosing among the devices that are there, and where there is none: of all of them, so not of the one that the other tests run
+// on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -13,6 +13,7 @@
 #include "device/device.h"
 #include "environment.h"
 #include "support/data.h"
+#include "support/test_device.h"
 
 namespace caplet {
 namespace {
@@ -58,7 +59,7 @@ class ProgramTest : public testing::Test {
 
   fs::path folder_ = test::temporary_folder();
   test::ScopedVariable cache_{"CAPLET_CACHE", folder_.string()};
-  Device device_ = Device::choose("");
+  Device device_ = test::test_device(Encoding::automatic);
 };
 
 TEST_F(ProgramTest, LaunchesRoundUpAndKernelsCheckTheirIndex) {
@@ -139,7 +140,7 @@ TEST_F(ProgramTest, AnUnusableCacheFolderIsNoError) {
 }
 
 TEST_F(ProgramTest, PoclKeepsItsOwnCache) {
-  if (!device_.is_pocl()) GTEST_SKIP() << "needs PoCL";
+  CAPLET_NEEDS_POCL();
   Program::from_source(device_, "count_up", count_up, "-DSTEP=1");
   EXPECT_TRUE(fs::is_empty(folder_));
 }

@@ -12,6 +12,7 @@
 
 #include "environment.h"
 #include "support/data.h"
+#include "support/test_device.h"
 
 namespace caplet {
 namespace {
@@ -32,7 +33,7 @@ std::string changed(const std::vector<std::pair<std::string, std::string>>& chan
 }
 
 TEST(SelfTest, Passes) {
-  const Device device = Device::choose("");
+  const Device device = test::test_device(Encoding::automatic);
   EXPECT_THAT(self_test_failures(device, kernel_source("probe/self_test.cl")), IsEmpty());
 }
 
@@ -40,19 +41,19 @@ TEST(SelfTest, SeesWrongNumbers) {
   // 1.2e-7 is one ulp of 1: a sum or product off by one ulp. 4.2e-7 is 3.5 ulp of 1, beyond both bounds of division and square
   // root for mantissas near 1.
   const std::vector<std::string> failures =
-      self_test_failures(Device::choose(""), changed({{"= a + b;", "= (a + b) * 1.0000001f;"},
-                                                      {"= a / b;", "= a / b * 1.0000005f;"},
-                                                      {"= sqrt(a);", "= sqrt(a) * 1.0000005f;"},
-                                                      {"fma(a, b, -a)", "a * b - a * 1.0000001f"},
-                                                      {"fmax(a, b)", "(a > b ? a : b)"},
-                                                      {"isnan(a) ?", "false ?"},
-                                                      {"!(a > b)", "a <= b"},
-                                                      {"= clz(a)", "= clz(a | 1u)"},
-                                                      {"= popcount(a)", "= popcount(a >> 1)"},
-                                                      {"(uint)((int)a >>", "(uint)(a >>"},
-                                                      {"vload8(i, in + 3)", "vload8(i, in + 2)"},
-                                                      {"atomic_inc(totals)", "totals[0]"},
-                                                      {"get_group_id(0)", "get_group_id(1)"}}));
+      self_test_failures(test::test_device(Encoding::automatic), changed({{"= a + b;", "= (a + b) * 1.0000001f;"},
+                                                                          {"= a / b;", "= a / b * 1.0000005f;"},
+                                                                          {"= sqrt(a);", "= sqrt(a) * 1.0000005f;"},
+                                                                          {"fma(a, b, -a)", "a * b - a * 1.0000001f"},
+                                                                          {"fmax(a, b)", "(a > b ? a : b)"},
+                                                                          {"isnan(a) ?", "false ?"},
+                                                                          {"!(a > b)", "a <= b"},
+                                                                          {"= clz(a)", "= clz(a | 1u)"},
+                                                                          {"= popcount(a)", "= popcount(a >> 1)"},
+                                                                          {"(uint)((int)a >>", "(uint)(a >>"},
+                                                                          {"vload8(i, in + 3)", "vload8(i, in + 2)"},
+                                                                          {"atomic_inc(totals)", "totals[0]"},
+                                                                          {"get_group_id(0)", "get_group_id(1)"}}));
   std::vector<std::string> checks;
   for (const std::string& failure : failures) checks.push_back(failure.substr(0, failure.find(':')));
   EXPECT_THAT(checks,
@@ -62,7 +63,7 @@ TEST(SelfTest, SeesWrongNumbers) {
 
 TEST(SelfTest, AllowsEitherSignOfAZeroFromFma) {
   const std::string negated = "fma(a, b, -a) == 0.0f ? -fma(a, b, -a) : fma(a, b, -a)";
-  EXPECT_THAT(self_test_failures(Device::choose(""), changed({{"fma(a, b, -a)", negated}})), IsEmpty());
+  EXPECT_THAT(self_test_failures(test::test_device(Encoding::automatic), changed({{"fma(a, b, -a)", negated}})), IsEmpty());
 }
 
 class SelfTestMemory : public testing::Test {
@@ -77,12 +78,12 @@ class SelfTestMemory : public testing::Test {
 
   fs::path folder_ = test::temporary_folder();
   test::ScopedVariable cache_{"CAPLET_CACHE", folder_.string()};
-  Device device_ = Device::choose("");
+  Device device_ = test::test_device(Encoding::automatic);
 };
 
 /// Whether self_test runs anything on a device that has not been used yet.
 bool runs() {
-  const Device fresh = Device::choose("");
+  const Device fresh = test::test_device(Encoding::automatic);
   self_test(fresh);
   return fresh.bytes_peak() > 0;
 }

@@ -23,6 +23,7 @@
 #include "lower/flat_shapes.h"
 #include "reference/from_scene.h"
 #include "support/data.h"
+#include "support/test_device.h"
 #include "tally.h"
 
 namespace caplet::test {
@@ -30,18 +31,13 @@ namespace {
 
 using glm::dvec3;
 
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
-
 dvec3 origin_of(const RayRecord& ray) { return {ray.ox, ray.oy, ray.oz}; }
 dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
 
 /// A curve in the three ways that it is traced, and what the witness has of it.
 class Curve {
  public:
-  explicit Curve(const RoundCurves& curves) : peer_(curves, RTC_SCENE_FLAG_ROBUST), tracer_(device(), 8) {
+  explicit Curve(const RoundCurves& curves) : peer_(curves, RTC_SCENE_FLAG_ROBUST), tracer_(test_device(), test_width()) {
     CsgShape csg;
     for (const unsigned first : curves.first) {
       const auto &a = curves.vertices[first], &b = curves.vertices[first + 1];
@@ -64,7 +60,7 @@ class Curve {
       shape.geometry = csg;
       union_witness_ = reference::primitives_of(shape);
     }
-    probe_.emplace(device(), 8, union_, union_leaves_);
+    probe_.emplace(test_device(), test_width(), union_, union_leaves_);
   }
 
   struct Result {

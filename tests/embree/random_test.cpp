@@ -17,6 +17,7 @@
 #include "device_tracer.h"
 #include "peer.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 #include "tally.h"
 
 namespace caplet::test {
@@ -37,11 +38,6 @@ const Kind kinds[] = {{shape_capsule, "capsule", 0.94, 0.6, 0.999},
                       {shape_tapered_capsule, "tapered_capsule", 0.94, 0.6, 0.999},
                       {shape_sphere, "sphere", 0.999, 0.999, 0.999},
                       {shape_triangle, "triangle", 0.98, 0.97, 0.999}};
-
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
 
 bool is_capsule(int shape) { return shape == shape_capsule || shape == shape_tapered_capsule; }
 
@@ -142,7 +138,7 @@ void compare_singles(const Kind& kind, bool hard, double least) {
     CaseMaker maker(7000 + static_cast<std::uint32_t>(part));
     CaseSet cases = maker.set(kind.shape, hard, 400, 50);
     tallies.refused += drop_invalid_rays(cases);
-    const auto ours = Probe(device(), 8, cases.primitives).trace(cases.which, cases.rays);
+    const auto ours = Probe(test_device(), test_width(), cases.primitives).trace(cases.which, cases.rays);
     std::vector<PeerHit> theirs;
     for (std::uint32_t i = 0; i < cases.primitives.size(); ++i) {
       const auto [first, last] = std::equal_range(cases.which.begin(), cases.which.end(), i);
@@ -218,7 +214,7 @@ TEST_P(ThirdOpinion, OnScenes) {
     const EncodedTree tree = encode_tree(primitives, nodes, leaves);
     std::vector<std::uint32_t> id_of(leaves.size(), CAPLET_NONE);
     for (std::uint32_t i = 0; i < tree.slots.size(); ++i) id_of[tree.slots[i]] = i;
-    DeviceTracer tracer(device(), 8);
+    DeviceTracer tracer(test_device(), test_width());
     tracer.upload(nodes, leaves, {}, tree.root);
     const std::vector<HitRecord> ours = tracer.closest(rays);
     const std::vector<PeerHit> theirs = Peer(primitives, RTC_SCENE_FLAG_ROBUST).closest(rays);

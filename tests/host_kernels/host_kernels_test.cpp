@@ -21,6 +21,7 @@
 #include "host_kernels/scene_arrays.h"
 #include "render/buffers.h"
 #include "support/data.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -69,20 +70,15 @@ std::string device_text() {
   return flatten(*read("host_kernels.cl") + entry_text, "host_kernels", read);
 }
 
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
-
 Program device_program(int width) {
-  return Program::from_source(device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
+  return Program::from_source(test_device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
 }
 
 std::vector<HostAnswer> ask_device(Program& program, const LoweredModel& model, const std::vector<HostQuestion>& questions) {
   cl::Kernel kernel = program.kernel("answers");
   cl_uint index = 0;
-  const SceneBuffers scene(device(), model.scene);
-  const SensorBuffers view(device(), model.view);
+  const SceneBuffers scene(test_device(), model.scene);
+  const SensorBuffers view(test_device(), model.view);
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
 #define GROUP_END(Type) }
 #define GROUP_BEGIN(Type, group) \
@@ -97,12 +93,12 @@ std::vector<HostAnswer> ask_device(Program& program, const LoweredModel& model, 
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-  const Buffer<HostQuestion> in(device(), std::span<const HostQuestion>(questions));
-  Buffer<HostAnswer> out(device(), questions.size());
+  const Buffer<HostQuestion> in(test_device(), std::span<const HostQuestion>(questions));
+  Buffer<HostAnswer> out(test_device(), questions.size());
   kernel.setArg(index++, in.handle());
   kernel.setArg(index++, out.handle());
   kernel.setArg(index++, static_cast<cl_uint>(questions.size()));
-  launch(device(), kernel, questions.size(), 16);
+  launch(test_device(), kernel, questions.size(), 16);
   return out.read();
 }
 

@@ -182,7 +182,7 @@ Material ModelMaker::material() {
       out.model = DiffuseMaterial{spectrum(1)};
       break;
     case 1:
-      out.model = ConductorMaterial{spectrum(4), spectrum(4), u, v};
+      out.model = ConductorMaterial{spectrum(4), spectrum(4), std::nullopt, u, v};
       break;
     default:
       out.model = DielectricMaterial{spectrum(2), u, v};

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/records.h"
+#include "support/test_device.h"
 
 namespace caplet {
 namespace {
@@ -21,7 +22,7 @@ const RecordLayout& record(const std::vector<RecordLayout>& layouts, const std::
   throw std::logic_error("no record " + name);
 }
 
-TEST(Layout, DeviceAgreesWithHost) { EXPECT_THAT(compare_layout(Device::choose("")), IsEmpty()); }
+TEST(Layout, DeviceAgreesWithHost) { EXPECT_THAT(compare_layout(test::test_device()), IsEmpty()); }
 
 TEST(Layout, HostSideListsEveryByte) {
   const std::vector<RecordLayout> layouts = host_layout();
@@ -43,7 +44,7 @@ TEST(Layout, ReportsAShiftedField) {
   std::vector<RecordLayout> shifted = host_layout();
   for (RecordLayout& layout : shifted)
     if (layout.name == "HitRecord") layout.fields.at(1).offset += 4;
-  EXPECT_THAT(compare_layout(Device::choose(""), shifted),
+  EXPECT_THAT(compare_layout(test::test_device(), shifted),
               ElementsAre("HitRecord.slot: offset is 4 on the device, 8 on the host",
                           "HitRecord.slot: offset it is loaded from is 4 on the device, 8 on the host"));
 }
@@ -52,20 +53,20 @@ TEST(Layout, ReportsFieldsThatChangedPlaces) {
   std::vector<RecordLayout> swapped = host_layout();
   for (RecordLayout& layout : swapped)
     if (layout.name == "RayRecord") std::swap(layout.fields.at(6).name, layout.fields.at(7).name);
-  EXPECT_THAT(compare_layout(Device::choose(""), swapped),
+  EXPECT_THAT(compare_layout(test::test_device(), swapped),
               ElementsAre("the device has RayRecord.dz where the host has RayRecord.t_max"));
 }
 
 TEST(Layout, ReportsADifferentSize) {
   std::vector<RecordLayout> larger = host_layout();
   larger.back().bytes += 16;
-  EXPECT_THAT(compare_layout(Device::choose(""), larger), ElementsAre("PickRecord: size is 64 on the device, 80 on the host"));
+  EXPECT_THAT(compare_layout(test::test_device(), larger), ElementsAre("PickRecord: size is 64 on the device, 80 on the host"));
 }
 
 TEST(Layout, ReportsAListOfAnotherLength) {
   std::vector<RecordLayout> shorter = host_layout();
   shorter.back().fields.pop_back();
-  const std::vector<std::string> mismatches = compare_layout(Device::choose(""), shorter);
+  const std::vector<std::string> mismatches = compare_layout(test::test_device(), shorter);
   ASSERT_EQ(mismatches.size(), 1u);
   EXPECT_THAT(mismatches[0], testing::HasSubstr("sizes and offsets"));
 }

@@ -8,14 +8,19 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <memory>
 #include <numbers>
+#include <set>
 
 #include "light_bench.h"
 #include "support/chi_square.h"
+#include "support/kinds.h"
 
 namespace caplet::test {
 
 namespace {
+
+using glm::dvec3;
 
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t sample_count = 60000;
@@ -89,6 +94,26 @@ std::vector<AreaCase> cases() {
   };
   const CylinderShape tube{{0, 0, -1}, {0.25, 0, 1}, 0.75}, pipe{{0, 0, -1}, {0, 0, 1}, 0.75, {Cap::flat, Cap::open}};
   const BoxShape box{{-1, -0.5, -0.25}, {1, 0.75, 0.5}};
+  const ConeShape frustum{{0, 0, -1}, {0.25, 0, 1}, {0.75, 0.25}}, point_up{{0, 0, 0}, {0, 0, 1}, {0.5, 0}};
+  // A tetrahedron with a corner cut off.
+  const PolyhedronShape crystal{{dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1), dvec3(0.5, 0.5, 0.5), dvec3(0.75, 0, 0)},
+                                {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 1, 1}, {1, 0, 0}}};
+  const PartialSphereShape dome{1, -0.5, 0.75, 4};
+  const OpenCylinderShape gutter{0.75, -1, 1, 5};
+  const DiskShape washer{0.5, 1, 0.4, 4};
+  BilinearMeshShape saddle;
+  saddle.positions = {{-1, -1, 0}, {1, -1, 0.25f}, {-1, 1, 0.25f}, {1, 1, -0.125f}};
+  saddle.patches = {{0, 1, 2, 3}};
+  const auto balls = [](CsgShape::Operation operation) {
+    CsgShape csg{operation, {}};
+    for (const double x : {-0.5, 0.25}) {
+      Shape ball;
+      ball.geometry = SphereShape{1};
+      ball.world_from_object = moved(x, 0, 0);
+      csg.operands.push_back(std::make_shared<const Shape>(ball));
+    }
+    return csg;
+  };
   Shape dark_end = emissive(tube);
   dark_end.emission->surfaces = {0, 2};
   std::vector<AreaCase> all = {
@@ -141,9 +166,27 @@ std::vector<AreaCase> cases() {
       {"box_inside_ball", emissive(box), {0.25, 0.5, 0.75}, 100000, true},
       {"box_sheared", emissive(box, sheared()), {3, 1, 2}, 100000, true},
       {"box_turned_inside", turned(emissive(box)), {0.25, 0.125, 0.25}, 100000},
+      {"cone_side", emissive(frustum), {1.5, 0.5, 0.25}, 300000, true},
+      {"cone_end", emissive(point_up), {0.25, 0.125, -1}, 300000, true},
+      {"cone_sheared", emissive(frustum, sheared()), {1, 2, 2}, 300000, true},
+      {"polyhedron_medium", emissive(crystal), {2, 2, 1}, 300000, true},
+      {"polyhedron_turned_inside", turned(emissive(crystal)), {0.25, 0.125, 0.25}, 300000},
+      {"partial_sphere_medium", emissive(dome), {2, 2, 1}, 300000, true},
+      {"partial_sphere_turned", turned(emissive(dome)), {0.25, -0.25, 0}, 300000, true},
+      {"open_cylinder_side", emissive(gutter), {1.5, 0.5, 0.25}, 300000, true},
+      {"open_cylinder_sheared", emissive(gutter, sheared()), {1, 3, 2}, 300000, true},
+      {"partial_disk_medium", emissive(washer), {1, 0.5, 2.5}, 300000, true},
+      {"partial_disk_sheared", emissive(washer, sheared()), {1, 0, 3}, 300000, true},
+      {"bilinear_medium", emissive(saddle), {0.5, 0.25, 3}, 300000, true},
+      {"bilinear_mirrored", emissive(saddle, mirror), {0.5, 0.25, 3}, 300000, true},
+      {"csg_lens", emissive(balls(CsgShape::Operation::set_intersection)), {1.5, 1, 1}, 300000, true},
+      {"csg_turned_inside", turned(emissive(balls(CsgShape::Operation::set_intersection))), {0.125, 0.25, 0.25}, 300000},
   };
   return all;
 }
+
+/// The kind that the case's shape is lowered to.
+int kind_of(const AreaCase& c) { return static_cast<int>(lower(scene_of(c.shape)).geometries.at(0).shape); }
 
 class AreaLight : public testing::TestWithParam<AreaCase> {};
 
@@ -255,6 +298,12 @@ TEST_P(AreaLight, SamplesFollowTheDensityAndSeeNothingInBetween) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, AreaLight, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<AreaCase>& row) { return row.param.name; });
+
+TEST(AreaLightCases, EveryShapeIsOnTrial) {
+  std::set<int> tried;
+  for (const AreaCase& c : cases()) tried.insert(kind_of(c));
+  for (const ShapeKind& kind : shape_kinds()) EXPECT_TRUE(tried.contains(kind.shape)) << kind.name;
+}
 
 TEST(AreaLightClosedForm, SphereIrradiance) {
   // E = pi L (r / d)^2 cos, for a sphere wholly above the horizon.

@@ -2,20 +2,15 @@
 // Copyright Caplet authors
 #include "light_bench.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
-#include <numbers>
+#include <fmt/format.h>
+
 #include <random>
+
+#include "support/test_device.h"
 
 namespace caplet::test {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 const char* const kernel_text = R"(
 #include "lights/lights.cl"
@@ -101,13 +96,9 @@ __kernel void select_lights(SCENE, __global const uint* u, __global uint* out, u
 )";
 
 Program& program(const Device& device) {
-  static Program built = Program::from_source(device, "light_bench", flatten_kernels(kernel_text), "-DCAPLET_REAL_WIDTH=8");
+  static Program built = Program::from_source(device, "light_bench", flatten_kernels(kernel_text),
+                                              fmt::format("-DCAPLET_REAL_WIDTH={}", test_width()));
   return built;
-}
-
-Device& test_device() {
-  static Device device = Device::choose("");
-  return device;
 }
 
 }  // namespace
@@ -213,104 +204,6 @@ std::vector<std::uint32_t> LightBench::select(const std::vector<std::uint32_t>& 
   kernel.setArg(at++, static_cast<cl_uint>(u.size()));
   launch(device_, kernel, u.size(), 1);
   return out.read();
-}
-
-std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count) {
-  using Map = std::function<glm::dvec3(double, double)>;  // of [0, 1]^2
-  std::vector<Map> parts;
-  bool open = false;
-  glm::dvec3 open_normal{0}, center{0};
-  if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
-    parts.push_back([r = sphere->radius](double u, double v) {
-      const double t = pi * u, f = 2 * pi * v;
-      return r * glm::dvec3(std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t));
-    });
-  } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-    const glm::dvec3 a(capsules->p0[0]), b(capsules->p1[0]);
-    const double ra = capsules->radius0[0], rb = capsules->radius1.empty() ? ra : capsules->radius1[0];
-    const glm::dvec3 axis = b - a;
-    const double length = glm::length(axis);
-    const glm::dvec3 z = length > 0 ? axis / length : glm::dvec3(0, 0, 1);
-    const glm::dvec3 x = glm::normalize(glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-    const glm::dvec3 y = glm::cross(z, x);
-    // A band of a sphere, from polar angle t0 to t1 against z.
-    const auto band = [=](glm::dvec3 at, double r, double t0, double t1) {
-      return [=](double u, double v) {
-        const double t = t0 + u * (t1 - t0), f = 2 * pi * v;
-        return at + r * (std::sin(t) * (std::cos(f) * x + std::sin(f) * y) + std::cos(t) * z);
-      };
-    };
-    if (length <= std::abs(ra - rb)) {
-      parts.push_back(ra >= rb ? band(a, ra, 0, pi) : band(b, rb, 0, pi));
-      center = ra >= rb ? a : b;
-    } else {
-      const double tangent = std::acos((ra - rb) / length);  // polar angle of the normals of the common tangent cone
-      parts.push_back(band(a, ra, tangent, pi));
-      parts.push_back(band(b, rb, 0, tangent));
-      const Map from = band(a, ra, tangent, tangent), to = band(b, rb, tangent, tangent);
-      parts.push_back([=](double u, double v) { return (1 - u) * from(0, v) + u * to(0, v); });
-      center = (a + b) * 0.5;
-    }
-  } else if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) {
-    open = true;
-    const glm::dvec3 a(mesh->positions[0]), b(mesh->positions[1]), c(mesh->positions[2]);
-    open_normal = glm::cross(b - a, c - a);
-    parts.push_back([=](double u, double v) { return a + u * (b - a) + u * v * (c - b); });
-  } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape.geometry)) {
-    const glm::dvec3 axis = cylinder->p1 - cylinder->p0, z = glm::normalize(axis);
-    const glm::dvec3 x =
-        cylinder->radius * glm::normalize(glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-    const glm::dvec3 y = glm::cross(z, x);
-    center = cylinder->p0 + 0.5 * axis;
-    const auto around = [=](double v) { return std::cos(2 * pi * v) * x + std::sin(2 * pi * v) * y; };
-    const glm::dvec3 p0 = cylinder->p0, p1 = cylinder->p1;
-    const Map surfaces[3] = {[=](double u, double v) { return p0 + u * axis + around(v); },
-                             [=](double u, double v) { return p0 + u * around(v); },
-                             [=](double u, double v) { return p1 + u * around(v); }};
-    const auto& lit = shape.emission->surfaces;
-    for (std::uint32_t i = 0; i < 3; ++i)
-      if ((lit.empty() || std::ranges::find(lit, i) != lit.end()) && (i == 0 || cylinder->caps[i - 1] == Cap::flat))
-        parts.push_back(surfaces[i]);
-  } else if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) {
-    const glm::dvec3 low = box->p0, size = box->p1 - box->p0;
-    center = low + 0.5 * size;
-    for (int face = 0; face < 6; ++face)
-      parts.push_back([=](double u, double v) {
-        glm::dvec3 at(0);
-        at[face / 2] = face % 2;
-        at[(face / 2 + 1) % 3] = u;
-        at[(face / 2 + 2) % 3] = v;
-        return low + at * size;
-      });
-  } else {
-    open = true;
-    const auto& disk = std::get<DiskShape>(shape.geometry);
-    open_normal = {0, 0, 1};
-    parts.push_back([=](double u, double v) {
-      return glm::dvec3(disk.radius * u * std::cos(2 * pi * v), disk.radius * u * std::sin(2 * pi * v), disk.height);
-    });
-  }
-  const glm::dmat4& m = shape.world_from_object;
-  const auto place = [&](const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1)); };
-  const glm::dvec3 world_open_normal = glm::transpose(glm::inverse(glm::dmat3(m))) * open_normal;
-  const glm::dvec3 world_center = place(center);
-  std::vector<SurfacePoint> points;
-  // Roberts' sequence: the plane's counterpart of the golden ratio's multiples.
-  const double plastic = 1.32471795724474602596;
-  for (const Map& part : parts)
-    for (std::size_t i = 0; i < count; ++i) {
-      const double step = static_cast<double>(i) + 0.5, h = 1e-5;
-      const double u = std::fmod(step / plastic, 1.0), v = std::fmod(step / (plastic * plastic), 1.0);
-      const glm::dvec3 du = (place(part(u + h, v)) - place(part(u - h, v))) / (2 * h);
-      const glm::dvec3 dv = (place(part(u, v + h)) - place(part(u, v - h))) / (2 * h);
-      const glm::dvec3 across = glm::cross(du, dv);
-      SurfacePoint point{place(part(u, v)), glm::normalize(across), glm::length(across) / static_cast<double>(count)};
-      const glm::dvec3 outward = open ? world_open_normal : point.p - world_center;
-      if (glm::dot(point.n, outward) < 0) point.n = -point.n;
-      if (shape.reverse_orientation) point.n = -point.n;
-      points.push_back(point);
-    }
-  return points;
 }
 
 }  // namespace caplet::test

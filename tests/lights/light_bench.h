@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Runs the light kernels over a lowered scene, and points on the surface of a light by the test's own parametrisation.
+// Runs the light kernels over a lowered scene.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "device/device.h"
 #include "lower/lower.h"
 #include "render/buffers.h"
-#include "scene/scene.h"
+#include "surface_points.h"
 
 namespace caplet::test {
 
@@ -22,12 +22,6 @@ struct SampledLight {
   glm::dvec3 wi{0}, target{0};
   double pdf = 0, radiance = 0;
   bool infinite = false, delta = false, occluded = false;
-};
-
-/// A point of a light's surface with its share of the area (world).
-struct SurfacePoint {
-  glm::dvec3 p, n;  // n unit; outward of solids, emitting side of open shapes
-  double area;
 };
 
 /// The device, its buffers for one scene, and the kernels.
@@ -53,9 +47,5 @@ class LightBench {
   Device device_;
   SceneBuffers scene_;
 };
-
-/// `count` points a smooth part of the shape's emitting surface, evenly spread in its own coordinates; areas from the derivatives
-/// of the transformed parametrisation, taken by differences.
-std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count);
 
 }  // namespace caplet::test

@@ -6,46 +6,17 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <memory>
 #include <numbers>
 #include <random>
 
 #include "light_bench.h"
+#include "light_scenes.h"
 
 namespace caplet::test {
 
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-Scene scene_with(const std::vector<Light>& lights) {
-  Scene scene;
-  scene.materials.emplace_back();
-  Shape small;
-  small.geometry = SphereShape{0.01};
-  small.world_from_object[3] = glm::dvec4(0, 0, -50, 1);
-  scene.shapes = {small};
-  scene.lights = lights;
-  return scene;
-}
-
-template <class T>
-Light light_of(const T& model) {
-  Light light;
-  light.model = model;
-  return light;
-}
-
-Light image_light(int width, int height, bool equal_area, const std::vector<float>& rgb) {
-  auto image = std::make_shared<EnvironmentImage>();
-  image->width = width;
-  image->height = height;
-  image->equal_area = equal_area;
-  image->rgb = rgb;
-  InfiniteLight model;
-  model.image = image;
-  return light_of(model);
-}
 
 std::vector<float> uneven_image(int texels) {
   std::mt19937 engine(5);
@@ -55,17 +26,6 @@ std::vector<float> uneven_image(int texels) {
     rgb.insert(rgb.end(), {grey, grey, grey});
   }
   return rgb;
-}
-
-/// Directions evenly spread over the sphere.
-std::vector<glm::dvec3> sphere_directions(std::size_t n) {
-  std::vector<glm::dvec3> directions;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n), r = std::sqrt(1 - z * z);
-    const double phi = static_cast<double>(i) * pi * (3 - std::sqrt(5.0));
-    directions.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
-  }
-  return directions;
 }
 
 class ImageLight : public testing::TestWithParam<bool> {};

@@ -14,6 +14,7 @@
 #include <random>
 
 #include "light_bench.h"
+#include "light_scenes.h"
 #include "support/chi_square.h"
 
 namespace caplet::test {
@@ -95,39 +96,14 @@ Sky uneven_sky(bool square) {
 const glm::dmat3 turned(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));  // columns: x -> y, y -> z, z -> x
 
 Light light_of(const Sky& sky) {
-  auto image = std::make_shared<EnvironmentImage>();
-  image->width = sky.width;
-  image->height = sky.height;
-  image->equal_area = sky.square;
-  for (const double value : sky.texels) image->rgb.insert(image->rgb.end(), 3, static_cast<float>(value));
-  InfiniteLight model;
-  model.image = image;
-  model.world_from_light = turned;
-  Light light;
-  light.model = model;
+  std::vector<float> rgb;
+  for (const double value : sky.texels) rgb.insert(rgb.end(), 3, static_cast<float>(value));
+  Light light = image_light(sky.width, sky.height, sky.square, rgb);
+  std::get<InfiniteLight>(light.model).world_from_light = turned;
   return light;
 }
 
-FlatScene lowered(const std::vector<Light>& lights) {
-  Scene scene;
-  scene.materials.emplace_back();
-  Shape small;
-  small.geometry = SphereShape{0.01};
-  small.world_from_object[3] = glm::dvec4(0, 0, -50, 1);
-  scene.shapes = {small};
-  scene.lights = lights;
-  return lower(scene);
-}
-
-std::vector<glm::dvec3> sphere_directions(std::size_t n) {
-  std::vector<glm::dvec3> directions;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n), r = std::sqrt(1 - z * z);
-    const double phi = static_cast<double>(i) * pi * (3 - std::sqrt(5.0));
-    directions.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
-  }
-  return directions;
-}
+FlatScene lowered(const std::vector<Light>& lights) { return lower(scene_with(lights)); }
 
 /// Radiance of white at the first wavelength of the bench.
 double white_radiance() {

@@ -17,6 +17,7 @@
 #include "render/query.h"
 #include "render_scene.h"
 #include "support/data.h"
+#include "support/rays.h"
 
 namespace caplet {
 namespace {
@@ -26,11 +27,6 @@ using glm::dvec3;
 dvec3 origin_of(const RayRecord& ray) { return {ray.ox, ray.oy, ray.oz}; }
 dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
 dvec3 to_dvec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-RayRecord to_record(const dvec3& o, const dvec3& d) {
-  return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,
-          static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), INFINITY};
-}
 
 Scene scene_file(const std::string& name) { return import_scene(test::source_folder() / name, FileImageReader()); }
 
@@ -46,7 +42,7 @@ std::vector<RayRecord> random_rays(const Scene& scene, std::size_t count, unsign
   std::vector<RayRecord> out;
   for (std::size_t i = 0; i < count; ++i) {
     const dvec3 o = center + in_cube() * radius * (i % 2 == 0 ? 2.0 : 0.2);
-    out.push_back(to_record(o, (center + in_cube() * radius * 0.2 - o) * std::exp2(3 * unit(random))));
+    out.push_back(test::make_ray(o, (center + in_cube() * radius * 0.2 - o) * std::exp2(3 * unit(random))));
   }
   return out;
 }
@@ -284,7 +280,7 @@ Scene scene_of_csg() {
 TEST(Query, CsgReportsItsOwnNameAndTheOperandsSurface) {
   const Scene scene = scene_of_csg();
   Query query(lower(scene), test::test_device());
-  const RayRecord down = to_record({0.1, 0, 5}, {0, 0, -2});
+  const RayRecord down = test::make_ray({0.1, 0, 5}, {0, 0, -2});
   const HitLists lists = query.all(std::span(&down, 1), 8);
   ASSERT_EQ(lists.crossings.size(), 3u);
   // The hollow is the second ball's lower half, seen from within; the first ball's lower half is left; then the floor, whose

@@ -46,9 +46,9 @@ TEST(Determinism, BatchSizesDoNotChangeBits) {
 }
 
 TEST(Determinism, ThreadsDoNotChangeBits) {
-  if (test_device().info().platform.find("Portable Computing Language") == std::string::npos ||
-      test_device().info().compute_units < 2)
-    GTEST_SKIP() << "needs PoCL on two or more processors";
+  CAPLET_NEEDS_POCL();
+  if (test_device().info().compute_units < 2)
+    GTEST_SKIP() << "needs two or more processors; " << test_device().info().name << " has one";
   const auto [one_unit, one] = digest("POCL_MAX_PTHREAD_COUNT=1");
   const auto [two_units, two] = digest("POCL_MAX_PTHREAD_COUNT=2");
   EXPECT_EQ(one_unit, 1);

@@ -16,6 +16,7 @@
 #include "render/known_rays.h"
 #include "render_scene.h"
 #include "support/data.h"
+#include "support/kinds.h"
 
 namespace caplet::test {
 namespace {
@@ -56,11 +57,9 @@ constexpr Trial rendering_basic{true, true, false, false};
 
 std::vector<std::string> names(bool basic_shapes) {
   if (basic_shapes) return {"sphere", "capsule", "tapered_capsule", "triangle", "disk", "instance"};
-  return {
-#define SHAPE(name, rows) #name,
-#include "shared/shapes.def"
-#undef SHAPE
-  };
+  std::vector<std::string> all;
+  for (const Kind& shape : all_shapes) all.emplace_back(shape.name);
+  return all;
 }
 
 TEST(KnownRays, AreOfEveryShape) {

@@ -3,7 +3,6 @@
 #include "render_scene.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 
@@ -12,15 +11,6 @@
 #include "support/data.h"
 
 namespace caplet::test {
-
-Device test_device(Encoding encoding) {
-  return Device::choose(std::getenv("CAPLET_TEST_DEVICE") ? std::getenv("CAPLET_TEST_DEVICE") : "", encoding);
-}
-
-const Device& test_device() {
-  static const Device device = test_device(Encoding::automatic);
-  return device;
-}
 
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options) {
   const FlatScene flat = lower(scene);

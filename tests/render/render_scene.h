@@ -11,13 +11,9 @@
 #include "render/render.h"
 #include "scene/scene.h"
 #include "support/compare.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
-
-/// The device that tests run on: $CAPLET_TEST_DEVICE, else the default choice.
-const Device& test_device();
-/// The same with another encoding.
-Device test_device(Encoding encoding);
 
 struct Rendered {
   LayeredImage image;

@@ -20,6 +20,7 @@
 #include "lower/camera.h"
 #include "lower/filter.h"
 #include "support/filters.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -76,7 +77,7 @@ __kernel void sums(__global const float* values, uint count, int unit, __global 
 )";
 
 struct Bench {
-  Device device = Device::choose("");
+  Device device = test_device();
   Program program = Program::from_source(device, "sampling_test", flatten_kernels(kernel_text), "");
 };
 Bench& bench() {

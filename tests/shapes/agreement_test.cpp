@@ -11,16 +11,12 @@
 #include <mutex>
 
 #include "judge.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
 
 constexpr std::uint32_t capacity = 24;
-
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
 
 struct Tally {
   std::mutex mutex;
@@ -54,7 +50,8 @@ TEST_P(Agreement, OfLists) {
   for (int part = 0; part < test_scale(); ++part) {
     CaseMaker maker(1000 + static_cast<std::uint32_t>(part));
     const CaseSet cases = maker.set(GetParam().shape, true, 400, 50);
-    const auto listed = Probe(device(), 8, cases.primitives, cases.leaves).list(cases.which, cases.rays, capacity);
+    const auto listed =
+        Probe(test_device(), test_width(), cases.primitives, cases.leaves).list(cases.which, cases.rays, capacity);
     tbb::parallel_for(std::size_t{0}, listed.size(), [&](std::size_t i) {
       const RayRecord& ray = cases.rays[i];
       check(make_case(cases.primitive(i), cases.witness(i), ray), listed[i], described(cases.primitive(i), ray), tally);
@@ -69,7 +66,7 @@ TEST_P(Agreement, OfListsUnderAffineMaps) {
     CaseMaker maker(5000 + static_cast<std::uint32_t>(part));
     const PlacedCases placed = placed_cases(maker.set(GetParam().shape, false, 400, 50), 7000 + static_cast<std::uint32_t>(part));
     const CaseSet& cases = placed.cases;
-    const auto listed = Probe(device(), 8, placed.placed, cases.leaves).list(cases.which, cases.rays, capacity);
+    const auto listed = Probe(test_device(), test_width(), placed.placed, cases.leaves).list(cases.which, cases.rays, capacity);
     tbb::parallel_for(std::size_t{0}, listed.size(), [&](std::size_t i) {
       const PlacedPrimitive& primitive = placed.placed[cases.which[i]];
       std::string where = described(primitive.primitive, cases.rays[i]) + "\nobject from world:";

@@ -33,25 +33,7 @@ dvec3 any_perpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
 }
 
-const ShapeKind kinds[] = {{shape_sphere, "sphere"},
-                           {shape_capsule, "capsule"},
-                           {shape_tapered_capsule, "tapered_capsule"},
-                           {shape_triangle, "triangle"},
-                           {shape_disk, "disk"},
-                           {shape_cylinder, "cylinder"},
-                           {shape_cone, "cone"},
-                           {shape_box, "box"},
-                           {shape_polyhedron, "polyhedron"},
-                           {shape_partial_sphere, "partial_sphere"},
-                           {shape_open_cylinder, "open_cylinder"},
-                           {shape_partial_disk, "partial_disk"},
-                           {shape_bilinear, "bilinear"},
-                           {shape_csg, "csg"}};
-
 }  // namespace
-
-void PrintTo(const ShapeKind& kind, std::ostream* out) { *out << kind.name; }
-std::span<const ShapeKind> shape_kinds() { return kinds; }
 
 void CaseSet::renew_witnesses() {
   for (std::size_t i = 0; i < primitives.size(); ++i) witnesses[i] = witness_of(primitives[i], leaves);
@@ -223,8 +205,25 @@ Shape CaseMaker::csg_shape(int depth) {
 
 FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
   const Frame at = frame(hard);
-  if (shape <= shape_disk) return basic(shape, hard, at);
-  return shape <= shape_box ? solid(shape, hard, at) : open(shape, hard, at);
+  switch (shape) {
+    case shape_sphere:
+    case shape_capsule:
+    case shape_tapered_capsule:
+    case shape_triangle:
+    case shape_disk:
+      return basic(shape, hard, at);
+    case shape_cylinder:
+    case shape_cone:
+    case shape_box:
+      return solid(shape, hard, at);
+    case shape_partial_sphere:
+    case shape_open_cylinder:
+    case shape_partial_disk:
+    case shape_bilinear:
+      return open(shape, hard, at);
+    default:
+      throw std::logic_error("no random cases for shape " + std::to_string(shape));
+  }
 }
 
 CsgShape placed_csg(CsgShape csg, const glm::dmat4& m) {
@@ -264,11 +263,6 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
     out.primitives.push_back(primitive(shape, hard));
   }
   out.witnesses.push_back(witness_of(out.primitives.back(), out.leaves));
-}
-
-int test_scale() {
-  const char* text = std::getenv("CAPLET_TEST_SCALE");
-  return text ? std::clamp(std::atoi(text), 1, 1000) : 1;
 }
 
 namespace {

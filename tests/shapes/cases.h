@@ -15,16 +15,10 @@
 
 #include "probe.h"
 #include "scene/scene.h"
+#include "support/kinds.h"
+#include "support/test_scale.h"
 
 namespace caplet::test {
-
-struct ShapeKind {
-  int shape;
-  const char* name;
-};
-void PrintTo(const ShapeKind& kind, std::ostream* out);
-/// Every kind that a ray can hit.
-std::span<const ShapeKind> shape_kinds();
 
 struct CaseSet {
   std::vector<FlatPrimitive> primitives;
@@ -82,9 +76,6 @@ class CaseMaker {
 
 /// The place and size go into the operands, as they do in lower.
 CsgShape placed_csg(CsgShape csg, const glm::dmat4& m);
-
-/// CAPLET_TEST_SCALE, 1 to 1000; 1 when it is not set.
-int test_scale();
 
 /// Where a primitive lies and how large it is.
 struct Extent {

@@ -223,7 +223,7 @@ std::vector<RayRecord> CsgMaker::rays(const Shape& shape, int count) {
         o = center + size * uniform(0.5, 2) * direction();
         d = aim - o;
     }
-    out.push_back(list_ray(o, d));
+    out.push_back(make_ray(o, d));
   }
   return out;
 }

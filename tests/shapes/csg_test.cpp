@@ -14,6 +14,8 @@
 
 #include "csg_cases.h"
 #include "reference/solver.h"
+#include "support/test_device.h"
+#include "support/test_scale.h"
 
 namespace caplet::test {
 namespace {
@@ -22,17 +24,6 @@ using glm::dmat4;
 using glm::dvec3;
 
 constexpr std::uint32_t capacity = 72;  // 32 solids have 64 crossings
-
-const ListTracer& tracer(int width) {
-  static const Device device = Device::choose("");
-  static const ListTracer wide(device, 8), scalar(device, 1);
-  return width == 8 ? wide : scalar;
-}
-
-int scale_of_test() {
-  const char* text = std::getenv("CAPLET_TEST_SCALE");
-  return text ? std::clamp(std::atoi(text), 1, 1000) : 1;
-}
 
 std::string text_of(const RayRecord& r) {
   return fmt::format("ray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
@@ -45,7 +36,7 @@ struct Counts {
 Counts check(const Shape& shape, std::span<const RayRecord> rays, int width, const std::string& what) {
   const reference::Primitive witness = witness_of_shape(shape);
   const CsgBound bound(shape);
-  const std::vector<RayList> lists = tracer(width).trace(flat_scene(shape), rays, capacity);
+  const std::vector<RayList> lists = list_tracer(width).trace(flat_scene(shape), rays, capacity);
   Counts counts;
   std::mutex mutex;
   tbb::parallel_for(std::size_t(0), rays.size(), [&](std::size_t i) {
@@ -71,7 +62,7 @@ void add(Counts& sum, const Counts& more) {
 void check_random(int width, int shapes, int rays, int depth, int most, bool affine, std::uint32_t seed) {
   CsgMaker maker(seed);
   Counts sum;
-  for (int i = 0; i < shapes * scale_of_test() && sum.failures < 20; ++i) {
+  for (int i = 0; i < shapes * test_scale() && sum.failures < 20; ++i) {
     Shape shape = *maker.csg(depth, most, affine);
     shape.world_from_object = maker.placement(maker.below(3) == 0 ? 100 : 1, affine) * shape.world_from_object;
     add(sum, check(shape, maker.rays(shape, rays), width, fmt::format("shape {}", i)));
@@ -91,8 +82,8 @@ TEST(Csg, OneAtATime) { check_random(1, 60, 200, 3, 16, true, 4); }
 
 // --- Identities ---
 
-std::vector<RayList> lists_of(const Shape& shape, std::span<const RayRecord> rays, int width = 8) {
-  return tracer(width).trace(flat_scene(shape), rays, capacity);
+std::vector<RayList> lists_of(const Shape& shape, std::span<const RayRecord> rays, int width = test_width()) {
+  return list_tracer(width).trace(flat_scene(shape), rays, capacity);
 }
 
 /// Both shapes are the same solid: the same crossings, to within the bounds of both at the surface; surfaces may be numbered
@@ -310,7 +301,7 @@ TEST(CsgTouching, FlushPocketHasNoSkin) {
       const dvec3 opening(maker.uniform(0.35, 0.65), maker.uniform(0.35, 0.65), 1);
       const dvec3 o = bottom + maker.uniform(1.5, 8) * (opening - bottom);
       const dvec3 from = dvec3(placed * glm::dvec4(o, 1)), to = dvec3(placed * glm::dvec4(bottom, 1));
-      rays.push_back(list_ray(from, to - from));
+      rays.push_back(make_ray(from, to - from));
     }
     const auto lists = lists_of(shape, rays);
     for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -327,7 +318,7 @@ TEST(Csg, ThinWallsAreKept) {
     const Shape shell = csg_shape(Operation::set_difference, {operand(SphereShape{1}), operand(SphereShape{1 - wall})});
     CsgMaker maker(41);
     std::vector<RayRecord> rays;
-    for (int k = 0; k < 500; ++k) rays.push_back(list_ray(3.0 * maker.direction(), dvec3(0)));
+    for (int k = 0; k < 500; ++k) rays.push_back(make_ray(3.0 * maker.direction(), dvec3(0)));
     for (RayRecord& r : rays) r.dx = -r.ox, r.dy = -r.oy, r.dz = -r.oz;
     for (const RayList& list : lists_of(shell, rays)) {
       ASSERT_EQ(list.hits.size(), 4u);
@@ -362,7 +353,7 @@ TEST(Csg, RaysFromTheSurfaceBeginOnTheirSide) {
         // cosine.
         if (!(reference::surface_at(witness, p).margin * std::abs(glm::dot(d, n)) > bound(p))) continue;
         const dvec3 o = p + (out ? 1.0 : -1.0) * double(s.error) * n;
-        RayRecord r = list_ray(o, d);
+        RayRecord r = make_ray(o, d);
         float* to[] = {&r.ox, &r.oy, &r.oz};
         for (int k = 0; k < 3; ++k) *to[k] = std::nextafter(*to[k], n[k] * (out ? 1 : -1) > 0 ? HUGE_VALF : -HUGE_VALF);
         next.push_back(r);

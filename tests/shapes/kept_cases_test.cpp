@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "probe.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -33,7 +34,7 @@ TEST_P(Kept, DeviceAndWitnessAgree) {
   const auto expected = reference::crossings(witness_of(kept.primitive), witness_ray(kept.ray));
   ASSERT_FALSE(expected.empty());
   for (const int width : {1, 8}) {
-    const Listed listed = Probe(Device::choose(""), width, {kept.primitive}).list({0}, {kept.ray}, 8)[0];
+    const Listed listed = Probe(test_device(), width, {kept.primitive}).list({0}, {kept.ray}, 8)[0];
     ASSERT_EQ(listed.all.size(), expected.size()) << "width " << width;
     for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_NEAR(listed.all[i].t, expected[i].t, 1e-4 * expected[i].t);  // grazing rays: a bound over a small cosine

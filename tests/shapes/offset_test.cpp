@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -26,7 +27,7 @@ __kernel void offsets(__global const float* in, __global float* out, uint count)
 // Every component is as far from p as error * n is, or further, on the side of the direction; and no more than a few roundings
 // further.
 TEST(OffsetOrigin, NeverLandsShort) {
-  const Device device = Device::choose("cpu");
+  const Device& device = test_device();
   const Program program = Program::from_source(device, "offset_test", flatten_kernels(kernel_text), "");
   constexpr std::uint32_t count = 20000;
   std::mt19937 engine(9);

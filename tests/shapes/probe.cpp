@@ -187,8 +187,11 @@ int length_count(const FlatPrimitive& p) {
       return 3;
     case shape_bilinear:
       return 12;
-    default:
+    case shape_polyhedron:
+    case shape_csg:
       return 0;
+    default:
+      throw std::logic_error("no count of lengths for this shape");
   }
 }
 
@@ -207,8 +210,14 @@ int coordinate_count(const FlatPrimitive& p) {
     case shape_cone:
     case shape_box:
       return 6;
-    default:
+    case shape_polyhedron:
+    case shape_partial_sphere:
+    case shape_open_cylinder:
+    case shape_partial_disk:
+    case shape_csg:
       return 0;
+    default:
+      throw std::logic_error("no count of coordinates for this shape");
   }
 }
 
@@ -365,11 +374,6 @@ std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const st
   for (std::size_t i = 0; i < from.size(); ++i)
     out.push_back({{origin_values[3 * i], origin_values[3 * i + 1], origin_values[3 * i + 2]}, hit_records[i]});
   return out;
-}
-
-RayRecord make_ray(const glm::dvec3& o, const glm::dvec3& d) {
-  return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,
-          static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
 }
 
 reference::Ray witness_ray(const RayRecord& r) { return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max}; }

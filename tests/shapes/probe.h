@@ -14,6 +14,7 @@
 #include "reference/primitive.h"
 #include "reference/solver.h"
 #include "shared/records.h"
+#include "support/rays.h"
 
 namespace caplet::test {
 
@@ -100,7 +101,6 @@ class Probe {
   std::vector<std::uint32_t> roots_;
 };
 
-RayRecord make_ray(const glm::dvec3& origin, const glm::dvec3& direction);
 reference::Ray witness_ray(const RayRecord& ray);
 
 }  // namespace caplet::test

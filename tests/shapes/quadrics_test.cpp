@@ -14,6 +14,7 @@
 
 #include "cases.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -23,11 +24,6 @@ using reference::Spool;
 
 constexpr double eps = 0x1p-24;
 constexpr float flat = CAPLET_CAP_FLAT, rounded = CAPLET_CAP_ROUND, open = CAPLET_CAP_OPEN;
-
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
 
 dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
@@ -145,7 +141,7 @@ class QuadricRims : public testing::TestWithParam<RimCase> {};
 // Closed solids: what the line enters deeper than the bound is hit, and every hit is a point of the surface. Returns how many
 // such rays there are.
 int expect_watertight(const Cases& cases, int width) {
-  const auto probed = Probe(device(), width, cases.primitives).trace(cases.which, cases.rays);
+  const auto probed = Probe(test_device(), width, cases.primitives).trace(cases.which, cases.rays);
   std::atomic<int> hits = 0, deep = 0, slipped = 0, off = 0;
   tbb::parallel_for(std::size_t{0}, probed.size(), [&](std::size_t i) {
     const FlatPrimitive& p = cases.primitives[cases.which[i]];
@@ -240,8 +236,8 @@ constexpr std::uint32_t any_surface = 0xffff;
 // surfaces meet (closer than the two crossings are to each other, and the bound) either may be named.
 template <class Name>
 void expect_same(const Cases& a, const std::vector<FlatPrimitive>& b, const Name& name) {
-  const auto first = Probe(device(), 8, a.primitives).trace(a.which, a.rays),
-             second = Probe(device(), 8, b).trace(a.which, a.rays);
+  const auto first = Probe(test_device(), test_width(), a.primitives).trace(a.which, a.rays),
+             second = Probe(test_device(), test_width(), b).trace(a.which, a.rays);
   int hits = 0, named = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const FlatPrimitive& p = a.primitives[a.which[i]];
@@ -318,7 +314,7 @@ TEST(QuadricRelations, EqualRadiiMakeACylinder) {
 // --- Ends ---
 
 Probed trace_one(const FlatPrimitive& p, const dvec3& o, const dvec3& d) {
-  return Probe(device(), 8, std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0];
+  return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0];
 }
 
 TEST(QuadricEnds, AreOpenFlatOrRound) {
@@ -418,7 +414,7 @@ TEST(QuadricParameters, DerivativesMatchDifferences) {
       rays.push_back(make_ray(o, d));
       beside.push_back(make_ray(o + step * maker.direction(), d));
     }
-  const Probe probe(device(), 8, primitives);
+  const Probe probe(test_device(), test_width(), primitives);
   const auto first = probe.trace(which, rays), second = probe.trace(which, beside);
   int checked[3] = {0, 0, 0};
   for (std::size_t i = 0; i < first.size(); ++i) {

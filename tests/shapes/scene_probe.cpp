@@ -6,6 +6,7 @@
 
 #include "device/flatten.h"
 #include "support/scene_buffers.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -74,11 +75,6 @@ __kernel void scene_walk(SCENE_PARAMETERS, __global const RayRecord* rays, __glo
 }
 )";
 
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
-
 }  // namespace
 
 Shape shape_of(decltype(Shape::geometry) geometry, const glm::dmat4& world_from_object) {
@@ -103,7 +99,7 @@ cl::Kernel kernel_of(const char* name, int width) {
   if (found == programs.end()) {
     const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
     found = programs
-                .emplace(width, Program::from_source(device(), "scene probe",
+                .emplace(width, Program::from_source(test_device(), "scene probe",
                                                      flatten_kernels(std::string(scene_parameters) + kernel_text), options))
                 .first;
   }
@@ -114,22 +110,22 @@ cl::Kernel kernel_of(const char* name, int width) {
 
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
   cl::Kernel kernel = kernel_of("scene_trace", width);
-  const Buffer<SceneHit> hits(device(), rays.size());
-  const SceneOnDevice buffers(device(), scene);
-  const auto ray_buffer = upload(device(), rays);
+  const Buffer<SceneHit> hits(test_device(), rays.size());
+  const SceneOnDevice buffers(test_device(), scene);
+  const auto ray_buffer = upload(test_device(), rays);
   buffers.set_arguments(kernel, ray_buffer, hits, static_cast<cl_uint>(rays.size()));
-  launch(device(), kernel, rays.size(), 16);
+  launch(test_device(), kernel, rays.size(), 16);
   return hits.read();
 }
 
 std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most) {
-  cl::Kernel kernel = kernel_of("scene_walk", 8);
-  const Buffer<WalkStep> steps(device(), rays.size() * most);
-  const Buffer<std::uint32_t> counts(device(), rays.size());
-  const SceneOnDevice buffers(device(), scene);
-  const auto ray_buffer = upload(device(), rays);
+  cl::Kernel kernel = kernel_of("scene_walk", test_width());
+  const Buffer<WalkStep> steps(test_device(), rays.size() * most);
+  const Buffer<std::uint32_t> counts(test_device(), rays.size());
+  const SceneOnDevice buffers(test_device(), scene);
+  const auto ray_buffer = upload(test_device(), rays);
   buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most), static_cast<cl_uint>(rays.size()));
-  launch(device(), kernel, rays.size(), 16);
+  launch(test_device(), kernel, rays.size(), 16);
   const std::vector<WalkStep> all = steps.read();
   const std::vector<std::uint32_t> found = counts.read();
   std::vector<Walk> out(rays.size());

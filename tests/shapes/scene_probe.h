@@ -10,6 +10,7 @@
 #include "device/device.h"
 #include "lower/lower.h"
 #include "scene/scene.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -35,7 +36,7 @@ Shape shape_of(decltype(Shape::geometry) geometry, const glm::dmat4& world_from_
 FlatScene lower_shapes(std::vector<Shape> shapes);
 
 /// `width`: CAPLET_REAL_WIDTH, 8 or 1.
-std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width = 8);
+std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width = test_width());
 
 /// A surface that a ray met on its way.
 struct WalkStep {

@@ -20,6 +20,8 @@
 #include "random_scene.h"
 #include "scene_probe.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
+#include "support/test_scale.h"
 #include "verify/verify.h"
 
 namespace caplet::test {
@@ -30,24 +32,13 @@ using glm::dvec3;
 
 constexpr std::uint32_t capacity = 200;
 
-const ListTracer& tracer(int width = 8) {
-  static const Device device = Device::choose("");
-  static const ListTracer wide(device, 8), scalar(device, 1);
-  return width == 8 ? wide : scalar;
-}
-
-int scale_of_test() {
-  const char* text = std::getenv("CAPLET_TEST_SCALE");
-  return text ? std::clamp(std::atoi(text), 1, 1000) : 1;
-}
-
 std::vector<RayRecord> random_rays(std::uint32_t seed, int count) {
   SceneMaker make(seed);
   std::vector<RayRecord> out;
   for (int i = 0; i < count; ++i) {
     const dvec3 o = make.uniform(0, 12) * make.direction();
     const dvec3 d = make.below(8) == 0 ? dvec3(0, 0, 1) : 5 * make.uniform(0, 1) * make.direction() - o;
-    out.push_back(list_ray(o, d * std::pow(10.0, make.uniform(-1, 1))));
+    out.push_back(make_ray(o, d * std::pow(10.0, make.uniform(-1, 1))));
   }
   return out;
 }
@@ -59,7 +50,7 @@ struct Tally {
 
 /// What is hit, where, in which order; of which object, primitive, surface and material; points, normals and uv.
 void compare(const Scene& scene, const std::vector<RayRecord>& rays, Tally& tally) {
-  static const std::vector<Device> devices{Device::choose("")};
+  static const std::vector<Device> devices{test_device()};
   std::mutex mutex;
   verify::SceneCheck check(scene, devices);
   check.check(rays, [&](const verify::SceneCheck::Checked& ray) {
@@ -87,7 +78,7 @@ void report(const Tally& tally) {
 
 TEST(Scenes, OfAllShapesAgreeWithTheWitness) {
   Tally tally;
-  for (int i = 0; i < 6 * scale_of_test(); ++i)
+  for (int i = 0; i < 6 * test_scale(); ++i)
     compare(random_scene(100 + static_cast<std::uint32_t>(i)), random_rays(200 + static_cast<std::uint32_t>(i), 2000), tally);
   report(tally);
   for (std::size_t k = 0; k < tally.kinds.size(); ++k) EXPECT_GT(tally.kinds[k], 200u) << reference::kind_names[k];
@@ -121,7 +112,8 @@ TEST(Scenes, AreTheSameForBothWidths) {
     const Scene scene = random_scene(300 + i);
     const FlatScene flat = lower(scene);
     const std::vector<RayRecord> rays = random_rays(400 + i, 2000);
-    const std::vector<RayList> wide = tracer(8).trace(flat, rays, capacity), scalar = tracer(1).trace(flat, rays, capacity);
+    const std::vector<RayList> wide = list_tracer(8).trace(flat, rays, capacity),
+                               scalar = list_tracer(1).trace(flat, rays, capacity);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       ++rays_compared;
       bool same = wide[k].hits.size() == scalar[k].hits.size() && wide[k].any == scalar[k].any;
@@ -144,7 +136,7 @@ TEST(Scenes, LimitsOfTheRay) {
   const Scene scene = random_scene(500);
   const FlatScene flat = lower(scene);
   const std::vector<RayRecord> rays = random_rays(501, 3000);
-  const std::vector<RayList> all = tracer().trace(flat, rays, capacity);
+  const std::vector<RayList> all = list_tracer().trace(flat, rays, capacity);
   std::vector<RayRecord> below = rays, at = rays, beyond = rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (all[i].hits.empty()) continue;
@@ -153,8 +145,8 @@ TEST(Scenes, LimitsOfTheRay) {
     at[i].t_max = std::nextafter(t, HUGE_VALF);  // just inside
     beyond[i].t_min = t;                         // those behind it
   }
-  const auto lists_below = tracer().trace(flat, below, capacity), lists_at = tracer().trace(flat, at, capacity),
-             lists_beyond = tracer().trace(flat, beyond, capacity);
+  const auto lists_below = list_tracer().trace(flat, below, capacity), lists_at = list_tracer().trace(flat, at, capacity),
+             lists_beyond = list_tracer().trace(flat, beyond, capacity);
   int counted = 0, odd = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (all[i].hits.empty()) continue;
@@ -207,8 +199,8 @@ TEST(Scenes, StretchedNeighboursAreInOrder) {
   }
   EXPECT_GT(misplaced, 5);  // the scene can tell
   for (const double speed : {1.0, 0.01, 300.0}) {
-    const std::vector<RayRecord> rays = {list_ray({0, 0, -1}, {0, 0, speed})};
-    const RayList list = tracer().trace(lower(scene), rays, capacity)[0];
+    const std::vector<RayRecord> rays = {make_ray({0, 0, -1}, {0, 0, speed})};
+    const RayList list = list_tracer().trace(lower(scene), rays, capacity)[0];
     ASSERT_EQ(list.hits.size(), expected.size());
     EXPECT_EQ(list.closest.t, list.hits[0].t);
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -218,8 +210,8 @@ TEST(Scenes, StretchedNeighboursAreInOrder) {
     // The nearest one from anywhere along the row.
     for (std::size_t i = 0; i + 1 < expected.size(); ++i) {
       const double start = 0.5 * (expected[i] + expected[i + 1]);
-      const std::vector<RayRecord> ray = {list_ray({0, 0, start}, {0, 0, speed})};
-      const RayList next = tracer().trace(lower(scene), ray, capacity)[0];
+      const std::vector<RayRecord> ray = {make_ray({0, 0, start}, {0, 0, speed})};
+      const RayList next = list_tracer().trace(lower(scene), ray, capacity)[0];
       ASSERT_FALSE(next.hits.empty());
       EXPECT_NEAR(double(next.closest.t) * speed, expected[i + 1] - start, 1e-5 * (expected[i + 1] + 1));
       EXPECT_EQ(next.hits.size(), expected.size() - i - 1);
@@ -259,15 +251,15 @@ TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
   std::vector<RayRecord> rays;
   for (int i = 0; i < 20'000; ++i) {
     const double far = std::pow(10.0, 13 + 4 * std::abs(coordinate(random)));
-    rays.push_back(list_ray(dvec3(far), dvec3(-far)));
-    rays.push_back(list_ray(far * dvec3(coordinate(random), coordinate(random), coordinate(random)), dvec3(0)));
+    rays.push_back(make_ray(dvec3(far), dvec3(-far)));
+    rays.push_back(make_ray(far * dvec3(coordinate(random), coordinate(random), coordinate(random)), dvec3(0)));
     rays.back().dx = -rays.back().ox;
     rays.back().dy = -rays.back().oy;
     rays.back().dz = -rays.back().oz;
   }
   for (const int width : {8, 1}) {
     int crossings = 0;
-    for (const RayList& list : tracer(width).trace(scene, rays, 8))
+    for (const RayList& list : list_tracer(width).trace(scene, rays, 8))
       for (const CrossingSurface& surface : list.surfaces) {
         ++crossings;
         // All corners are within 7 of the centre. A face's point is sought from within twice that in every coordinate, and within

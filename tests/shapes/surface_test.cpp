@@ -14,6 +14,7 @@
 
 #include "cases.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
@@ -22,11 +23,6 @@ using glm::dvec3;
 
 constexpr double eps = 0x1p-24;
 constexpr double two_pi = 6.283185307179586;
-
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
 
 dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
@@ -91,7 +87,7 @@ double bilinear_normal_limit(const reference::Bilinear& b, const dvec3& n, doubl
 TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
   CaseMaker maker(41);
   const CaseSet cases = maker.set(GetParam().shape, true, 1000 * test_scale(), 20);
-  const Probe probe(device(), 8, cases.primitives, cases.leaves);
+  const Probe probe(test_device(), test_width(), cases.primitives, cases.leaves);
   const auto probed = probe.trace(cases.which, cases.rays);
   double worst = 0;
   int hits = 0, normals = 0;
@@ -257,7 +253,7 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
 TEST_P(SurfacePoints, AreLeftForGood) {
   CaseMaker maker(42);
   const CaseSet cases = maker.set(GetParam().shape, true, 2000 * test_scale(), 50);
-  expect_clean_exits(Probe(device(), 8, cases.primitives, cases.leaves), cases, maker);
+  expect_clean_exits(Probe(test_device(), test_width(), cases.primitives, cases.leaves), cases, maker);
 }
 
 // --- Under affine transforms ---
@@ -266,7 +262,7 @@ TEST_P(SurfacePoints, AreLeftForGood) {
 TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
   CaseMaker maker(47);
   const CaseSet cases = maker.set(GetParam().shape, false, 100, 20);
-  Probe probe(device(), 8, cases.primitives, cases.leaves);
+  Probe probe(test_device(), test_width(), cases.primitives, cases.leaves);
   const auto plain = probe.trace(cases.which, cases.rays);
   probe.flags = CAPLET_GEOMETRY_FLIP_NORMAL;
   const auto turned = probe.trace(cases.which, cases.rays);
@@ -297,7 +293,7 @@ TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
 TEST_P(SurfacePoints, OfInstances) {
   CaseMaker maker(43);
   const PlacedCases placed = placed_cases(maker.set(GetParam().shape, false, 300, 60), 44);
-  const Probe probe(device(), 8, placed.placed, placed.cases.leaves);
+  const Probe probe(test_device(), test_width(), placed.placed, placed.cases.leaves);
   const auto probed = probe.trace(placed.cases.which, placed.cases.rays);
   int hits = 0;
   for (std::size_t i = 0; i < probed.size(); ++i) {
@@ -333,7 +329,7 @@ TEST_P(SurfacePoints, OfInstances) {
 TEST_P(SurfacePoints, DerivativesMatchDifferences) {
   CaseMaker maker(48);
   const CaseSet cases = maker.set(GetParam().shape, false, 200, 20);
-  const Probe probe(device(), 8, cases.primitives, cases.leaves);
+  const Probe probe(test_device(), test_width(), cases.primitives, cases.leaves);
   const auto here = probe.trace(cases.which, cases.rays);
   std::vector<std::uint32_t> which;
   std::vector<RayRecord> rays;
@@ -417,7 +413,7 @@ TEST(SurfaceParameters, MatchDifferences) {
                                  {make_tapered({0, 0, 0}, {4, 0, 0}, 2, 1), tapered},
                                  {make_disk({1, 2, 3}, {0.6f, 0, 0.8f}, 2), 2}};
   for (const Parametrised& shape : shapes) {
-    const Probe probe(device(), 8, std::vector<FlatPrimitive>{shape.primitive});
+    const Probe probe(test_device(), test_width(), std::vector<FlatPrimitive>{shape.primitive});
     CaseMaker maker(46);
     int checked = 0;
     for (int i = 0; i < 60; ++i) {
@@ -445,7 +441,7 @@ TEST(SurfaceParameters, MatchDifferences) {
 
 TEST(SurfaceParameters, PolesAndRims) {
   const auto hit = [](const FlatPrimitive& p, const dvec3& o, const dvec3& d) {
-    return Probe(device(), 8, std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0].surface;
+    return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0].surface;
   };
   const FlatPrimitive tapered = make_tapered({0, 0, 0}, {4, 0, 0}, 2, 1);
   EXPECT_NEAR(hit(tapered, {-9, 0, 0}, {1, 0, 0}).v, 0, 1e-6);
@@ -458,7 +454,7 @@ TEST(SurfaceParameters, PolesAndRims) {
 
 TEST(SurfaceParameters, Triangles) {
   const FlatPrimitive triangle = make_triangle({0, 0, 0}, {2, 0, 0}, {0, 4, 0});
-  Probe probe(device(), 8, std::vector<FlatPrimitive>{triangle});
+  Probe probe(test_device(), test_width(), std::vector<FlatPrimitive>{triangle});
   const std::vector<RayRecord> rays = {make_ray({0.5, 2, 1}, {0, 0, -1})};  // barycentric 1/4 1/4 1/2
   const SurfaceOut plain = probe.trace({0}, rays)[0].surface;
   EXPECT_NEAR(plain.u, 0.75, 1e-6);  // vertices at (0 0), (1 0), (1 1)

@@ -13,6 +13,7 @@
 #include "shared/kinds.h"
 #ifdef CAPLET_EMBREE
 #include "peer.h"
+#include "support/test_device.h"
 #endif
 
 namespace caplet::test {
@@ -73,7 +74,7 @@ Scores score(const Device& device, const FlatPrimitive& shape, const std::vector
   Scores out;
   const reference::Primitive witness = witness_of(shape);
   const std::vector<std::uint32_t> which(rays.size(), 0);
-  const auto listed = Probe(device, 8, std::vector<FlatPrimitive>{shape}).list(which, rays, 8);
+  const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{shape}).list(which, rays, 8);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Case c = make_case(shape, witness, rays[i]);
     out.ours.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, std::max(clear, c.bound));
@@ -191,8 +192,8 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
       out.text += rows(where + ", round ends", tube, radius);
       // Embree has no closed cylinder.
       const reference::Primitive witness = witness_of(cylinder);
-      const auto listed =
-          Probe(device, 8, std::vector<FlatPrimitive>{cylinder}).list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
+      const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{cylinder})
+                              .list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
       Score flat;
       for (std::size_t i = 0; i < list.size(); ++i) {
         const Case c = make_case(cylinder, witness, list[i]);
@@ -235,7 +236,8 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
       const double depth = touching ? std::pow(10.0, maker.uniform(-6, -1)) * radius : 0;
       list.push_back(make_ray(on - depth * n - maker.uniform(0, 10) * d, d));
     }
-    const auto listed = Probe(device, 8, std::vector<FlatPrimitive>{p}).list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
+    const auto listed =
+        Probe(device, test_width(), std::vector<FlatPrimitive>{p}).list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
 #ifdef CAPLET_EMBREE
     const auto hits = Peer(std::span(&p, 1), RTC_SCENE_FLAG_ROBUST).closest(list);
 #endif

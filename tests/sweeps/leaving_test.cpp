@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "shared/kinds.h"
+#include "support/test_device.h"
 #include "sweep.h"
 
 namespace caplet::test {
@@ -114,14 +115,9 @@ void check(const SweepCases& all, const Path& path, const Listed& listed, const 
   }
 }
 
-const Device& device() {
-  static const Device chosen = Device::choose("");
-  return chosen;
-}
-
 // Traces all rays, leaves every surface that they meet to either side, and traces on.
 void leave_all(const SweepCases& all, std::uint32_t seed, Tally& tally) {
-  const Probe probe(device(), 8, all.placed, all.cases.leaves);
+  const Probe probe(test_device(), test_width(), all.placed, all.cases.leaves);
   const auto probed = probe.trace(all.cases.which, all.cases.rays);
   CaseMaker maker(seed);
   std::vector<Side> sides;

@@ -13,6 +13,7 @@
 #include "lower/flat_shapes.h"
 #include "reference/from_scene.h"
 #include "shared/kinds.h"
+#include "support/test_device.h"
 
 namespace caplet::test {
 
@@ -340,7 +341,7 @@ SweepCases sweep_cases(int shape, AxisName axis, std::span<const double> values,
 std::vector<Cell> sweep(const Device& device, int shape, AxisName axis, std::span<const double> values, int rays,
                         std::uint32_t seed) {
   const SweepCases all = sweep_cases(shape, axis, values, rays, seed);
-  const auto listed = Probe(device, 8, all.placed, all.cases.leaves).list(all.cases.which, all.cases.rays, capacity);
+  const auto listed = Probe(device, test_width(), all.placed, all.cases.leaves).list(all.cases.which, all.cases.rays, capacity);
   std::vector<Measured> measured(listed.size());
   tbb::parallel_for(std::size_t{0}, listed.size(),
                     [&](std::size_t i) { measured[i] = measure(all.of(i), listed[i], all.radius[all.cases.which[i]]); });

@@ -6,6 +6,7 @@
 // times the rays.
 #include <gtest/gtest.h>
 
+#include "support/test_device.h"
 #include "sweep.h"
 
 namespace caplet::test {
@@ -14,10 +15,9 @@ namespace {
 class Sweeps : public testing::TestWithParam<ShapeKind> {};
 
 TEST_P(Sweeps, StayWithinTheBound) {
-  static const Device device = Device::choose("");
   for (const Axis& axis : axes()) {
     if (!has_axis(GetParam().shape, axis.name)) continue;
-    const auto cells = sweep(device, GetParam().shape, axis.name, axis.values, 300 * test_scale(), 1);
+    const auto cells = sweep(test_device(), GetParam().shape, axis.name, axis.values, 300 * test_scale(), 1);
     double worst = 0;
     std::uint64_t excused = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {

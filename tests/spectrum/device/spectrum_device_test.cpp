@@ -11,6 +11,7 @@
 #include "device/device.h"
 #include "lower/spectrum.h"
 #include "lower/spectrum_color.h"
+#include "support/test_device.h"
 
 namespace caplet {
 namespace {
@@ -54,7 +55,7 @@ __kernel void matrix(__global const ViewRecord* view, __global float* out) {
 class SpectrumOnDevice : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    device_ = std::make_unique<Device>(Device::choose(""));
+    device_ = std::make_unique<Device>(test::test_device());
     program_ = std::make_unique<Program>(Program::from_source(*device_, "spectrum_test", flatten_kernels(kernels), ""));
   }
   static void TearDownTestSuite() {

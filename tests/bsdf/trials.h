@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What each material of kernels/shared/materials.def brings to the tests that all of them pass: one function a material, in
+// NAME_trial.cpp. A row of the list without its function does not link.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "bsdf_device.h"
+#include "scene/scene.h"
+
+namespace caplet::test {
+
+/// f |cos wi| and its solid-angle density from elsewhere: a closed form or another renderer.
+struct KnownValue {
+  BsdfParameters bsdf;
+  Direction wo, wi;
+  double value, pdf;
+  double tolerance;  // relative, of both
+};
+
+struct BsdfTrial {
+  /// One that scatters over directions, and the polar angles of wo at which it is tried.
+  struct Case {
+    BsdfParameters bsdf;
+    std::vector<double> thetas;
+  };
+  std::vector<Case> cases;
+  /// Two whose densities differ by little: samples of the first are not of the second.
+  std::vector<std::array<BsdfParameters, 2>> unlike;
+  std::vector<KnownValue> values;
+  /// Of the scene, such that lowering it gives this kind.
+  Material model;
+  /// The most that f |cos wi| integrates to, and that a sample weighs.
+  double (*most)(const BsdfParameters& bsdf, bool inside);
+  /// Points along each side of a cell of the sphere (of 32 x 32) that resolve the density.
+  int (*steps)(const BsdfParameters& bsdf, double cos_theta);
+};
+
+/// The roughnesses along u and v that rough materials are tried at.
+inline constexpr std::array<std::array<float, 2>, 4> roughnesses = {{{0.05f, 0.05f}, {0.3f, 0.3f}, {0.8f, 0.8f}, {0.1f, 0.4f}}};
+
+/// A material of the list and its trial.
+struct MaterialOnTrial {
+  int kind;
+  std::string name;
+  BsdfTrial trial;
+};
+/// In the order of the list.
+const std::vector<MaterialOnTrial>& materials_on_trial();
+
+#define MATERIAL(name, ...) BsdfTrial name##_trial();
+#include "shared/materials.def"
+#undef MATERIAL
+
+}  // namespace caplet::test
