@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Sums that the order of adding cannot change: whole numbers of a unit, in two's complement of 64-bit words, least significant first
-// (docs/decisions/0008-exact-film.md).
+// (docs/decisions/0008-the-films-sums-are-exact.md).
 #ifndef CAPLET_MATH_EXACT_CL
 #define CAPLET_MATH_EXACT_CL
 
