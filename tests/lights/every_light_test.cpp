@@ -43,7 +43,7 @@ TEST_P(EveryLight, SamplesAreSoundAndGiveItsIrradiance) {
   const FlatScene flat = lower(trial.scene);
   ASSERT_EQ(flat.lights.size(), 1u);
   EXPECT_EQ(flat.lights[0].kind, static_cast<uint>(GetParam().number));
-  EXPECT_EQ(flat.params.sampled_light_count, trial.is_sampled ? 1u : 0u);
+  EXPECT_EQ(flat.lighting.sampled_light_count, trial.is_sampled ? 1u : 0u);
   LightBench bench(flat);
   constexpr std::size_t count = 100000;
   double mean = 0, squares = 0;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The stages' kernels and the buffers that they take.
+#include "render/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "support/test_device.h"
+
+namespace caplet::test {
+namespace {
+
+constexpr std::pair<Stage, const char*> stages[] = {
+#define STAGE(name, groups) {Stage::name, #name},
+#include "shared/queries.def"
+#include "shared/stages.def"
+#undef STAGE
+};
+
+TEST(Kernels, TakeWhatTheyUse) {
+  double sum = 0;
+  for (const auto& [stage, name] : stages) {
+    std::printf("%s takes %zu buffers\n", name, buffer_count(stage));
+    sum += static_cast<double>(buffer_count(stage));
+  }
+  EXPECT_LE(sum / std::size(stages), 14);
+  EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
+}
+
+// The driver's count of a kernel's arguments is the list's, and that of the work-items.
+TEST(Kernels, HaveTheArgumentsOfTheirGroups) {
+  for (const auto& [stage, name] : stages) {
+    const Program program = Program::from_source(test_device(), name, stage_source(stage), "-DCAPLET_REAL_WIDTH=1");
+    EXPECT_EQ(program.kernel(name).getInfo<CL_KERNEL_NUM_ARGS>(), buffer_count(stage) + 1) << name;
+  }
+}
+
+TEST(Kernels, WantTheBuffersOfTheirGroups) {
+  Kernels kernels(test_device(), "-DCAPLET_REAL_WIDTH=1");
+  EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // not compiled
+  kernels.compile(std::array{Stage::sort_prefix}, 1);
+  EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // no groups
+}
+
+}  // namespace
+}  // namespace caplet::test
