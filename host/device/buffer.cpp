@@ -47,6 +47,12 @@ void RawBuffer::read(void* to, std::size_t offset, std::size_t bytes) const {
           [&] { device_.queue().enqueueReadBuffer(buffer_, CL_TRUE, offset, bytes, to); });
 }
 
+void RawBuffer::clear() {
+  if (bytes_ == 0) return;
+  cl_call(fmt::format("clearing a buffer of {} bytes", bytes_), device_.info().name,
+          [&] { device_.queue().enqueueFillBuffer(buffer_, cl_uchar{0}, 0, bytes_); });
+}
+
 void RawBuffer::write(const void* from, std::size_t offset, std::size_t bytes) {
   if (bytes == 0) return;
   CHECK_LE_(offset, bytes_);

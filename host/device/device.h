@@ -103,6 +103,7 @@ class RawBuffer {
   RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents);
   void read(void* to, std::size_t offset, std::size_t bytes) const;     // blocking
   void write(const void* from, std::size_t offset, std::size_t bytes);  // blocking
+  void clear();                                                         // zeros, in the order of the queue
   std::size_t bytes() const { return bytes_; }
   const cl::Buffer& handle() const { return buffer_; }
 

@@ -18,7 +18,6 @@ namespace caplet {
 
 namespace {
 
-constexpr std::uint64_t no_number = std::numeric_limits<std::uint64_t>::max();
 constexpr const char* format_name = "caplet.film";
 constexpr const char* format_version = "1";
 
@@ -156,14 +155,8 @@ double value_of_words(const std::uint64_t* sum, int words, int unit) {
   return negative ? -value : value;
 }
 
-Film::Film(const FilmLayout& layout) : layout_(layout), words_per_pixel_(layout.words_per_pixel()) {
-  words_.resize(layout.window.pixels() * words_per_pixel_);
-  for (std::size_t i = 0; i < layer_rows.size(); ++i) {
-    const auto layer = static_cast<Layer>(i);
-    if (layer_rows[i].kind != LayerKind::id || !layout.layers.has(layer)) continue;
-    for (std::size_t at = layout.first_word(layer); at < words_.size(); at += words_per_pixel_) words_[at] = no_number;
-  }
-}
+Film::Film(const FilmLayout& layout)
+    : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(layout.window.pixels() * words_per_pixel_) {}
 
 Film::Film(const FilmLayout& layout, std::vector<std::uint64_t> words, std::vector<FilmPart> parts)
     : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(std::move(words)), parts_(std::move(parts)) {
@@ -178,7 +171,7 @@ double Film::sum(Layer layer, std::size_t c, std::size_t pixel) const {
 }
 
 std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
-  return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_ + layout_.first_word(layer)]);
+  return static_cast<std::uint32_t>(~words_[pixel * words_per_pixel_ + layout_.first_word(layer)]);
 }
 
 void Film::add(const Film& other) {
@@ -194,7 +187,7 @@ void Film::add(const Film& other) {
       if (!layout_.layers.has(static_cast<Layer>(i))) continue;
       for (int c = 0; c < row.count; ++c, to += row.words, from += row.words) {
         if (row.kind == LayerKind::id)
-          *to = std::min(*to, *from);
+          *to = std::max(*to, *from);
         else
           add_words(to, from, row.words);
       }

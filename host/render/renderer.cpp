@@ -89,13 +89,7 @@ void Renderer::reset(const FlatView& view) {
   }
   film_.layout = layout;
   film_.parts.clear();
-  // In pieces: a film is the largest thing there is.
-  FilmLayout piece = layout;
-  piece.window = {0, 0, static_cast<int>(std::min<std::size_t>(pixels, 1 << 14)), 1};
-  const Film empty(piece);
-  for (std::size_t first = 0; first < words; first += empty.words().size())
-    film_.words.RawBuffer::write(empty.words().data(), first * sizeof(ulong),
-                                 std::min(empty.words().size(), words - first) * sizeof(ulong));
+  film_.words.clear();
 }
 
 void Renderer::clear_counters() {
@@ -147,8 +141,7 @@ void Renderer::batch(const BatchRecord& record) {
   rays_.camera += record.path_count;
   std::array<uint, counter_count> counters{};
   for (std::size_t queued = record.path_count; queued > 0;) {
-    if (sorts)
-      scene_.device().queue().enqueueFillBuffer(paths_.sort.sort_bins.handle(), cl_uint{0}, 0, paths_.sort.sort_bins.bytes());
+    if (sorts) paths_.sort.sort_bins.clear();
     kernels.run(Stage::extend, bindings, queued);
     kernels.run(Stage::shade, bindings, queued);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);

@@ -79,7 +79,7 @@ static void stage_item(const Stage* g, uint item) {
     for (uint i = 0; i < batch->sample_count; ++i) {                                                                     \
       const uint path = item * batch->sample_count + i;                                                                  \
       const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]);                               \
-      *film = min(*film, ((ulong)(batch->sample_begin + i) << 32) | id);                                                 \
+      *film = max(*film, ~(((ulong)(batch->sample_begin + i) << 32) | id));                                                 \
     }                                                                                                                    \
     ++film;                                                                                                              \
     ++offset;                                                                                                            \

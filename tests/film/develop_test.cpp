@@ -55,9 +55,8 @@ Film film_of(const std::vector<Pixel>& pixels, Size size) {
       test::set_sum(film, Layer::normal, c, i, p.normal[c]);
       test::set_sum(film, Layer::position, c, i, p.position[c]);
     }
-    if (p.samples == 0) continue;
-    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::object)] = p.object;
-    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::primitive)] = p.primitive;
+    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::object)] = ~std::uint64_t{p.object};
+    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::primitive)] = ~std::uint64_t{p.primitive};
   }
   return film;
 }

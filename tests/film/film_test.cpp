@@ -42,15 +42,15 @@ FilmLayout layout_of(int width, int height, Layers layers = Layers::all()) {
 /// Whole numbers that a double holds, of either sign, as the sums of every layer; numbers of sample `begin`.
 Film random_film(const FilmLayout& layout, std::uint32_t seed, std::uint32_t begin, std::uint32_t samples) {
   std::mt19937 random(seed);
-  Film empty(layout);
-  Film film(layout, {empty.words().begin(), empty.words().end()}, {{layout.window, begin, samples}});
+  Film film(layout, std::vector<std::uint64_t>(layout.window.pixels() * layout.words_per_pixel()),
+            {{layout.window, begin, samples}});
   for (std::size_t i = 0; i < layout.window.pixels(); ++i) {
     film.words()[i * layout.words_per_pixel()] = samples;
     for (std::size_t l = 0; l < layer_rows.size(); ++l) {
       const auto layer = static_cast<Layer>(l);
       if (!layout.layers.has(layer)) continue;
       if (layer_rows[l].kind == LayerKind::id) {
-        film.words()[i * layout.words_per_pixel() + layout.first_word(layer)] = (std::uint64_t{begin} << 32) | random();
+        film.words()[i * layout.words_per_pixel() + layout.first_word(layer)] = ~((std::uint64_t{begin} << 32) | random());
         continue;
       }
       for (std::size_t c = 0; c < static_cast<std::size_t>(layer_rows[l].count); ++c)
