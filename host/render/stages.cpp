@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "render/stages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -9,6 +11,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "render/known_rays.h"
 
 namespace caplet {
 
@@ -71,9 +74,8 @@ std::span<const T> contents(const T& value) {
 std::span<const Stage> render_stages() { return stages_of_a_render; }
 
 std::string stage_options(const FlatScene& scene, const Device& device) {
-  std::string options = device.encoding() == Encoding::wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
-  if (scene.basic_shapes()) options += " -DCAPLET_BASIC_SHAPES";
-  return options;
+  return fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}",
+                     device.encoding() == Encoding::wide ? 8 : 1, shapes_on_trial(scene.shapes), scene.leaf_kind_bits);
 }
 
 Stages::Stages(const Device& device, const FlatScene& scene, const StateSize& size, const std::string& options)

@@ -14,6 +14,7 @@
 #include <ostream>
 
 #include "lower/flat_shapes.h"
+#include "lower/shapes.h"
 #include "reference/from_scene.h"
 #include "shared/kinds.h"
 
@@ -33,20 +34,12 @@ dvec3 any_perpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
 }
 
-const ShapeKind kinds[] = {{shape_sphere, "sphere"},
-                           {shape_capsule, "capsule"},
-                           {shape_tapered_capsule, "tapered_capsule"},
-                           {shape_triangle, "triangle"},
-                           {shape_disk, "disk"},
-                           {shape_cylinder, "cylinder"},
-                           {shape_cone, "cone"},
-                           {shape_box, "box"},
-                           {shape_polyhedron, "polyhedron"},
-                           {shape_partial_sphere, "partial_sphere"},
-                           {shape_open_cylinder, "open_cylinder"},
-                           {shape_partial_disk, "partial_disk"},
-                           {shape_bilinear, "bilinear"},
-                           {shape_csg, "csg"}};
+const ShapeKind kinds[] = {
+#define SHAPE(name, traits) {shape_##name, #name},
+#define COMPOUND(name, traits)
+#include "shared/shapes.def"
+#undef SHAPE
+    {shape_csg, "csg"}};
 
 }  // namespace
 

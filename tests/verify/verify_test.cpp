@@ -32,7 +32,7 @@ const std::vector<Device>& devices() {
 
 TEST(KindNames, AreThoseOfTheList) {
   const std::vector<std::string> listed = {
-#define SHAPE(name, rows) #name,
+#define SHAPE(name, traits) #name,
 #include "shared/shapes.def"
 #undef SHAPE
   };
