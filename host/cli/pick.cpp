@@ -183,7 +183,7 @@ void run_pick(const Options& options, bool has_limit) {
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
   const FlatScene flat = lower(scene);
-  try_device_apart(device, {.basic_shapes = flat.basic_shapes(), .nearest = !options.all, .lists = options.all});
+  try_device_apart(device, {.shapes = flat.shapes, .nearest = !options.all, .lists = options.all});
   SecondTry::guard(device);
   if (rays)
     pick_many(options, scene, flat, *rays, out, device);

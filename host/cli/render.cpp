@@ -190,7 +190,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
-  try_device_apart(device, {.basic_shapes = flat.basic_shapes(), .render = true});
+  try_device_apart(device, {.shapes = flat.shapes, .render = true});
   SecondTry::guard(device);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,

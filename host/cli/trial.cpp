@@ -37,7 +37,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
   log::info("testing {} once, and compiling for it", device.info().name);
   std::vector<std::string> words{
       "caplet", "try-device", "--device", std::to_string(device.info().index), "--encoding", name_of(device.encoding())};
-  if (trial.basic_shapes) words.push_back("--basic-shapes");
+  words.push_back(fmt::format("--shapes={}", trial.shapes));
   if (trial.render) words.push_back("--render");
   if (trial.nearest) words.push_back("--nearest");
   if (trial.lists) words.push_back("--lists");
@@ -81,7 +81,7 @@ void add_try_device(CLI::App& app) {
   command->group("");
   command->add_option("--device", o->device);
   add_encoding(*command, o->encoding);
-  command->add_flag("--basic-shapes", o->trial.basic_shapes);
+  command->add_option("--shapes", o->trial.shapes);
   command->add_flag("--render", o->trial.render);
   command->add_flag("--nearest", o->trial.nearest);
   command->add_flag("--lists", o->trial.lists);

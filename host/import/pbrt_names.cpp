@@ -33,8 +33,11 @@ const std::vector<NameTable>& name_tables() {
       {"PixelFilter", {"box", "gaussian", "mitchell", "triangle"}, {"sinc"}},
       {"Sampler", {"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, {}},
       {"Shape",
-       {"bilinearmesh", "box", "capsule", "capsules", "cone", "csg", "curve", "cylinder", "disk", "plymesh", "polyhedron",
-        "sphere", "trianglemesh"},
+       {
+#define SHAPE_TYPE(name, make) #name,
+#include "import/pbrt_shape_types.def"
+#undef SHAPE_TYPE
+       },
        {"loopsubdiv"}},
       {"Texture",
        {"constant", "mix", "scale"},

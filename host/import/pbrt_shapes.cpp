@@ -3,6 +3,7 @@
 #include "import/pbrt_shapes.h"
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "import/capsules.h"
 #include "import/pbrt_geometry.h"
@@ -49,19 +50,11 @@ Geometry make_capsules(Parameters& parameters, const MaterialIndex& material_ind
 
 Geometry make_geometry(const std::string& type, Parameters& parameters, const MaterialIndex& material_or_default,
                        const ShapeContext& context) {
-  if (type == "sphere") return make_sphere(parameters);
-  if (type == "disk") return make_disk(parameters);
-  if (type == "capsule") return make_capsule(parameters);
-  if (type == "cylinder") return make_cylinder(parameters);
-  if (type == "cone") return make_cone(parameters);
-  if (type == "box") return make_box(parameters);
-  if (type == "polyhedron") return make_polyhedron(parameters);
-  if (type == "trianglemesh") return make_triangle_mesh(parameters);
-  if (type == "bilinearmesh") return make_bilinear_mesh(parameters);
-  if (type == "curve") return make_curve(parameters);
-  if (type == "csg") return make_csg(parameters, context.objects);
-  if (type == "plymesh") return make_ply_mesh(parameters);
-  return make_capsules(parameters, material_or_default);
+#define SHAPE_TYPE(name, make) \
+  if (type == #name) return make;
+#include "import/pbrt_shape_types.def"
+#undef SHAPE_TYPE
+  throw std::logic_error("pbrt_names knows a type of shape that the list does not");
 }
 
 /// "string materials": one name a surface.

@@ -14,95 +14,39 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "bvh/bvh.h"
-#include "shared/kinds.h"
+#include "lower/shapes.h"
 
 namespace caplet {
 namespace {
 
 static_assert(bvh::max_depth == CAPLET_TREE_DEPTH_MAX);
 static_assert(bvh::width == CAPLET_WIDTH);
-static_assert(shape_count <= 16, "a leaf reference has four bits for the shape");
+static_assert(shape_count <= 64, "sets of shapes, and six bits of leaf references, hold 64 kinds");
 
-constexpr std::array<std::uint32_t, shape_count> rows_of = {
-#define SHAPE(name, rows) rows,
-#include "shared/shapes.def"
-#undef SHAPE
-};
-
-constexpr std::uint64_t max_rows = std::uint64_t(CAPLET_LEAF_ROW_MASK) + 1;
+constexpr std::uint64_t max_rows(int kind_bits) { return std::uint64_t(1) << (31 - kind_bits); }
 constexpr std::uint64_t max_nodes = std::uint64_t(1) << 31;
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-/// Centre and half extent of the exact box, in double.
-struct ExactBox {
-  std::array<double, 3> min{}, max{};
-};
+ExactBox kept_box(const FlatPrimitive& p) {
+  ExactBox box;
+  std::copy_n(p.kept_box(), 3, box.min.begin());
+  std::copy_n(p.kept_box() + 3, 3, box.max.begin());
+  return box;
+}
 
 ExactBox exact_box(const FlatPrimitive& p) {
-  ExactBox box;
-  for (std::size_t k = 0; k < 3; k++) {
-    const double a = double(p.data[k]), b = double(p.data[3 + k]), c = double(p.data[6 + k]);
-    switch (p.shape) {
-      case shape_sphere:
-        box.min[k] = a - double(p.data[3]);
-        box.max[k] = a + double(p.data[3]);
-        break;
-      case shape_capsule:
-      case shape_tapered_capsule: {
-        const double r0 = double(p.data[6]), r1 = p.shape == shape_capsule ? r0 : double(p.data[7]);
-        box.min[k] = std::min(a - r0, b - r1);
-        box.max[k] = std::max(a + r0, b + r1);
-        break;
-      }
-      case shape_triangle:
-        box.min[k] = std::min({a, b, c});
-        box.max[k] = std::max({a, b, c});
-        break;
-      case shape_disk: {
-        const double across = double(p.data[6]) * std::sqrt(std::max(0.0, 1 - b * b));
-        box.min[k] = a - across;
-        box.max[k] = a + across;
-        break;
-      }
-      case shape_cylinder:
-      case shape_cone: {
-        // A flat end is a disk across the axis.
-        const bool cylinder = p.shape == shape_cylinder;
-        const double axis[3] = {double(p.data[3]) - double(p.data[0]), double(p.data[4]) - double(p.data[1]),
-                                double(p.data[5]) - double(p.data[2])};
-        const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
-        const double across = squared > 0 ? std::sqrt(std::max(0.0, 1 - axis[k] * axis[k] / squared)) : 1;
-        const double r0 = double(p.data[6]), r1 = cylinder ? r0 : double(p.data[7]);
-        const double half0 = r0 * (p.data[cylinder ? 7 : 8] == CAPLET_CAP_ROUND ? 1 : across);
-        const double half1 = r1 * (p.data[cylinder ? 8 : 9] == CAPLET_CAP_ROUND ? 1 : across);
-        box.min[k] = std::min(a - half0, b - half1);
-        box.max[k] = std::max(a + half0, b + half1);
-        break;
-      }
-      case shape_polyhedron:
-      case shape_csg:
-        box.min[k] = b;
-        box.max[k] = c;
-        break;
-      case shape_partial_sphere:
-      case shape_open_cylinder:
-        box.min[k] = k == 2 ? double(p.data[1]) : -double(p.data[0]);
-        box.max[k] = k == 2 ? double(p.data[2]) : double(p.data[0]);
-        break;
-      case shape_partial_disk:
-        box.min[k] = k == 2 ? double(p.data[0]) : -double(p.data[1]);
-        box.max[k] = k == 2 ? double(p.data[0]) : double(p.data[1]);
-        break;
-      case shape_bilinear:
-        box.min[k] = std::min({a, b, c, double(p.data[9 + k])});
-        box.max[k] = std::max({a, b, c, double(p.data[9 + k])});
-        break;
-      default:
-        box.min[k] = a;
-        box.max[k] = b;
-    }
+  switch (p.shape) {
+#define SHAPE(name, traits)                                             \
+  case shape_##name:                                                    \
+    if constexpr (((traits)&trait_kept_box) == 0) return name##_box(p); \
+    break;
+#define COMPOUND(name, traits)
+#include "shared/shapes.def"
+#undef SHAPE
+    default:
+      break;
   }
-  return box;
+  return kept_box(p);
 }
 
 /// The box of every point the shape kernels may report for rays from nearby: their error is at most 16 eps (size + coordinates),
@@ -132,14 +76,20 @@ bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
 std::uint64_t least_rows(std::span<const std::uint64_t> counts) {
   CHECK_EQ_(counts.size(), std::size_t(shape_count));
   std::uint64_t rows = 0;
-  for (std::size_t s = 0; s < counts.size(); s++) rows += (counts[s] + 7) / 8 * rows_of[s];
+  for (std::size_t s = 0; s < counts.size(); s++) rows += (counts[s] + 7) / 8 * rows_of(static_cast<std::uint32_t>(s));
   return rows;
 }
 
-void check_tree_limits(std::uint64_t rows, std::uint64_t nodes) {
-  if (rows > max_rows)
+int leaf_kind_bits(std::uint64_t shapes) {
+  const auto highest = static_cast<unsigned>(std::bit_width(shapes | 1) - 1);
+  return std::max(4, static_cast<int>(std::bit_width(highest)));
+}
+
+void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits) {
+  const std::uint64_t most = max_rows(kind_bits);
+  if (rows > most)
     throw InputError(fmt::format("the scene needs {} rows of primitives, the layout holds {}: about {} million capsules", rows,
-                                 max_rows, max_rows / 8 * 6 / 1000000));
+                                 most, most / 8 * 6 / 1000000));
   if (nodes > max_nodes) throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
 }
 
@@ -149,15 +99,17 @@ void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
   std::copy(box.max.begin(), box.max.end(), max);
 }
 
-EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves) {
+EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves,
+                        int kind_bits) {
   // Rows at the very least, before anything is allocated.
   const std::uint64_t node_base = nodes.size() / CAPLET_NODE_FLOATS, row_base = leaves.size() / 8;
   std::array<std::uint64_t, shape_count> counts{};
   for (const FlatPrimitive& p : primitives) {
     CHECK_LT_(p.shape, std::uint32_t(shape_count));
+    CHECK_LT_(p.shape >> kind_bits, 1u);
     counts[p.shape]++;
   }
-  check_tree_limits(row_base + least_rows(counts), node_base + 1);
+  check_tree_limits(row_base + least_rows(counts), node_base + 1, kind_bits);
 
   std::vector<bvh::Reference> references(primitives.size());
   tbb::parallel_for(std::size_t(0), primitives.size(),
@@ -168,10 +120,10 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   std::vector<std::uint32_t> row_of(tree.leaves.size());
   std::uint64_t rows = row_base;
   for (std::size_t i = 0; i < tree.leaves.size(); i++) {
-    row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows));
-    rows += rows_of[tree.leaves[i].group];
+    row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows(kind_bits)));
+    rows += rows_of(tree.leaves[i].group);
   }
-  check_tree_limits(rows, node_base + tree.nodes.size());
+  check_tree_limits(rows, node_base + tree.nodes.size(), kind_bits);
 
   EncodedTree out;
   out.root = narrow<std::uint32_t>(node_base);
@@ -198,7 +150,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
       std::uint32_t child = static_cast<std::uint32_t>(from.child[i]);
       if (from.child[i] < 0) {
         const std::uint32_t leaf = ~child;
-        child = 0x80000000u | (tree.leaves[leaf].group << CAPLET_LEAF_ROW_BITS) | row_of[leaf];
+        child = 0x80000000u | (tree.leaves[leaf].group << (31 - kind_bits)) | row_of[leaf];
       } else if (from.child[i] != 0x7fffffff) {
         child += out.root;
       }
@@ -211,7 +163,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   tbb::parallel_for(std::size_t(0), tree.leaves.size(), [&](std::size_t l) {
     const bvh::Leaf& leaf = tree.leaves[l];
     float* block = &leaves[std::size_t(row_of[l]) * 8];
-    const std::uint32_t data_rows = rows_of[leaf.group] - 1;
+    const std::uint32_t data_rows = data_of[leaf.group];
     for (std::uint32_t lane = 0; lane < 8; lane++) {
       // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
       const std::uint32_t index = tree.order[leaf.first + (lane < leaf.count ? lane : 0)];

@@ -8,15 +8,22 @@
 #include <span>
 #include <vector>
 
+#include "shared/shapes.h"
+
 namespace caplet {
 
-/// One primitive: data as the data rows of shapes.def, in the space of its tree. Instances carry their box (min 3, max 3) in
-/// data[0..5], polyhedra and csg shapes in data[3..8].
+/// One primitive: its fields (shapes.def: p.data[capsule_at_r], capsule_r(p.data)), in the space of its tree. Kinds with
+/// trait_kept_box have their box (min 3, max 3) behind them.
 struct FlatPrimitive {
   std::uint32_t shape;
   std::uint32_t id;  // global primitive id; for instances the index into FlatScene::instances
   float data[12];
+  const float* kept_box() const { return data + data_of[shape]; }
+  float* kept_box() { return data + data_of[shape]; }
 };
+#define SHAPE(name, traits) static_assert(name##_data + ((traits)&trait_kept_box ? 6 : 0) <= 12, "FlatPrimitive holds a " #name);
+#include "shared/shapes.def"
+#undef SHAPE
 
 struct EncodedTree {
   std::uint32_t root = 0;            // node index
@@ -32,13 +39,17 @@ void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
 
 /// Rows of leaf blocks that so many primitives of each kind (shapes.def) take at the very least.
 std::uint64_t least_rows(std::span<const std::uint64_t> counts);
-/// Throws InputError when there are more rows of leaf blocks or nodes than references have bits for: 2^27 rows, some 100 million
-/// capsules, and 2^31 nodes.
-void check_tree_limits(std::uint64_t rows, std::uint64_t nodes);
+/// Bits that leaf references need for these kinds (bit k: shape kind k), the program option CAPLET_LEAF_KIND_BITS: 4, and more
+/// where there are kinds from 16 up.
+int leaf_kind_bits(std::uint64_t shapes);
+/// Throws InputError when there are more rows of leaf blocks or nodes than references have bits for: with 4 bits for the kind
+/// 2^27 rows, some 100 million capsules, and 2^31 nodes.
+void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits);
 
 /// Builds the tree over `primitives` (at least one) and appends nodes and leaf blocks. Boxes are conservative: they hold every
 /// point the shape kernels may report, their rounding included. Throws InputError when rows or nodes exceed the layout, before
-/// allocating.
-EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves);
+/// allocating. `kind_bits`: see leaf_kind_bits; all trees of a scene have the same.
+EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves,
+                        int kind_bits = CAPLET_LEAF_KIND_BITS);
 
 }  // namespace caplet

@@ -21,21 +21,9 @@ bool bakes(const Shape& shape);
 glm::dvec3 apply_point(const glm::dmat4& m, const glm::dvec3& p);
 
 /// GeometryRecord.uv_space of a shape baked under `m`, appended to `leaves`; CAPLET_NONE where its uv does without.
-std::uint32_t append_uv_space(const decltype(Shape::geometry)& geometry, const glm::dmat4& m, std::vector<float>& leaves);
+std::uint32_t append_uv_space(const Geometry& geometry, const glm::dmat4& m, std::vector<float>& leaves);
 
 /// Writes v to p.data[at .. at + 2].
 void put(FlatPrimitive& p, int at, const glm::dvec3& v);
-
-/// Shapes of one primitive under `m` (which bakes); id is left 0. Data of no fixed size are appended to `leaves`.
-FlatPrimitive flat_primitive(const SphereShape& sphere, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const DiskShape& disk, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const CylinderShape& cylinder, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const ConeShape& cone, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const BoxShape& box, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const PartialSphereShape& sphere, const glm::dmat4& m, std::vector<float>& leaves);
-FlatPrimitive flat_primitive(const OpenCylinderShape& cylinder, const glm::dmat4& m, std::vector<float>& leaves);
-/// Any m: operands hold their own transforms. In csg.cpp.
-FlatPrimitive flat_primitive(const CsgShape& csg, const glm::dmat4& m, std::vector<float>& leaves);
 
 }  // namespace caplet

@@ -17,6 +17,7 @@
 #include "lower/area.h"
 #include "lower/encode.h"
 #include "lower/flat_shapes.h"
+#include "lower/shapes.h"
 
 namespace caplet {
 
@@ -84,6 +85,7 @@ class GeometryLowering {
     auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
     for (const Object& object : scene_.objects) objects.push_back(lower_shapes(object.shapes, object_number));
 
+    find_shapes(world, objects);
     Part& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
       encode(world[i]);
@@ -135,7 +137,23 @@ class GeometryLowering {
     for (const Shape& shape : scene_.shapes) add(shape);
     for (const Object& object : scene_.objects)
       for (const Shape& shape : object.shapes) add(shape);
-    check_tree_limits(least_rows(counts), 0);
+    check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
+  }
+
+  /// FlatScene::shapes: every kind that is to be encoded, and those within csg shapes.
+  void find_shapes(const std::vector<Part>& world, const std::vector<std::vector<Part>>& objects) {
+    out_.shapes = 0;
+    const auto add = [&](const std::vector<Part>& parts) {
+      for (const Part& part : parts)
+        for (const FlatPrimitive& p : part.primitives) {
+          out_.shapes |= shape_bit(p.shape);
+          if (p.shape == shape_csg) out_.shapes |= csg_operand_shapes(p, out_.leaves);
+        }
+    };
+    add(world);
+    for (const std::vector<Part>& parts : objects) add(parts);
+    if (world.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
   }
 
   /// One part for what is baked into the shapes' common space, then one for each transform that cannot be.
@@ -259,8 +277,8 @@ class GeometryLowering {
     const bool identity = m == Matrix(1);
     reserve_more(part.primitives, capsules.p0.size());
     for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
-      const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
-      const int kind = capsules.p0[i] == capsules.p1[i] ? shape_sphere : r0 == r1 ? shape_capsule : shape_tapered_capsule;
+      const FlatPrimitive flat = flat_capsule(capsules, i, identity ? nullptr : &m, scale);
+      const int kind = static_cast<int>(flat.shape);
       const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
       const auto [found, fresh] = geometry_of.try_emplace({kind, material}, 0);
       if (fresh) {
@@ -269,15 +287,7 @@ class GeometryLowering {
         found->second = add_geometry(own, kind);
       }
       FlatPrimitive& p = add_primitive(part, kind, found->second);
-      const auto point = [&](const glm::vec3& v) { return identity ? dvec3(v) : apply_point(m, dvec3(v)); };
-      put(p, 0, point(capsules.p0[i]));
-      if (kind == shape_sphere) {
-        p.data[3] = static_cast<float>(std::max(r0, r1) * scale);
-      } else {
-        put(p, 3, point(capsules.p1[i]));
-        p.data[6] = static_cast<float>(r0 * scale);
-        if (kind == shape_tapered_capsule) p.data[7] = static_cast<float>(r1 * scale);
-      }
+      std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
     }
   }
 
@@ -327,7 +337,7 @@ class GeometryLowering {
       FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
       for (std::size_t k = 0; k < 3; ++k) {
         out_.mesh_indices.push_back(triangle[k]);
-        put(p, static_cast<int>(3 * k), dvec3(moved[triangle[k]]));
+        put(p, triangle_at_v0 + static_cast<int>(3 * k), dvec3(moved[triangle[k]]));
       }
     }
   }
@@ -364,13 +374,13 @@ class GeometryLowering {
       FlatPrimitive& p = add_primitive(part, shape_bilinear, geometry);
       for (std::size_t k = 0; k < 4; ++k) {
         out_.mesh_indices.push_back(patch[k]);
-        put(p, static_cast<int>(3 * k), corner(patch, k));
+        put(p, bilinear_at_p00 + static_cast<int>(3 * k), corner(patch, k));
       }
     }
   }
 
   void encode(Part& part) {
-    part.tree = encode_tree(part.primitives, out_.nodes, out_.leaves);
+    part.tree = encode_tree(part.primitives, out_.nodes, out_.leaves, kind_bits_);
     out_.bvh_nodes += part.tree.nodes;
     out_.bvh_depth = std::max(out_.bvh_depth, part.tree.depth);
   }
@@ -397,8 +407,8 @@ class GeometryLowering {
     // ample.
     const double slack = 32 * 0x1p-24 * largest;
     for (int k = 0; k < 3; ++k) {
-      p.data[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
-      p.data[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
+      p.kept_box()[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
+      p.kept_box()[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
     }
     placed_.push_back({&part, index, world_from_part});
   }
@@ -463,10 +473,9 @@ class GeometryLowering {
 
   /// The ball around the image of the primitive's box, for kinds that are sampled by it.
   static void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
-    constexpr int own_sampler[] = {shape_sphere,   shape_capsule, shape_tapered_capsule,
-                                   shape_triangle, shape_disk,    shape_cylinder};
-    emitter.by_ball = std::ranges::find(own_sampler, static_cast<int>(p.shape)) == std::end(own_sampler) ||
-                      (p.shape == shape_cylinder && (p.data[7] == CAPLET_CAP_ROUND || p.data[8] == CAPLET_CAP_ROUND));
+    const bool has_round_end =
+        p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
+    emitter.by_ball = !shape_has(p.shape, trait_own_light) || has_round_end;
     if (!emitter.by_ball) return;
     double low[3], high[3];
     primitive_box(p, low, high);
@@ -496,6 +505,7 @@ class GeometryLowering {
   std::vector<Placed> placed_;
   bool reversed_ = false;  // of the shape being appended
   std::uint32_t group_ = 0;
+  int kind_bits_ = 0;  // of leaf references
 };
 
 }  // namespace

@@ -66,13 +66,6 @@ std::uint64_t FlatScene::geometry_bytes() const {
          bytes_of(mesh_normals) + bytes_of(mesh_uvs);
 }
 
-bool FlatScene::basic_shapes() const {
-  return std::ranges::all_of(geometries, [](const GeometryRecord& geometry) {
-    return geometry.shape == shape_sphere || geometry.shape == shape_capsule || geometry.shape == shape_tapered_capsule ||
-           geometry.shape == shape_triangle || geometry.shape == shape_disk;
-  });
-}
-
 std::uint64_t FlatScene::device_bytes() const {
   std::uint64_t bytes = 0;
 #define GROUP_BEGIN(Type, group)

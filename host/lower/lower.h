@@ -24,9 +24,13 @@ namespace caplet {
 struct FlatScene {
   SCENE_GROUPS
 
+  // What kernels are built for (stage_options): the kinds of shapes there are (bit k: kind k), operands of csg among them, and
+  // the bits of leaf references for them.
+  std::uint64_t shapes = ~std::uint64_t{0};
+  int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
+
   // For `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;
-  bool basic_shapes() const;  // spheres, capsules, triangles and whole disks alone: kernels may be built with CAPLET_BASIC_SHAPES
   int bvh_depth = 0;
   double bvh_sah = 0;
   double build_seconds = 0;

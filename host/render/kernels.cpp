@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "base/check.h"
+#include "render/known_rays.h"
 
 namespace caplet {
 
@@ -93,9 +94,8 @@ std::string stage_source(Stage stage) {
 }
 
 std::string stage_options(const FlatScene& scene, const Device& device) {
-  std::string options = device.encoding() == Encoding::wide ? "-DCAPLET_REAL_WIDTH=8" : "-DCAPLET_REAL_WIDTH=1";
-  if (scene.basic_shapes()) options += " -DCAPLET_BASIC_SHAPES";
-  return options;
+  return fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}",
+                     device.encoding() == Encoding::wide ? 8 : 1, shapes_on_trial(scene.shapes), scene.leaf_kind_bits);
 }
 
 Kernels::Kernels(const Device& device, std::string options)

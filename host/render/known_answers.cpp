@@ -199,7 +199,7 @@ void check_queries(const KnownScene& known, const FlatScene& flat, const Device&
 }
 
 std::string key_of(const Trial& trial) {
-  return fmt::format("known answers {:d}{:d}{:d}{:d}", trial.basic_shapes, trial.render, trial.nearest, trial.lists);
+  return fmt::format("known answers {:x} {:d}{:d}{:d}", shapes_on_trial(trial.shapes), trial.render, trial.nearest, trial.lists);
 }
 
 /// What a trial's result depends on beside the device: its kernels and how they are built.
@@ -215,7 +215,7 @@ std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
 }  // namespace
 
 std::vector<std::string> known_answer_failures(const Device& device, const Trial& trial) {
-  const KnownScene known = known_scene(trial.basic_shapes);
+  const KnownScene known = known_scene(trial.shapes);
   const FlatScene flat = lower(known.scene);
   Tally tally(known.rays);
   if (trial.render) check_render(known, flat, device, tally);

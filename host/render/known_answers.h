@@ -5,6 +5,7 @@
 // are known (known_rays.h), what they should. Arithmetic can be right on a device whose compiler gets functions of vectors wrong.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,12 @@ namespace caplet {
 
 /// What a command is about to ask of a device.
 struct Trial {
-  bool basic_shapes = false;                            // kernels built for basic shapes alone (FlatScene::basic_shapes)
+  std::uint64_t shapes = ~std::uint64_t{0};             // kernels built for scenes of these (FlatScene::shapes)
   bool render = false, nearest = false, lists = false;  // extend and connect; pick; pick_all and pick_list
 };
 
 /// Every kernel, for all shapes.
-inline constexpr Trial whole_trial{false, true, true, true};
+inline constexpr Trial whole_trial{~std::uint64_t{0}, true, true, true};
 
 /// One line for each stage and kind of shape that is wrong, like "capsule: nearest crossing: 12 of 144 rays are wrong; ...".
 /// Builds the programs of the device's encoding. Throws RunError when they do not build or run.

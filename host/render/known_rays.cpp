@@ -7,8 +7,11 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <optional>
 #include <random>
 #include <utility>
+
+#include "shared/shapes.h"
 
 namespace caplet {
 
@@ -51,16 +54,19 @@ struct SurfacePoint {
   bool present = true;
 };
 using Sampler = std::function<SurfacePoint(Random&)>;
-using Geometry = decltype(Shape::geometry);
 
 double dot_of(const SurfacePoint& point, const dvec3& direction) { return glm::dot(point.n, direction) / glm::length(direction); }
 
 class Maker {
  public:
+  /// `stretches`: there may be instances, which every shape becomes that is stretched or one-sided.
+  explicit Maker(bool stretches) : stretches_(stretches) {}
+
   /// A convex solid whose surface `sample` draws points of.
   void solid(int kind, const Geometry& geometry, const Sampler& sample) {
+    keep_first(geometry, [=, this] { rays_of_solid(sample, false); });
     for (int copy = 0; copy < copies; ++copy) {
-      const bool one_sided = copy % 4 == 3;
+      const bool one_sided = stretches_ && copy % 4 == 3;
       begin(kind, geometry, copy, one_sided);
       rays_of_solid(sample, one_sided);
     }
@@ -68,29 +74,19 @@ class Maker {
 
   /// The part of a convex surface that is there. Points are at least a little way from its rims.
   void open(int kind, const Geometry& geometry, const Sampler& sample) {
+    keep_first(geometry, [=, this] { rays_of_open(sample); });
     for (int copy = 0; copy < copies; ++copy) {
       begin(kind, geometry, copy, false);
-      for (int i = 0; i < 8; ++i) {
-        const auto [a, b] = chord(sample);
-        const dvec3 d = b.p - a.p;
-        std::vector<KnownCrossing> crossings;
-        if (a.present) crossings.push_back({1, Side::either});
-        if (b.present) crossings.push_back({2, Side::either});
-        add(a.p - d, d, crossings, 2.5);
-      }
+      rays_of_open(sample);
     }
   }
 
   /// A sheet over the plane z = 0 that is nowhere steeper than 1/2. `sample`: points on it, or beside it.
   void sheet(int kind, const Geometry& geometry, const Sampler& sample) {
+    keep_first(geometry, [=, this] { rays_of_sheet(sample); });
     for (int copy = 0; copy < copies; ++copy) {
       begin(kind, geometry, copy, false);
-      for (int i = 0; i < 8; ++i) {
-        const SurfacePoint to = sample(random_);
-        const double slope = random_.uniform(0, 0.9), phi = random_.uniform(0, full_turn);
-        const dvec3 d = dvec3(slope * std::cos(phi), slope * std::sin(phi), 1) * (random_.coin() ? 1.0 : -1.0);
-        add(to.p - d, d, to.present ? std::vector<KnownCrossing>{{1, Side::either}} : std::vector<KnownCrossing>{}, 2);
-      }
+      rays_of_sheet(sample);
     }
   }
 
@@ -116,11 +112,11 @@ class Maker {
     }
   }
 
-  /// Objects of one shape, placed: the innermost kind does not matter.
-  void instances(const Geometry& geometry, const Sampler& sample) {
+  /// Objects of one shape, placed: the innermost kind does not matter, and is the first.
+  void instances() {
     Object object;
     Shape shape;
-    shape.geometry = geometry;
+    shape.geometry = first_.value();
     object.shapes.push_back(shape);
     out_.scene.objects.push_back(object);
     instances_begin_ = out_.rays.size();
@@ -130,7 +126,7 @@ class Maker {
       object_ =
           static_cast<std::uint32_t>(out_.scene.instances.size());  // counted behind the shapes, of which there may come more
       out_.scene.instances.push_back({0, matrix_, {}});
-      rays_of_solid(sample, false);
+      rays_of_first_();
     }
     instances_end_ = out_.rays.size();
   }
@@ -143,14 +139,20 @@ class Maker {
   }
 
  private:
-  /// Every second one is a similarity; the others are stretched, and half of these mirrored.
+  void keep_first(const Geometry& geometry, const std::function<void()>& rays) {
+    if (first_) return;
+    first_ = geometry;
+    rays_of_first_ = rays;
+  }
+
+  /// Every second one is a similarity; the others may be stretched, and half of these mirrored.
   dmat4 placement(int copy) {
     const int cell = cell_++;
     const dvec3 place(cell % cells_a_side, cell / cells_a_side % cells_a_side, cell / (cells_a_side * cells_a_side));
     dmat4 m = glm::translate(dmat4(1), cell_width * (place - dvec3(cells_a_side / 2)));
     m = glm::rotate(m, random_.uniform(0, full_turn), random_.direction());
     const double size = random_.uniform(0.7, 1.5);
-    if (copy % 2 == 0) return glm::scale(m, dvec3(size));
+    if (!stretches_ || copy % 2 == 0) return glm::scale(m, dvec3(size));
     const double mirrored = copy % 4 == 1 ? -1 : 1;
     return glm::scale(m, dvec3(random_.uniform(0.7, 1.5), random_.uniform(0.7, 1.5), mirrored * random_.uniform(0.7, 1.5)));
   }
@@ -194,6 +196,26 @@ class Maker {
     }
   }
 
+  void rays_of_open(const Sampler& sample) {
+    for (int i = 0; i < 8; ++i) {
+      const auto [a, b] = chord(sample);
+      const dvec3 d = b.p - a.p;
+      std::vector<KnownCrossing> crossings;
+      if (a.present) crossings.push_back({1, Side::either});
+      if (b.present) crossings.push_back({2, Side::either});
+      add(a.p - d, d, crossings, 2.5);
+    }
+  }
+
+  void rays_of_sheet(const Sampler& sample) {
+    for (int i = 0; i < 8; ++i) {
+      const SurfacePoint to = sample(random_);
+      const double slope = random_.uniform(0, 0.9), phi = random_.uniform(0, full_turn);
+      const dvec3 d = dvec3(slope * std::cos(phi), slope * std::sin(phi), 1) * (random_.coin() ? 1.0 : -1.0);
+      add(to.p - d, d, to.present ? std::vector<KnownCrossing>{{1, Side::either}} : std::vector<KnownCrossing>{}, 2);
+    }
+  }
+
   /// A ray of the shape's own space; nothing is known of it beyond `t_end`.
   void add(const dvec3& origin, const dvec3& direction, std::vector<KnownCrossing> crossings, double t_end) {
     const dvec3 o(matrix_ * glm::dvec4(origin, 1)), d(matrix_ * glm::dvec4(direction, 0));
@@ -202,6 +224,9 @@ class Maker {
         {kind_, object_, RayRecord{f(o.x), f(o.y), f(o.z), 0, f(d.x), f(d.y), f(d.z), f(t_end)}, std::move(crossings)});
   }
 
+  bool stretches_;
+  std::optional<Geometry> first_;
+  std::function<void()> rays_of_first_;
   Random random_;
   KnownScene out_;
   int cell_ = 0, kind_ = 0;
@@ -384,30 +409,31 @@ void known_bilinear(Maker& make) {
 
 void known_csg(Maker& make) { make.csg(); }
 
-void known_instance(Maker& make) { make.instances(capsule(end0, end1, 0.5, 0.125), hull_of_balls(end0, end1, 0.5, 0.125)); }
+void known_instance(Maker& make) { make.instances(); }
 
 }  // namespace
 
-KnownScene known_scene(bool basic_shapes) {
-  Maker make;
-  if (basic_shapes) {
-    known_sphere(make);
-    known_capsule(make);
-    known_tapered_capsule(make);
-    known_triangle(make);
-    known_disk(make);
-    known_instance(make);
-  } else {
-#define SHAPE(name, rows) known_##name(make);
+std::uint64_t shapes_on_trial(std::uint64_t shapes) {
+  std::uint64_t out = shapes & (~std::uint64_t{0} >> (64 - shape_count));
+  if (out & shape_bit(shape_csg)) out |= shape_bit(shape_box) | shape_bit(shape_sphere);
+  for (std::uint32_t shape = 0; shape < shape_count; ++shape)
+    if ((out & shape_bit(shape)) && shape_has(shape, trait_stands_straight)) out |= shape_bit(shape_instance);
+  return out;
+}
+
+KnownScene known_scene(std::uint64_t shapes) {
+  const std::uint64_t asked = shapes_on_trial(shapes);
+  Maker make((asked & shape_bit(shape_instance)) != 0);
+#define SHAPE(name, traits) \
+  if (asked & shape_bit(shape_##name)) known_##name(make);
 #include "shared/shapes.def"
 #undef SHAPE
-  }
   return make.take();
 }
 
 const char* shape_name(int kind) {
   static constexpr const char* names[] = {
-#define SHAPE(name, rows) #name,
+#define SHAPE(name, traits) #name,
 #include "shared/shapes.def"
 #undef SHAPE
   };

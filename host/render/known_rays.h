@@ -28,13 +28,17 @@ struct KnownRay {
   std::vector<KnownCrossing> crossings;  // in order; at least a tenth of a direction's length apart
 };
 
-/// Shapes of every kind (`basic_shapes`: those alone that CAPLET_BASIC_SHAPES knows, and instances), each turned and some
-/// stretched, mirrored or one-sided, far enough from each other that no ray meets two of them.
+/// The kinds (bit k: kind k) of a scene that tries kernels for scenes of `shapes`, and what they are built for: these; with csg
+/// shapes the operands of known ones; and with kinds that only instances can turn, instances.
+std::uint64_t shapes_on_trial(std::uint64_t shapes);
+
 struct KnownScene {
   Scene scene;
   std::vector<KnownRay> rays;
 };
-KnownScene known_scene(bool basic_shapes);
+/// Shapes of every kind of shapes_on_trial(shapes), each turned, and, where there are instances, some stretched, mirrored or
+/// one-sided; far enough from each other that no ray meets two of them.
+KnownScene known_scene(std::uint64_t shapes);
 
 /// "sphere" for shape_sphere.
 const char* shape_name(int kind);

@@ -96,10 +96,13 @@ struct BeyondAt {
     return exactly(most);
   }
   /// Nested csg is resolved before, and validate refuses open operands.
-  template <class Other>
-  Beyond operator()(const Other&) const {
-    return {-INFINITY, INFINITY};
-  }
+  static constexpr Beyond unknown{-INFINITY, INFINITY};
+  Beyond operator()(const CsgShape&) const { return unknown; }
+  Beyond operator()(const TriangleMeshShape&) const { return unknown; }
+  Beyond operator()(const BilinearMeshShape&) const { return unknown; }
+  Beyond operator()(const DiskShape&) const { return unknown; }
+  Beyond operator()(const PartialSphereShape&) const { return unknown; }
+  Beyond operator()(const OpenCylinderShape&) const { return unknown; }
 };
 
 struct Solid {

@@ -172,28 +172,47 @@ struct CountOf {
 
 }  // namespace
 
-std::size_t surface_count(const Shape& shape) {
-  const auto& geometry = shape.geometry;
-  if (std::holds_alternative<CylinderShape>(geometry) || std::holds_alternative<ConeShape>(geometry)) return 3;
-  if (std::holds_alternative<BoxShape>(geometry)) return 6;
-  if (const auto* polyhedron = std::get_if<PolyhedronShape>(&geometry)) return polyhedron->points.size();
-  if (const auto* csg = std::get_if<CsgShape>(&geometry)) {
+namespace {
+
+struct SurfacesOf {
+  std::size_t operator()(const SphereShape&) const { return 1; }
+  std::size_t operator()(const CapsulesShape&) const { return 1; }
+  std::size_t operator()(const TriangleMeshShape&) const { return 1; }
+  std::size_t operator()(const DiskShape&) const { return 1; }
+  std::size_t operator()(const CylinderShape&) const { return 3; }
+  std::size_t operator()(const ConeShape&) const { return 3; }
+  std::size_t operator()(const BoxShape&) const { return 6; }
+  std::size_t operator()(const PolyhedronShape& polyhedron) const { return polyhedron.points.size(); }
+  std::size_t operator()(const PartialSphereShape&) const { return 1; }
+  std::size_t operator()(const OpenCylinderShape&) const { return 1; }
+  std::size_t operator()(const BilinearMeshShape&) const { return 1; }
+  std::size_t operator()(const CsgShape& csg) const {
     std::size_t count = 0;
-    for (const auto& operand : csg->operands) count += surface_count(*operand);
+    for (const auto& operand : csg.operands) count += surface_count(*operand);
     return count;
   }
-  return 1;
-}
+};
 
-bool is_closed(const Shape& shape) {
-  const auto& geometry = shape.geometry;
-  if (const auto* cylinder = std::get_if<CylinderShape>(&geometry))
-    return cylinder->caps[0] != Cap::open && cylinder->caps[1] != Cap::open;
-  if (const auto* cone = std::get_if<ConeShape>(&geometry)) return cone->caps[0] != Cap::open && cone->caps[1] != Cap::open;
-  return std::holds_alternative<SphereShape>(geometry) || std::holds_alternative<CapsulesShape>(geometry) ||
-         std::holds_alternative<BoxShape>(geometry) || std::holds_alternative<PolyhedronShape>(geometry) ||
-         std::holds_alternative<CsgShape>(geometry);
-}
+struct IsClosed {
+  bool operator()(const SphereShape&) const { return true; }
+  bool operator()(const CapsulesShape&) const { return true; }
+  bool operator()(const TriangleMeshShape&) const { return false; }
+  bool operator()(const DiskShape&) const { return false; }
+  bool operator()(const CylinderShape& c) const { return c.caps[0] != Cap::open && c.caps[1] != Cap::open; }
+  bool operator()(const ConeShape& c) const { return c.caps[0] != Cap::open && c.caps[1] != Cap::open; }
+  bool operator()(const BoxShape&) const { return true; }
+  bool operator()(const PolyhedronShape&) const { return true; }
+  bool operator()(const PartialSphereShape&) const { return false; }
+  bool operator()(const OpenCylinderShape&) const { return false; }
+  bool operator()(const BilinearMeshShape&) const { return false; }
+  bool operator()(const CsgShape&) const { return true; }
+};
+
+}  // namespace
+
+std::size_t surface_count(const Shape& shape) { return std::visit(SurfacesOf{}, shape.geometry); }
+
+bool is_closed(const Shape& shape) { return std::visit(IsClosed{}, shape.geometry); }
 
 std::size_t solid_count(const Shape& shape) {
   const auto* csg = std::get_if<CsgShape>(&shape.geometry);

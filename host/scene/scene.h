@@ -123,10 +123,29 @@ struct AreaEmission {
   std::vector<std::uint32_t> surfaces;  // that emit; empty: all
 };
 
+/// What a Shape may be: X(Type) for each.
+#define CAPLET_GEOMETRIES(X) \
+  X(SphereShape)             \
+  X(CapsulesShape)           \
+  X(TriangleMeshShape)       \
+  X(DiskShape)               \
+  X(CylinderShape)           \
+  X(ConeShape)               \
+  X(BoxShape)                \
+  X(PolyhedronShape)         \
+  X(PartialSphereShape)      \
+  X(OpenCylinderShape)       \
+  X(BilinearMeshShape)       \
+  X(CsgShape)
+
+template <class, class... Types>
+using VariantBehind = std::variant<Types...>;
+#define CAPLET_COMMA_TYPE(Type) , Type
+using Geometry = VariantBehind<void CAPLET_GEOMETRIES(CAPLET_COMMA_TYPE)>;
+#undef CAPLET_COMMA_TYPE
+
 struct Shape {
-  std::variant<SphereShape, CapsulesShape, TriangleMeshShape, DiskShape, CylinderShape, ConeShape, BoxShape, PolyhedronShape,
-               PartialSphereShape, OpenCylinderShape, BilinearMeshShape, CsgShape>
-      geometry;
+  Geometry geometry;
   glm::dmat4 world_from_object{1};       // in an object definition: object_from_shape
   std::uint32_t material = 0;            // index into Scene::materials
   std::vector<std::uint32_t> materials;  // empty, or one a surface

@@ -80,10 +80,14 @@ struct TiltOf {
       out = std::max(out, tilt_of(operand.primitive, moved * operand.stretch));
     return out;
   }
-  template <class Other>
-  double operator()(const Other&) const {
-    return 0;  // balls, and planes whose normals are given
-  }
+  // Balls, and planes whose normals are given.
+  double operator()(const reference::Sphere&) const { return 0; }
+  double operator()(const reference::Disk&) const { return 0; }
+  double operator()(const reference::Box&) const { return 0; }
+  double operator()(const reference::Polyhedron&) const { return 0; }
+  double operator()(const reference::PartialSphere&) const { return 0; }
+  double operator()(const reference::OpenCylinder&) const { return 0; }
+  double operator()(const reference::PartialDisk&) const { return 0; }
 };
 
 double tilt_of(const reference::Primitive& primitive, double moved) { return std::visit(TiltOf{moved}, primitive); }

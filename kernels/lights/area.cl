@@ -25,12 +25,9 @@ typedef struct {
   float pdf;    // solid angle
 } AreaSample;
 
-// The primitive's data: datum j at [8 * j] (shared/shapes.def).
+// The primitive's data (shapes/fields.cl).
 static inline __global const float* area_data(const Tree* tree, __global const LightRecord* light) {
-  return tree->leaves + light->slot + 8u;
-}
-static inline float3 area_point(__global const float* data, int j) {
-  return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]);
+  return lane_data(tree->leaves, light->slot);
 }
 
 // Object space to world of the light's instance: by how much areas with normal n (object space, unit) grow.
@@ -41,14 +38,15 @@ static inline float area_scale(__global const InstanceRecord* instance, float3 n
 }
 
 static inline RoundCone area_round_cone(uint shape, __global const float* data) {
-  if (shape == shape_sphere) return round_cone_of_sphere(area_point(data, 0), data[24]);
-  return round_cone_make(area_point(data, 0), area_point(data, 3), data[48], shape == shape_capsule ? data[48] : data[56]);
+  if (shape == shape_sphere) return round_cone_of_sphere(sphere_c(data), sphere_r(data));
+  if (shape == shape_capsule) return round_cone_make(capsule_p0(data), capsule_p1(data), capsule_r(data), capsule_r(data));
+  return round_cone_make(tapered_capsule_p0(data), tapered_capsule_p1(data), tapered_capsule_r0(data), tapered_capsule_r1(data));
 }
 
 // World-space corners of a triangle light, as seen from p.
 static inline TriangleView area_triangle(const Tree* tree, __global const LightRecord* light, __global const float* data,
                                          float3 p) {
-  float3 v0 = area_point(data, 0), v1 = area_point(data, 3), v2 = area_point(data, 6);
+  float3 v0 = triangle_v0(data), v1 = triangle_v1(data), v2 = triangle_v2(data);
   if (light->instance != CAPLET_NONE) {
     __global const float* m = tree->instances[light->instance].world_from_object;
     v0 = transform_point(m, v0);
@@ -61,18 +59,20 @@ static inline TriangleView area_triangle(const Tree* tree, __global const LightR
 // A sphere that is not within an instance and not around (or touching) p is sampled by solid angle.
 static inline float area_sphere_cone(__global const LightRecord* light, uint shape, __global const float* data, float3 p) {
   if (shape != shape_sphere || light->instance != CAPLET_NONE) return 0.0f;
-  const float3 axis = area_point(data, 0) - p;
-  return sphere_cone(dot(axis, axis), data[24]);
+  const float3 axis = sphere_c(data) - p;
+  return sphere_cone(dot(axis, axis), sphere_r(data));
 }
 
 // Largest magnitude of the numbers that a point of the primitive was made from, in its own space.
 static inline float area_magnitude(uint shape, __global const float* data) {
-  float magnitude = norm1(area_point(data, 0));
-  if (shape == shape_sphere) return magnitude + data[24];
-  if (shape == shape_disk) return magnitude + data[48];
-  magnitude = fmax(magnitude, norm1(area_point(data, 3)));
-  if (shape == shape_triangle) return fmax(magnitude, norm1(area_point(data, 6)));
-  return magnitude + fmax(data[48], shape != shape_tapered_capsule ? 0.0f : data[56]);
+  if (shape == shape_sphere) return norm1(sphere_c(data)) + sphere_r(data);
+  if (shape == shape_disk) return norm1(disk_c(data)) + disk_r(data);
+  if (shape == shape_triangle)
+    return fmax(fmax(norm1(triangle_v0(data)), norm1(triangle_v1(data))), norm1(triangle_v2(data)));
+  if (shape == shape_cylinder) return fmax(norm1(cylinder_p0(data)), norm1(cylinder_p1(data))) + cylinder_r(data);
+  if (shape == shape_capsule) return fmax(norm1(capsule_p0(data)), norm1(capsule_p1(data))) + capsule_r(data);
+  return fmax(norm1(tapered_capsule_p0(data)), norm1(tapered_capsule_p1(data))) +
+         fmax(tapered_capsule_r0(data), tapered_capsule_r1(data));
 }
 
 // Bound on the distance along the normal between a sampled point and the surface as a shadow ray from p meets it: some eight
@@ -100,8 +100,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   float per_area = 0.0f;
   s->pdf = 0.0f;
 
-#ifndef CAPLET_BASIC_SHAPES
-  if (light->data != CAPLET_NONE) {
+  if (any_ball_light && light->data != CAPLET_NONE) {
     __global const float* ball = scene->lights.light_data + light->data;
     const float3 wi = ball_sample(ball, p, u);
     HitRecord hit;
@@ -115,14 +114,13 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
     s->pdf = fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
     return 1;
   }
-#endif
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) {
     if (flip && !both) return 0;
-    const float3 axis = area_point(data, 0) - p;
+    const float3 axis = sphere_c(data) - p;
     const float distance = sqrt(dot(axis, axis));
-    s->n = sphere_cone_sample(axis / distance, data[24] / distance, cone, u);
-    s->p = area_point(data, 0) + s->n * data[24];
+    s->n = sphere_cone_sample(axis / distance, sphere_r(data) / distance, cone, u);
+    s->p = sphere_c(data) + s->n * sphere_r(data);
     s->pdf = 1.0f / (2.0f * CAPLET_PI * cone);
   } else if (shape == shape_triangle) {
     const TriangleView view = area_triangle(&scene->tree, light, data, p);
@@ -142,20 +140,18 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
     float3 x, n;
     const float3 q = placed ? transform_point(scene->tree.instances[light->instance].object_from_world, p) : p;
     if (shape == shape_disk) {
-      const float3 center = area_point(data, 0);
-      n = area_point(data, 3);
+      const float3 center = disk_c(data);
+      n = disk_n(data);
       const Frame frame = frame_from_normal(n);
-      const float2 d = data[48] * sample_disk(u);
+      const float2 d = disk_r(data) * sample_disk(u);
       x = center + (frame.s * d.x + frame.t * d.y);
       if (flip) n = -n;
       if (!both && !(dot(q - center, n) > 0.0f)) return 0;
-      per_area = CAPLET_INV_PI / sqr(data[48]);
-#ifndef CAPLET_BASIC_SHAPES
-    } else if (shape == shape_cylinder) {
+      per_area = CAPLET_INV_PI / sqr(disk_r(data));
+    } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
       per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, geometry, data), u, &x, &n);
       if (!(per_area > 0.0f)) return 0;
       if (flip) n = -n;
-#endif
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);
@@ -194,9 +190,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
 static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
   const uint shape = scene->surfaces.geometries[light->geometry].shape;
   __global const float* data = area_data(&scene->tree, light);
-#ifndef CAPLET_BASIC_SHAPES
-  if (light->data != CAPLET_NONE) return fmin(ball_pdf(scene->lights.light_data + light->data, p), CAPLET_MAX_DENSITY);
-#endif
+  if (any_ball_light && light->data != CAPLET_NONE) return fmin(ball_pdf(scene->lights.light_data + light->data, p), CAPLET_MAX_DENSITY);
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) return fmin(1.0f / (2.0f * CAPLET_PI * cone), CAPLET_MAX_DENSITY);
   const float3 away = x - p;
@@ -217,11 +211,9 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
       object_n = unit_or(transform_transposed(instance->world_from_object, n), n);
     }
     if (shape == shape_disk) {
-      per_area = CAPLET_INV_PI / sqr(data[48]);
-#ifndef CAPLET_BASIC_SHAPES
-    } else if (shape == shape_cylinder) {
+      per_area = CAPLET_INV_PI / sqr(disk_r(data));
+    } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
       per_area = cylinder_density(cylinder_areas(&scene->surfaces, scene->surfaces.geometries + light->geometry, data));
-#endif
     } else {
       const RoundCone k = area_round_cone(shape, data);
       const RoundConeView view = round_cone_view(&k, q);

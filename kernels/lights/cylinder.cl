@@ -9,12 +9,12 @@
 #include "math/vector.cl"
 #include "shapes/surface_local.cl"
 
-// Areas of the side and of the ends that emit. data: the primitive's (shared/shapes.def).
+// Areas of the side and of the ends that emit.
 static inline float3 cylinder_areas(const Surfaces* surfaces, __global const GeometryRecord* geometry, __global const float* data) {
-  const float r = data[48];
-  float3 area = (float3)(2.0f * CAPLET_PI * r * length(data3(data, 3) - data3(data, 0)),
-                         data[56] == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r,
-                         data[64] == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r);
+  const float r = cylinder_r(data);
+  float3 area = (float3)(2.0f * CAPLET_PI * r * length(cylinder_p1(data) - cylinder_p0(data)),
+                         cylinder_cap0(data) == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r,
+                         cylinder_cap1(data) == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r);
   if (geometry->surface_begin == CAPLET_NONE) return area;
   __global const uint* rows = surfaces->surface_materials + geometry->surface_begin;
   if (rows[0] & CAPLET_SURFACE_DARK) area.x = 0.0f;
@@ -33,8 +33,8 @@ static inline float cylinder_density(float3 areas) {
 static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x, float3* n) {
   const float density = cylinder_density(areas);
   if (!(density > 0.0f)) return 0.0f;
-  const float3 p0 = data3(data, 0), p1 = data3(data, 3);
-  const float r = data[48];
+  const float3 p0 = cylinder_p0(data), p1 = cylinder_p1(data);
+  const float r = cylinder_r(data);
   const float3 axis = unit_or(p1 - p0, (float3)(0.0f, 0.0f, 1.0f));
   const Frame frame = frame_from_normal(axis);
   const float at = u.x * (areas.x + areas.y + areas.z);

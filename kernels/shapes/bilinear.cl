@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear patch: (1-u)(1-v) p00 + u (1-v) p10 + (1-u) v p01 + u v p11. Rows of a block: p00 p10 p01 p11.
+// Bilinear patch: (1-u)(1-v) p00 + u (1-v) p10 + (1-u) v p01 + u v p11.
 //
 // After Reshetov ("Cool patches", Ray Tracing Gems, 2019) the line of constant u that meets the ray is sought first. Here that is
 // done in the ray's own plane: sheared as for triangles, the ray is the z axis and a shared vertex has one place for all its
@@ -71,18 +71,21 @@ static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real
 
 static inline Span bilinear_span(const ShapeRay* ray, __global const float* block, uint lane) {
 #pragma OPENCL FP_CONTRACT OFF
-  __global const float* rx = block + 8 + ray->row_x;
-  __global const float* ry = block + 8 + ray->row_y;
-  __global const float* rz = block + 8 + ray->row_z;
-  const real z00 = real_load(rz, lane) - ray->koz, z10 = real_load(rz + 24, lane) - ray->koz;
-  const real z01 = real_load(rz + 48, lane) - ray->koz, z11 = real_load(rz + 72, lane) - ray->koz;
+  __global const float* p00 = block + 8 * (1 + bilinear_at_p00);
+  __global const float* rx = p00 + ray->row_x;
+  __global const float* ry = p00 + ray->row_y;
+  __global const float* rz = p00 + ray->row_z;
+  const int p10 = 8 * (bilinear_at_p10 - bilinear_at_p00), p01 = 8 * (bilinear_at_p01 - bilinear_at_p00),
+            p11 = 8 * (bilinear_at_p11 - bilinear_at_p00);
+  const real z00 = real_load(rz, lane) - ray->koz, z10 = real_load(rz + p10, lane) - ray->koz;
+  const real z01 = real_load(rz + p01, lane) - ray->koz, z11 = real_load(rz + p11, lane) - ray->koz;
   real x00 = (real_load(rx, lane) - ray->kox) - ray->shear_x * z00, y00 = (real_load(ry, lane) - ray->koy) - ray->shear_y * z00;
-  real x10 = (real_load(rx + 24, lane) - ray->kox) - ray->shear_x * z10,
-       y10 = (real_load(ry + 24, lane) - ray->koy) - ray->shear_y * z10;
-  real x01 = (real_load(rx + 48, lane) - ray->kox) - ray->shear_x * z01,
-       y01 = (real_load(ry + 48, lane) - ray->koy) - ray->shear_y * z01;
-  real x11 = (real_load(rx + 72, lane) - ray->kox) - ray->shear_x * z11,
-       y11 = (real_load(ry + 72, lane) - ray->koy) - ray->shear_y * z11;
+  real x10 = (real_load(rx + p10, lane) - ray->kox) - ray->shear_x * z10,
+       y10 = (real_load(ry + p10, lane) - ray->koy) - ray->shear_y * z10;
+  real x01 = (real_load(rx + p01, lane) - ray->kox) - ray->shear_x * z01,
+       y01 = (real_load(ry + p01, lane) - ray->koy) - ray->shear_y * z01;
+  real x11 = (real_load(rx + p11, lane) - ray->kox) - ray->shear_x * z11,
+       y11 = (real_load(ry + p11, lane) - ray->koy) - ray->shear_y * z11;
   const real zero = real_of(0.0f);
   Span span = span_of(int_of(0), zero, zero);
   // The ray must pass the box of the corners' images.

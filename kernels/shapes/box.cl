@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Box along the axes: the span is what its three slabs share. Rows of a block: min max.
+// Box along the axes: the span is what its three slabs share.
 //
 // A plane is crossed at (plane - o) / d: the difference is rounded once and the product by 1 / d leaves a relative error of 7
 // eps, so the reported point is within 8 eps (|o - c| + size) of its plane (docs/numerics.md, "Boxes"). The crossing depends on
@@ -10,7 +10,7 @@
 #ifndef CAPLET_SHAPES_BOX_CL
 #define CAPLET_SHAPES_BOX_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 // The part of the ray between the planes at `low` and `high`, both counted in. `inv`: 1 / d, or 0 for a ray along the planes.
 static inline void box_slab(real low, real high, float o, float inv, real* near, real* far) {
@@ -33,9 +33,10 @@ static inline Span box_span(const ShapeRay* ray, __global const float* block, ui
   const float largest = fmax(fmax(fabs(ray->dx), fabs(ray->dy)), fabs(ray->dz));
   const float ix = box_inverse(ray->dx, largest), iy = box_inverse(ray->dy, largest), iz = box_inverse(ray->dz, largest);
   real near_x, near_y, near_z, far_x, far_y, far_z;
-  box_slab(real_load(block + 8, lane), real_load(block + 32, lane), ray->ox, ix, &near_x, &far_x);
-  box_slab(real_load(block + 16, lane), real_load(block + 40, lane), ray->oy, iy, &near_y, &far_y);
-  box_slab(real_load(block + 24, lane), real_load(block + 48, lane), ray->oz, iz, &near_z, &far_z);
+  const RealVector low = box_low_lanes(block, lane), high = box_high_lanes(block, lane);
+  box_slab(low.x, high.x, ray->ox, ix, &near_x, &far_x);
+  box_slab(low.y, high.y, ray->oy, iy, &near_y, &far_y);
+  box_slab(low.z, high.z, ray->oz, iz, &near_z, &far_z);
   const real_mask y_later = near_y > near_x, y_sooner = far_y < far_x;
   const real enter = y_later ? near_y : near_x, exit = y_sooner ? far_y : far_x;
   const real_mask z_later = near_z > enter, z_sooner = far_z < exit;

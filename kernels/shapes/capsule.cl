@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The capsule's span: the tube around the axis, closed by the spheres at its ends. Rows of a block: p0 p1 r.
+// The capsule's span: the tube around the axis, closed by the spheres at its ends.
 //
 // With the ray moved to its point p nearest to p0, axis b = p1 - p0, the parts of p and d across the axis are
 // e = p - (p.b / b.b) b and f = d - (d.b / b.b) b. The tube is |e + t f| = r: nearest to the axis at t0 = -e.f / f.f, where the
@@ -14,7 +14,7 @@
 #ifndef CAPLET_SHAPES_CAPSULE_CL
 #define CAPLET_SHAPES_CAPSULE_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 typedef struct {
   real px, py, pz;     // the ray's point nearest to p0, relative to p0
@@ -41,14 +41,14 @@ static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float 
 }
 
 // Lanes whose tube the line meets; fills `c`. `shift`: the moved origin.
-static inline real_mask capsule_line(const ShapeRay* ray, __global const float* block, uint lane, CapsuleLine* line, real* shifted) {
+static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVector p1, real r, CapsuleLine* line,
+                                     real* shifted) {
   CapsuleLine c;
-  const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
-  const real wx = ray->ox - ax, wy = ray->oy - ay, wz = ray->oz - az;
-  c.bx = real_load(block + 32, lane) - ax;
-  c.by = real_load(block + 40, lane) - ay;
-  c.bz = real_load(block + 48, lane) - az;
-  c.r = real_load(block + 56, lane);
+  const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
+  c.bx = p1.x - p0.x;
+  c.by = p1.y - p0.y;
+  c.bz = p1.z - p0.z;
+  c.r = r;
   const real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   c.px = wx + shift * ray->dx;
   c.py = wy + shift * ray->dy;
@@ -74,7 +74,8 @@ static inline real_mask capsule_line(const ShapeRay* ray, __global const float* 
 static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
   CapsuleLine c;
   real shift;
-  real_mask hit = capsule_line(ray, block, lane, &c, &shift);
+  real_mask hit = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane), capsule_r_lanes(block, lane),
+                               &c, &shift);
   *t = shift;
   *side = int_of(0);
   if (mask_bits(hit) == 0) return hit;
@@ -94,7 +95,9 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
 static inline Span capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
   CapsuleLine c;
   real shift;
-  real_mask enters = capsule_line(ray, block, lane, &c, &shift), exits = enters;
+  real_mask enters = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane), capsule_r_lanes(block, lane),
+                                  &c, &shift);
+  real_mask exits = enters;
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
   const real t_enter = shift + capsule_end(ray, &c, -1.0f, &enters);
   const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cone's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round). Rows of a block:
-// p0 p1 r0 r1 cap0 cap1. A frustum where both are flat, a tapered capsule where both are round.
+// The cone's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round).
+// A frustum where both are flat, a tapered capsule where both are round.
 //
 // The ends are joined by the cone c |e| + k y = D that touches both, at height y above p0 and offset e from the axis: (c, k) is
 // the normal's parts across and along the axis. It touches a disk in its rim, a ball in the circle at k times the radius above
@@ -16,7 +16,7 @@
 #ifndef CAPLET_SHAPES_CONE_CL
 #define CAPLET_SHAPES_CONE_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 #include "shapes/sphere.cl"
 
 // A line in cylinder coordinates of an axis: offset e + t f and height u + v t, t from the moved origin.
@@ -199,10 +199,10 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
 }
 
 static inline Span cone_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
-  return cone_span_of(ray, ray->ox - ax, ray->oy - ay, ray->oz - az, real_load(block + 32, lane) - ax,
-                      real_load(block + 40, lane) - ay, real_load(block + 48, lane) - az, real_load(block + 56, lane),
-                      real_load(block + 64, lane), real_load(block + 72, lane), real_load(block + 80, lane));
+  const RealVector p0 = cone_p0_lanes(block, lane), p1 = cone_p1_lanes(block, lane);
+  return cone_span_of(ray, ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z, p1.x - p0.x, p1.y - p0.y, p1.z - p0.z,
+                      cone_r0_lanes(block, lane), cone_r1_lanes(block, lane), cone_cap0_lanes(block, lane),
+                      cone_cap1_lanes(block, lane));
 }
 
 SPAN_HIT(cone)

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Closed solids combined by union, intersection and difference: the crossings of all operands in order along the ray, each turning its
-// operand on or off; where the expression's value changes the ray crosses the result. Rows of a block: begin (by its bits).
+// operand on or off; where the expression's value changes the ray crosses the result.
 //
 // leaves[begin ..], written by host/lower/csg.cpp, rows of 8; whole numbers by their bits; offsets count floats of `leaves`:
 //   header: centre c (3), radius of a ball around c that holds the result, groups, length of the program, operands, 0
@@ -21,7 +21,8 @@
 #define CAPLET_SHAPES_CSG_CL
 
 #include "math/vector.cl"
-#include "shapes/solids.cl"
+#include "shapes/fields.cl"
+#include "shapes/spans.cl"
 
 // The operands' crossings of one ray. Event 2 i is where operand i is entered, 2 i + 1 where it is left.
 typedef struct {
@@ -195,14 +196,13 @@ static inline int csg_nearest(const ShapeRay* ray, uint begin, float* t, int* si
 
 static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
   __global const int* ids = (__global const int*)block;
-  __global const uint* begins = (__global const uint*)(block + 8);
 #if CAPLET_REAL_WIDTH == 8
   float ts[8];
   int sides[8], hits[8];
   for (uint i = 0; i < 8; i++) {
     ts[i] = 0.0f;
     sides[i] = 0;
-    hits[i] = ids[i] >= 0 && csg_nearest(ray, begins[i], &ts[i], &sides[i]) ? -1 : 0;
+    hits[i] = ids[i] >= 0 && csg_nearest(ray, csg_begin(lane_data(block, i)), &ts[i], &sides[i]) ? -1 : 0;
   }
   (void)lane;
   *t = vload8(0, ts);
@@ -211,7 +211,7 @@ static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block
 #else
   *t = 0.0f;
   *side = 0;
-  return ids[lane] >= 0 && csg_nearest(ray, begins[lane], t, side);
+  return ids[lane] >= 0 && csg_nearest(ray, csg_begin(lane_data(block, lane)), t, side);
 #endif
 }
 

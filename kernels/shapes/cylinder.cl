@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cylinder's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round). Rows of a
-// block: p0 p1 r cap0 cap1.
+// The cylinder's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round).
 //
 // The tube is capsule.cl's: crossed at t0 -+ h, and a crossing beyond a round end is replaced by one of the ball. A flat end is a
 // half-space, entered and left where the position on the axis u + v t is 0 or 1. The span is the latest entrance and the earliest
@@ -41,7 +40,8 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
 static inline Span cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
   CapsuleLine c;
   real shift;
-  real_mask hit = capsule_line(ray, block, lane, &c, &shift);
+  const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
+  real_mask hit = capsule_line(ray, p0, p1, cylinder_r_lanes(block, lane), &c, &shift);
   const real_mask shallow = c.ff < ray->ff_min;
   if (mask_bits(hit | shallow) == 0) return span_of(hit, shift, shift);
   if (mask_bits(shallow) != 0) {
@@ -58,7 +58,7 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
     c.h = shallow ? (crosses ? disc / c.ff : real_of(INFINITY)) : c.h;
   }
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
-  const real cap0 = real_load(block + 64, lane), cap1 = real_load(block + 72, lane);
+  const real cap0 = cylinder_cap0_lanes(block, lane), cap1 = cylinder_cap1_lanes(block, lane);
   const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
   Span span;
   span.t_enter = cylinder_end(ray, &c, -1.0f, round0, round1, &hit, &span.surface_enter);
@@ -86,8 +86,7 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
 
   const real_mask pierced = (round0 | round1) & ((round0 & round1) == 0) & (bb < c.r * c.r);
   if (mask_bits(pierced) != 0) {
-    const real wx = ray->ox - real_load(block + 8, lane), wy = ray->oy - real_load(block + 16, lane),
-               wz = ray->oz - real_load(block + 24, lane);
+    const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
     const Span hull = cone_span_of(ray, wx, wy, wz, c.bx, c.by, c.bz, c.r, c.r, cap0, cap1);
     span.t_enter = pierced ? hull.t_enter : span.t_enter;
     span.t_exit = pierced ? hull.t_exit : span.t_exit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Tube around the z axis, or part of one, open: pbrt's cylinder. Rows of a block: r zmin zmax phimax (from +x towards +y).
+// Tube around the z axis, or part of one, open: pbrt's cylinder.
 //
 // Across the axis the ray is e + t f, with e and f as given: nothing is rounded. As for spheres, the perpendicular from the axis
 // and half the chord place the crossings within 8 eps (|e| + r) of the tube, however flat the ray. Both are tried against the
@@ -13,13 +13,13 @@
 
 static inline real_mask open_cylinder_holds(const ShapeRay* ray, __global const float* block, uint lane, real t) {
   const real x = ray->ox + t * ray->dx, y = ray->oy + t * ray->dy, rise = t * ray->dz;
-  const real_mask above = rise + (ray->oz - real_load(block + 16, lane)) >= 0.0f;
-  const real_mask below = rise + (ray->oz - real_load(block + 24, lane)) <= 0.0f;
-  return above & below & within_turn(x, y, real_load(block + 32, lane));
+  const real_mask above = rise + (ray->oz - open_cylinder_z_min_lanes(block, lane)) >= 0.0f;
+  const real_mask below = rise + (ray->oz - open_cylinder_z_max_lanes(block, lane)) <= 0.0f;
+  return above & below & within_turn(x, y, open_cylinder_phi_max_lanes(block, lane));
 }
 
 static inline Span open_cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const real r = real_load(block + 8, lane);
+  const real r = open_cylinder_r_lanes(block, lane);
   const float ff = ray->dx * ray->dx + ray->dy * ray->dy;
   // Flatter than 2^-40 to the axis no tube that single precision can hold is crossed.
   const int crosses = ff * ray->inv_dd > 0x1p-80f && ff > 0x1p-120f;

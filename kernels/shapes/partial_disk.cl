@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Part of a disk across the z axis, open: pbrt's. Rows of a block: height r inner phimax (from +x towards +y).
+// Part of a disk across the z axis, open: pbrt's.
 //
 // The plane is crossed at (height - o_z) / d_z, with a relative error of 6 eps, and the point reported there is tried against the
 // rims: 8 eps (|o - c| + r) off.
@@ -11,14 +11,14 @@
 #include "shapes/turn.cl"
 
 static inline Span partial_disk_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const real r = real_load(block + 16, lane), inner = real_load(block + 24, lane);
+  const real r = partial_disk_r_lanes(block, lane), inner = partial_disk_inner_lanes(block, lane);
   // Along the plane the quotient is infinite or NaN, and so are the point's coordinates: within no rim.
-  const real t = (real_load(block + 8, lane) - ray->oz) / ray->dz;
+  const real t = (partial_disk_height_lanes(block, lane) - ray->oz) / ray->dz;
   const real x = ray->ox + t * ray->dx, y = ray->oy + t * ray->dy;
   const real squared = x * x + y * y;
   const real_mask hit = (squared <= r * r) & (squared >= inner * inner) & (fabs(t) < INFINITY);
   const int leaving = ray->dz > 0.0f ? CAPLET_LEAVING : 0;
-  return span_of_one(hit & within_turn(x, y, real_load(block + 32, lane)), t, int_of(leaving));
+  return span_of_one(hit & within_turn(x, y, partial_disk_phi_max_lanes(block, lane)), t, int_of(leaving));
 }
 
 SPAN_HIT(partial_disk)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Part of a sphere around the origin, open: pbrt's. Rows of a block: r zmin zmax phimax (around z, from +x towards +y).
+// Part of a sphere around the origin, open: pbrt's.
 //
 // Both crossings of the sphere (sphere.cl) are tried against the clips: the first goes in, the second out. The points tried are
 // those that are reported, so a clip is off by their own error: 16 eps (|o| + r).
@@ -12,17 +12,18 @@
 #include "shapes/turn.cl"
 
 static inline real_mask partial_sphere_holds(const ShapeRay* ray, __global const float* block, uint lane, real t) {
-  const real r = real_load(block + 8, lane), low = real_load(block + 16, lane), high = real_load(block + 24, lane);
+  const real r = partial_sphere_r_lanes(block, lane), low = partial_sphere_z_min_lanes(block, lane),
+             high = partial_sphere_z_max_lanes(block, lane);
   const real x = ray->ox + t * ray->dx, y = ray->oy + t * ray->dy, z = ray->oz + t * ray->dz;
   // A clip at the pole or beyond is none: rounding may place z there.
   const real_mask above = (z >= low) | (low <= -r), below = (z <= high) | (high >= r);
-  return above & below & within_turn(x, y, real_load(block + 32, lane));
+  return above & below & within_turn(x, y, partial_sphere_phi_max_lanes(block, lane));
 }
 
 static inline Span partial_sphere_span(const ShapeRay* ray, __global const float* block, uint lane) {
   real t_enter, t_exit;
-  const real_mask hit = sphere_span_within(ray, real_of(ray->ox), real_of(ray->oy), real_of(ray->oz), real_load(block + 8, lane),
-                                           real_of(0.0f), &t_enter, &t_exit);
+  const real_mask hit = sphere_span_within(ray, real_of(ray->ox), real_of(ray->oy), real_of(ray->oz),
+                                           partial_sphere_r_lanes(block, lane), real_of(0.0f), &t_enter, &t_exit);
   Span span = span_of(hit, t_enter, t_exit);
   if (mask_bits(hit) == 0) return span;
   span.enter = hit & partial_sphere_holds(ray, block, lane, t_enter);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Convex polyhedron: the points below all of its planes. Rows of a block: begin (bits), where `leaves` holds the planes
-// (shared/shapes.def). The ray is in from the last plane that it goes down through to the first one that it comes up through.
+// Convex polyhedron: the points below all of its planes. `leaves` holds the planes (shared/shapes.def). The ray is in from the last plane that it goes down through to the first one that it comes up through.
 //
 // The ray is moved to its point p nearest to the centre c first: 3 eps |o - c|. There a plane is d - n.p away, rounded by 4 eps
 // of the size, and the crossing at (d - n.p) / n.d displaces the point from the plane by the errors of d - n.p and n.d and of the
@@ -10,7 +9,7 @@
 #ifndef CAPLET_SHAPES_POLYHEDRON_CL
 #define CAPLET_SHAPES_POLYHEDRON_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 // Whether the line meets one polyhedron, where it goes in and out, and through which planes.
 static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit, int* surface_enter,
@@ -50,7 +49,7 @@ static inline Span polyhedron_span(const ShapeRay* ray, __global const float* bl
 #if CAPLET_REAL_WIDTH == 8
   int begins[8], hits[8], surfaces_enter[8], surfaces_exit[8];
   float enters[8], exits[8];
-  mask_store(real_bits(real_load(block + 8, lane)), begins);
+  mask_store(polyhedron_begin_lanes(block, lane), begins);
   for (int i = 0; i < 8; i++) {
     if (i > 0 && begins[i] == begins[i - 1]) {
       // Empty lanes repeat one that is not.
@@ -69,7 +68,7 @@ static inline Span polyhedron_span(const ShapeRay* ray, __global const float* bl
   span.surface_exit = vload8(0, surfaces_exit);
   span.enter = span.exit = vload8(0, hits);
 #else
-  const uint begin = (uint)real_bits(real_load(block + 8, lane));
+  const uint begin = (uint)polyhedron_begin_lanes(block, lane);
   span.enter = span.exit = polyhedron_planes(ray, begin, &span.t_enter, &span.t_exit, &span.surface_enter, &span.surface_exit);
 #endif
   return span;

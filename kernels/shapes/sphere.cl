@@ -2,11 +2,11 @@
 // Copyright Caplet authors
 //
 // The sphere's span, from the perpendicular of its centre on the ray (Haines et al., "Precision improvements for ray/sphere
-// intersection", Ray Tracing Gems 2019). Rows of a block: c r.
+// intersection", Ray Tracing Gems 2019).
 #ifndef CAPLET_SHAPES_SPHERE_CL
 #define CAPLET_SHAPES_SPHERE_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 // Where the ray from w (relative to the centre) meets the sphere of radius r: lanes met, and both parameters.
 // Error of the surface distance: w is rounded once (eps |w|), the shift t_c has relative error 5 eps and moves the point along
@@ -26,10 +26,10 @@ static inline real_mask sphere_span_within(const ShapeRay* ray, real wx, real wy
 }
 
 static inline Span sphere_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const real wx = ray->ox - real_load(block + 8, lane), wy = ray->oy - real_load(block + 16, lane),
-             wz = ray->oz - real_load(block + 24, lane);
+  const RealVector c = sphere_c_lanes(block, lane);
+  const real wx = ray->ox - c.x, wy = ray->oy - c.y, wz = ray->oz - c.z;
   real t_enter, t_exit;
-  const real_mask hit = sphere_span_within(ray, wx, wy, wz, real_load(block + 32, lane), real_of(0.0f), &t_enter, &t_exit);
+  const real_mask hit = sphere_span_within(ray, wx, wy, wz, sphere_r_lanes(block, lane), real_of(0.0f), &t_enter, &t_exit);
   return span_of(hit, t_enter, t_exit);
 }
 

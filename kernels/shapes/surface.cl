@@ -22,9 +22,7 @@ typedef struct {
 } Surface;
 
 static inline LocalSurface surface_local(const SurfaceQuery* q) {
-#ifdef CAPLET_BASIC_SHAPES
-  return surface_shape(q->geometry->shape, q);
-#else
+  if (!CAPLET_HAS_SHAPE(shape_csg)) return surface_shape(q->geometry->shape, q);
   uint shape = q->geometry->shape;
   SurfaceQuery own = *q;
   CsgOperand operand;
@@ -32,14 +30,13 @@ static inline LocalSurface surface_local(const SurfaceQuery* q) {
   if (csg) shape = csg_operand(q, &operand, &own);
   const LocalSurface s = surface_shape(shape, &own);
   return csg ? csg_surface(&operand, s) : s;
-#endif
 }
 
 // The surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
 static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
   float3 o = (float3)(ray->ox, ray->oy, ray->oz);
   float3 d = (float3)(ray->dx, ray->dy, ray->dz);
-  const int placed = hit->instance != CAPLET_NONE;
+  const int placed = CAPLET_HAS_SHAPE(shape_instance) && hit->instance != CAPLET_NONE;
   if (placed) {
     o = transform_point(tree->instances[hit->instance].object_from_world, o);
     d = transform_vector(tree->instances[hit->instance].object_from_world, d);
@@ -51,7 +48,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
   const SurfaceQuery query = {
-      surfaces, tree->leaves, &geometry, primitive, surface, tree->leaves + hit->slot + 8u, o + hit->t * d,
+      surfaces, tree->leaves, &geometry, primitive, surface, lane_data(tree->leaves, hit->slot), o + hit->t * d,
       backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {

@@ -56,7 +56,7 @@ static inline float2 bilinear_parameters(float3 p00, float3 p10, float3 p01, flo
 static inline LocalSurface surface_bilinear(const SurfaceQuery* q) {
   const Surfaces* surfaces = q->surfaces;
   const GeometryRecord* geometry = q->geometry;
-  const float3 p00 = data3(q->data, 0), p10 = data3(q->data, 3), p01 = data3(q->data, 6), p11 = data3(q->data, 9);
+  const float3 p00 = bilinear_p00(q->data), p10 = bilinear_p10(q->data), p01 = bilinear_p01(q->data), p11 = bilinear_p11(q->data);
   const float2 at = bilinear_parameters(p00, p10, p01, p11, q->x, q->fallback);
   const float u = at.x, v = at.y;
   // Each from the edges along it: a narrow patch's short edges must not be told from its long ones.

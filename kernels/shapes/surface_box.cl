@@ -10,7 +10,7 @@
 
 // The face's own coordinate is the box's, the others are kept inside: the point is on the box as stored, no rounding at all.
 static inline LocalSurface surface_box(const SurfaceQuery* q) {
-  const float3 low = data3(q->data, 0), high = data3(q->data, 3), size = high - low;
+  const float3 low = box_low(q->data), high = box_high(q->data), size = high - low;
   const uint axis = q->surface >> 1;
   const int greatest = (int)(q->surface & 1u);
   const float sign = greatest ? 1.0f : -1.0f;

@@ -65,7 +65,7 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
 }
 
 static inline LocalSurface surface_capsule(const SurfaceQuery* q) {
-  return round_cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48]);
+  return round_cone_point(q, capsule_p0(q->data), capsule_p1(q->data), capsule_r(q->data), capsule_r(q->data));
 }
 
 #endif

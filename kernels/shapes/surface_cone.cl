@@ -159,7 +159,7 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
 }
 
 static inline LocalSurface surface_cone(const SurfaceQuery* q) {
-  return cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[56], q->data[64], q->data[72]);
+  return cone_point(q, cone_p0(q->data), cone_p1(q->data), cone_r0(q->data), cone_r1(q->data), cone_cap0(q->data), cone_cap1(q->data));
 }
 
 #endif

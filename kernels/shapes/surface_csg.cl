@@ -18,7 +18,7 @@ typedef struct {
 // The operand that surface q->surface belongs to: its shape kind, and what to ask of surface_shape. Layout: csg.cl.
 static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, SurfaceQuery* own) {
   __global const float* leaves = q->leaves;
-  __global const float* header = leaves + as_uint(q->data[0]);
+  __global const float* header = leaves + csg_begin(q->data);
   __global const uint* numbers = (__global const uint*)header;
   const uint groups = numbers[4];
   __global const uint* operands = numbers + 8 * (1 + groups);
@@ -39,7 +39,7 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   operand->placed = row[4] != CAPLET_NONE;
   operand->transform = leaves + (operand->placed ? row[4] : 0u);
   own->surface = q->surface - begin;
-  own->data = leaves + row[1] + 8u + (found - row[3]);
+  own->data = lane_data(leaves + row[1], found - row[3]);
   own->x = q->x - operand->center;
   // Row 0, which in a leaf holds the primitive's id.
   const uint space = as_uint(own->data[-8]);

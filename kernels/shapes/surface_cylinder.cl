@@ -8,7 +8,8 @@
 #include "shapes/surface_cone.cl"
 
 static inline LocalSurface surface_cylinder(const SurfaceQuery* q) {
-  return cone_point(q, data3(q->data, 0), data3(q->data, 3), q->data[48], q->data[48], q->data[56], q->data[64]);
+  return cone_point(q, cylinder_p0(q->data), cylinder_p1(q->data), cylinder_r(q->data), cylinder_r(q->data), cylinder_cap0(q->data),
+                    cylinder_cap1(q->data));
 }
 
 #endif

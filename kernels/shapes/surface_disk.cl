@@ -9,8 +9,8 @@
 #include "shapes/surface_local.cl"
 
 static inline LocalSurface surface_disk(const SurfaceQuery* q) {
-  const float3 center = data3(q->data, 0), normal = data3(q->data, 3);
-  const float radius = q->data[48];
+  const float3 center = disk_c(q->data), normal = disk_n(q->data);
+  const float radius = disk_r(q->data);
   const Frame turn = turn_frame(q->space, normal);
   LocalSurface s;
   const float3 v = q->x - center;

@@ -7,6 +7,7 @@
 
 #include "groups.cl"
 #include "math/vector.cl"
+#include "shapes/fields.cl"
 
 // A point of a shape in the space in which its data is stored (world, or an instance's object space).
 typedef struct {
@@ -24,14 +25,12 @@ typedef struct {
   __global const float* leaves;
   const GeometryRecord* geometry;
   uint primitive, surface;
-  __global const float* data;  // datum j at [8 * j]
+  __global const float* data;  // shapes/fields.cl
   float3 x;
   float3 fallback;  // unit normal where x leaves it undefined
   // A rotation or reflection (3x4 row-major, no translation) that the shape is stored under, where its uv tells it from none; or 0.
   __global const float* space;
 } SurfaceQuery;
-
-static inline float3 data3(__global const float* data, int j) { return (float3)(data[8 * j], data[8 * j + 8], data[8 * j + 16]); }
 
 static inline float norm1(float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 

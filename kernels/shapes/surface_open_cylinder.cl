@@ -10,7 +10,8 @@
 #include "shapes/surface_turn.cl"
 
 static inline LocalSurface surface_open_cylinder(const SurfaceQuery* q) {
-  const float r = q->data[0], low = q->data[8], high = q->data[16], phi_max = q->data[24];
+  const float r = open_cylinder_r(q->data), phi_max = open_cylinder_phi_max(q->data);
+  const float low = open_cylinder_z_min(q->data), high = open_cylinder_z_max(q->data);
   LocalSurface s;
   float phi;
   const float2 spoke = spoke_within_turn(q->x.x, q->x.y, phi_max, &phi);

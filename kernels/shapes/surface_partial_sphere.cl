@@ -13,7 +13,8 @@
 static inline float sphere_theta(float r, float z) { return atan2(sqrt(fmax(0.0f, (r - z) * (r + z))), z); }
 
 static inline LocalSurface surface_partial_sphere(const SurfaceQuery* q) {
-  const float r = q->data[0], low = fmax(q->data[8], -r), high = fmin(q->data[16], r), phi_max = q->data[24];
+  const float r = partial_sphere_r(q->data), phi_max = partial_sphere_phi_max(q->data);
+  const float low = fmax(partial_sphere_z_min(q->data), -r), high = fmin(partial_sphere_z_max(q->data), r);
   LocalSurface s;
   const float3 n = unit_or(q->x, q->fallback);
   float phi;

@@ -41,7 +41,7 @@ static inline float3 polyhedron_face_point(__global const float* planes, uint co
 }
 
 static inline LocalSurface surface_polyhedron(const SurfaceQuery* q) {
-  __global const float* head = q->leaves + as_uint(q->data[0]);
+  __global const float* head = q->leaves + polyhedron_begin(q->data);
   __global const float* planes = head + 8;
   const float3 center = load3(head), normal = load3(planes + 4u * q->surface);
   const uint count = as_uint(head[3]);

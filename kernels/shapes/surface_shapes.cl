@@ -22,20 +22,17 @@
 // The point (before ReverseOrientation) of a surface nearest to a point in its own space.
 static inline LocalSurface surface_shape(uint shape, const SurfaceQuery* q) {
   switch (shape) {
-#define SHAPE(name, rows) \
-  case shape_##name: return surface_##name(q);
-#ifdef CAPLET_BASIC_SHAPES
-    SHAPE(sphere, 0)
-    SHAPE(capsule, 0)
-    SHAPE(tapered_capsule, 0)
-    SHAPE(disk, 0)
-#else
-#define COMPOUND(name, rows)
+#define SHAPE(name, traits)                                        \
+  case shape_##name:                                               \
+    if (CAPLET_HAS_SHAPE(shape_##name)) return surface_##name(q); \
+    break;
+#define COMPOUND(name, traits)
 #include "shared/shapes.def"
-#endif
 #undef SHAPE
-    default: return surface_triangle(q);
+    default: break;
   }
+  const LocalSurface none = {q->x, q->fallback, q->fallback, (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), 0.0f};
+  return none;
 }
 
 #endif

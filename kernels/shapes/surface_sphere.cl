@@ -23,7 +23,7 @@ static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, fl
 }
 
 static inline LocalSurface surface_sphere(const SurfaceQuery* q) {
-  return sphere_point(q, data3(q->data, 0), q->data[24], own_z(q->space));
+  return sphere_point(q, sphere_c(q->data), sphere_r(q->data), own_z(q->space));
 }
 
 #endif

@@ -30,8 +30,8 @@ static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float
 static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
   const Surfaces* surfaces = q->surfaces;
   const GeometryRecord* geometry = q->geometry;
-  const float3 v0 = data3(q->data, 0);
-  const float3 e1 = data3(q->data, 3) - v0, e2 = data3(q->data, 6) - v0;
+  const float3 v0 = triangle_v0(q->data);
+  const float3 e1 = triangle_v1(q->data) - v0, e2 = triangle_v2(q->data) - v0;
   const float3 n = unit_or(robust_cross(e1, e2), q->fallback);
 
   // Barycentric coordinates of x projected along the normal, kept inside the triangle.

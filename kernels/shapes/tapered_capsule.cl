@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The tapered capsule's span: the convex hull of two spheres, that is both spheres and the part of their common tangent cone
-// between the circles where it touches them. Rows of a block: p0 p1 r0 r1.
+// between the circles where it touches them.
 //
 // A convex body's span is the hull of the spans of its parts, so entering is the least and leaving the greatest of the two
 // spheres' and the cone's crossings; a sphere inside the other, or equal ends, need no case of their own. With k = (r0 - r1) / L
@@ -12,14 +12,14 @@
 #ifndef CAPLET_SHAPES_TAPERED_CAPSULE_CL
 #define CAPLET_SHAPES_TAPERED_CAPSULE_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 #include "shapes/sphere.cl"
 
 static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const real ax = real_load(block + 8, lane), ay = real_load(block + 16, lane), az = real_load(block + 24, lane);
-  const real bx = real_load(block + 32, lane) - ax, by = real_load(block + 40, lane) - ay, bz = real_load(block + 48, lane) - az;
-  const real r0 = real_load(block + 56, lane), r1 = real_load(block + 64, lane);
-  const real wx = ray->ox - ax, wy = ray->oy - ay, wz = ray->oz - az;
+  const RealVector p0 = tapered_capsule_p0_lanes(block, lane), p1 = tapered_capsule_p1_lanes(block, lane);
+  const real bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
+  const real r0 = tapered_capsule_r0_lanes(block, lane), r1 = tapered_capsule_r1_lanes(block, lane);
+  const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
   const real zero = real_of(0.0f);
 
   // The ray's point nearest to p0, in cylinder coordinates of the axis: offset e + t f from it and height u + v t above p0.

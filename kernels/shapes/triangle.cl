@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Watertight ray-triangle test (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013). Rows: v0 v1 v2.
+// Watertight ray-triangle test (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013).
 //
 // The ray becomes the z axis by a shear that depends on the ray alone, so a shared vertex has the same 2D coordinates in all its
 // triangles. Edge functions of these are within two units in the last place, so the sign is right and opposite in the neighbour,
@@ -9,7 +9,7 @@
 #ifndef CAPLET_SHAPES_TRIANGLE_CL
 #define CAPLET_SHAPES_TRIANGLE_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 // a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
 static inline real edge_function(real a, real b, real c, real d) {
@@ -19,17 +19,19 @@ static inline real edge_function(real a, real b, real c, real d) {
 
 static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
 #pragma OPENCL FP_CONTRACT OFF
-  __global const float* rx = block + 8 + ray->row_x;
-  __global const float* ry = block + 8 + ray->row_y;
-  __global const float* rz = block + 8 + ray->row_z;
-  const real az = real_load(rz, lane) - ray->koz, bz = real_load(rz + 24, lane) - ray->koz,
-             cz = real_load(rz + 48, lane) - ray->koz;
+  __global const float* v0 = block + 8 * (1 + triangle_at_v0);
+  __global const float* rx = v0 + ray->row_x;
+  __global const float* ry = v0 + ray->row_y;
+  __global const float* rz = v0 + ray->row_z;
+  const int v1 = 8 * (triangle_at_v1 - triangle_at_v0), v2 = 8 * (triangle_at_v2 - triangle_at_v0);
+  const real az = real_load(rz, lane) - ray->koz, bz = real_load(rz + v1, lane) - ray->koz,
+             cz = real_load(rz + v2, lane) - ray->koz;
   const real ax = (real_load(rx, lane) - ray->kox) - ray->shear_x * az;
   const real ay = (real_load(ry, lane) - ray->koy) - ray->shear_y * az;
-  const real bx = (real_load(rx + 24, lane) - ray->kox) - ray->shear_x * bz;
-  const real by = (real_load(ry + 24, lane) - ray->koy) - ray->shear_y * bz;
-  const real cx = (real_load(rx + 48, lane) - ray->kox) - ray->shear_x * cz;
-  const real cy = (real_load(ry + 48, lane) - ray->koy) - ray->shear_y * cz;
+  const real bx = (real_load(rx + v1, lane) - ray->kox) - ray->shear_x * bz;
+  const real by = (real_load(ry + v1, lane) - ray->koy) - ray->shear_y * bz;
+  const real cx = (real_load(rx + v2, lane) - ray->kox) - ray->shear_x * cz;
+  const real cy = (real_load(ry + v2, lane) - ray->koy) - ray->shear_y * cz;
   const real u = edge_function(cx, by, cy, bx);
   const real v = edge_function(ax, cy, ay, cx);
   const real w = edge_function(bx, ay, by, ax);

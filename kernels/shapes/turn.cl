@@ -5,7 +5,7 @@
 #ifndef CAPLET_SHAPES_TURN_CL
 #define CAPLET_SHAPES_TURN_CL
 
-#include "shapes/real.cl"
+#include "shapes/lanes.cl"
 
 #define CAPLET_FULL_TURN 0x1.921fb6p+2f
 

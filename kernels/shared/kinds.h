@@ -12,10 +12,21 @@ namespace caplet {
 #endif
 
 enum {
-#define SHAPE(name, rows) shape_##name,
+#define SHAPE(name, traits) shape_##name,
 #include "shared/shapes.def"
 #undef SHAPE
   shape_count
+};
+
+// Traits of shapes (shapes.def).
+enum {
+  trait_solid = 1,     // closed and convex: a line is in it once or not at all; may be an operand of csg
+  trait_sheet = 2,     // open: its two sides are told apart by a normal alone
+  trait_compound = 4,  // made of other shapes
+  trait_own_light = 8,    // as a light sampled by itself (lights/area.cl)
+  trait_ball_light = 16,  // as a light sampled by a ball around it (lights/ball.cl)
+  trait_kept_box = 32,    // its data do not tell its box: the host keeps it behind them
+  trait_stands_straight = 64  // its data do not hold a rotation: turned it is placed by an instance
 };
 
 enum {
@@ -53,10 +64,15 @@ enum {
 // "None" for any index: instance of a world-space primitive, geometry without light, mesh without normals.
 #define CAPLET_NONE 0xffffffffu
 
-// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, bits 30..27 the shape kind, bits 26..0 the
-// block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
-#define CAPLET_LEAF_ROW_BITS 27
-#define CAPLET_LEAF_ROW_MASK 0x07ffffffu
+// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, then the shape kind in CAPLET_LEAF_KIND_BITS bits,
+// then the block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
+// Scenes without kinds of high numbers keep more bits for rows: programs are told by the option of this name.
+#ifndef CAPLET_LEAF_KIND_BITS
+#define CAPLET_LEAF_KIND_BITS (shape_count <= 16 ? 4 : shape_count <= 32 ? 5 : 6)
+#endif
+#define CAPLET_LEAF_ROW_BITS (31 - CAPLET_LEAF_KIND_BITS)
+#define CAPLET_LEAF_KIND(reference) ((uint)(reference) >> CAPLET_LEAF_ROW_BITS & ((1u << CAPLET_LEAF_KIND_BITS) - 1u))
+#define CAPLET_LEAF_ROW(reference) ((uint)(reference) & ((1u << CAPLET_LEAF_ROW_BITS) - 1u))
 
 // GeometryRecord.flags
 #define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform

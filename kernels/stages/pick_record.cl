@@ -10,8 +10,13 @@
 
 // Shapes whose two sides are told apart by a normal alone.
 static inline int shape_is_sheet(uint shape) {
-  return shape == shape_triangle || shape == shape_disk || shape == shape_partial_sphere || shape == shape_open_cylinder ||
-         shape == shape_partial_disk || shape == shape_bilinear;
+  switch (shape) {
+#define SHAPE(name, traits) \
+  case shape_##name: return ((traits)&trait_sheet) != 0;
+#include "shared/shapes.def"
+#undef SHAPE
+    default: return 0;
+  }
 }
 
 // The record of a hit of `ray`, or of a miss. The normal points against the ray, from inside too.

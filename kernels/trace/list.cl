@@ -7,27 +7,6 @@
 
 #include "trace/trace.cl"
 
-// The crossings of the lanes of a block with the ray's line; not for csg shapes, which have any number of them.
-static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
-  switch (shape) {
-#define SHAPE(name, rows) \
-  case shape_##name: return name##_span(ray, block, lane);
-#ifdef CAPLET_BASIC_SHAPES
-    SHAPE(capsule, 0)
-    SHAPE(triangle, 0)
-    SHAPE(sphere, 0)
-    SHAPE(tapered_capsule, 0)
-    SHAPE(disk, 0)
-#else
-#define COMPOUND(name, rows)
-#include "shared/shapes.def"
-#endif
-#undef SHAPE
-    default: break;
-  }
-  return span_of(int_of(0), real_of(0.0f), real_of(0.0f));
-}
-
 // The list of one ray while it is made: the nearest crossings so far, in order.
 typedef struct {
   __global HitRecord* sorted;
@@ -84,25 +63,22 @@ static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
     const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
     if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
     // A solid touched at one point is left just after it is entered, whatever rounding says.
-    const int solid = kind != shape_bilinear && kind != shape_partial_sphere && kind != shape_open_cylinder;
-    const int touched = solid && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
+    const int touched = shape_is_solid(kind) && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
     const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
     if (leaves && ray->sees_leaving) list_add(list, t_exit, slot + i, instance, (uint)exit_surface[i] | CAPLET_LEAVING);
   }
 }
 
-#ifndef CAPLET_BASIC_SHAPES
 static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global const float* block, uint slot, uint instance) {
   for (uint lane = 0; lane < CAPLET_WIDTH; lane++) {
     if (((__global const int*)block)[lane] < 0) continue;
     CsgLine line;
-    if (!csg_start(ray, as_uint(block[8 + lane]), &line)) continue;
+    if (!csg_start(ray, csg_begin(lane_data(block, lane)), &line)) continue;
     float t;
     int side;
     while (csg_next(ray, &line, &t, &side)) list_add(list, t, slot + lane, instance, (uint)side);
   }
 }
-#endif
 
 // All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order: by t, leaving before entering, slot, instance, surface. Writes the nearest
 // `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. The order of traversal cannot show.
@@ -134,18 +110,16 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
       if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
     } else {
-      const uint kind = ((uint)current >> CAPLET_LEAF_ROW_BITS) & 15u, row = (uint)current & CAPLET_LEAF_ROW_MASK;
+      const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       __global const float* block = leaves + (size_t)row * 8;
-      if (kind == shape_instance) {
+      if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)block)[0];
         __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
         current = (int)placed->root;
         if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
-#ifndef CAPLET_BASIC_SHAPES
-      } else if (kind == shape_csg) {
+      } else if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
         list_add_csg(&list, &shape, block, row * 8, instance);
-#endif
       } else {
         for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
           list_add_spans(&list, kind, &shape, block, lane, row * 8 + lane, instance);
@@ -157,7 +131,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       }
     }
     while (!pop_entry(stack, &top, floor, t_best, &current)) {
-      if (instance == CAPLET_NONE) return list.more ? capacity + 1 : list.count;
+      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) return list.more ? capacity + 1 : list.count;
       instance = CAPLET_NONE;
       floor = 0;
       slab = slab_ray(world_o, world_d);

@@ -204,9 +204,9 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
       if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
     } else {
-      const uint kind = ((uint)current >> CAPLET_LEAF_ROW_BITS) & 15u, row = (uint)current & CAPLET_LEAF_ROW_MASK;
+      const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       __global const float* block = leaves + (size_t)row * 8;
-      if (kind == shape_instance) {
+      if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)block)[0];
         __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
@@ -250,7 +250,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       }
     }
     while (!pop_entry(stack, &top, floor, t_best, &current)) {
-      if (instance == CAPLET_NONE) {
+      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) {
         if (found) {
           hit.t = t_best;
           hit.slot = best_slot;

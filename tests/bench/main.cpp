@@ -18,7 +18,7 @@
 #include "lower/lower.h"
 #include "peer.h"
 #include "scenes.h"
-#include "shared/kinds.h"
+#include "shared/shapes.h"
 
 namespace {
 
@@ -27,6 +27,11 @@ using caplet::RayRecord;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// As a renderer builds its kernels (stage_options).
+std::string kernel_options(std::uint64_t shapes, int kind_bits) {
+  return fmt::format("-DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}", shapes, kind_bits);
+}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -85,7 +90,11 @@ void run_shapes(const std::string& kind, std::size_t count, const caplet::Device
   const caplet::FlatScene scene = caplet::lower(caplet::bench::walk_scene(kind, count, same));
   std::optional<caplet::test::Peer> peer;
   if (!same.empty()) peer.emplace(same);
-  caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
+  caplet::test::DeviceTracer tracer(device,
+                                    width != 0        ? width
+                                    : device.is_cpu() ? 8
+                                                      : 1,
+                                    kernel_options(scene.shapes, scene.leaf_kind_bits));
   tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
   Bench bench{tracer, peer ? &*peer : nullptr, scene.leaves, seconds, true};
   const auto camera = caplet::bench::camera_rays(size);
@@ -127,7 +136,9 @@ int run(int argc, char** argv) {
   const auto primitives = kind == "triangles" ? caplet::bench::walk_triangles(count) : caplet::bench::walk_capsules(count);
   std::vector<float> nodes, leaves;
   const auto start = Clock::now();
-  const caplet::EncodedTree tree = caplet::encode_tree(primitives, nodes, leaves);
+  std::uint64_t shapes = 0;
+  for (const caplet::FlatPrimitive& p : primitives) shapes |= caplet::shape_bit(p.shape);
+  const caplet::EncodedTree tree = caplet::encode_tree(primitives, nodes, leaves, caplet::leaf_kind_bits(shapes));
   const double build = seconds_since(start);
   const caplet::test::Peer peer(primitives);
   print_json(kind + " build", build, peer.build_seconds(), "s",
@@ -139,7 +150,11 @@ int run(int argc, char** argv) {
                   static_cast<double>(leaves.size() * sizeof(float)) / n));
 
   const caplet::Device device = caplet::Device::choose(device_name);
-  caplet::test::DeviceTracer tracer(device, width != 0 ? width : device.is_cpu() ? 8 : 1);
+  caplet::test::DeviceTracer tracer(device,
+                                    width != 0        ? width
+                                    : device.is_cpu() ? 8
+                                                      : 1,
+                                    kernel_options(shapes, caplet::leaf_kind_bits(shapes)));
   tracer.upload(nodes, leaves, {}, tree.root);
   Bench bench{tracer, &peer, leaves, seconds};
   const auto camera = caplet::bench::camera_rays(size);

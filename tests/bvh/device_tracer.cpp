@@ -25,10 +25,10 @@ __kernel void any_hit(ARGUMENTS, __global int* restrict out) {
 
 }  // namespace
 
-DeviceTracer::DeviceTracer(const Device& device, int width)
+DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options)
     : device_(device),
-      program_(
-          Program::from_source(device, "trace_test", flatten_kernels(kernels), fmt::format("-DCAPLET_REAL_WIDTH={}", width))),
+      program_(Program::from_source(device, "trace_test", flatten_kernels(kernels),
+                                    fmt::format("-DCAPLET_REAL_WIDTH={} {}", width, options))),
       closest_(program_.kernel("closest")),
       any_(program_.kernel("any_hit")) {}
 

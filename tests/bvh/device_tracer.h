@@ -14,8 +14,8 @@ namespace caplet::test {
 
 class DeviceTracer {
  public:
-  /// width: CAPLET_REAL_WIDTH, 8 or 1.
-  DeviceTracer(const Device& device, int width);
+  /// width: CAPLET_REAL_WIDTH, 8 or 1. Without further options for all shapes.
+  DeviceTracer(const Device& device, int width, const std::string& options = "");
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
   /// Runs over the rays set before; blocks.

@@ -5,25 +5,27 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <utility>
 
 #include "base/error.h"
 #include "lower/encode.h"
 #include "lower/lower.h"
 #include "scene/scene.h"
-#include "shared/kinds.h"
+#include "shared/shapes.h"
 
 namespace caplet {
 namespace {
 
-constexpr std::uint32_t rows_of[] = {
-#define SHAPE(name, rows) rows,
-#include "shared/shapes.def"
-#undef SHAPE
-};
+// The ids, then the data: a sphere's centre and radius, a capsule's ends and radius ...
+constexpr std::uint32_t rows_by_count[] = {1 + 4, 1 + 7, 1 + 8, 1 + 9, 1 + 7,  1 + 9, 1 + 10, 1 + 6,
+                                           1 + 1, 1 + 4, 1 + 4, 1 + 4, 1 + 12, 1 + 1, 1};
+static_assert(std::size(rows_by_count) == shape_count);
 
 std::vector<FlatPrimitive> mixed(unsigned count) {
   std::mt19937 engine(3);
@@ -32,7 +34,7 @@ std::vector<FlatPrimitive> mixed(unsigned count) {
   for (unsigned i = 0; i < count; i++) {
     FlatPrimitive p{i % shape_instance, 1000 + i, {}};
     for (float& x : p.data) x = u(engine);
-    if (p.shape == shape_disk) p.data[3] = 0, p.data[4] = 0, p.data[5] = 1;
+    if (p.shape == shape_disk) std::copy_n(std::array{0.0f, 0.0f, 1.0f}.data(), 3, p.data + disk_at_n);
     out.push_back(p);
   }
   return out;
@@ -48,7 +50,7 @@ TEST(Encode, SlotsLeadToTheDataGiven) {
     const std::uint32_t slot = tree.slots[i];
     ASSERT_GE(slot, 16u);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(leaves[slot]), primitives[i].id);
-    for (std::uint32_t j = 1; j < rows_of[primitives[i].shape]; j++)
+    for (std::uint32_t j = 1; j < rows_by_count[primitives[i].shape]; j++)
       EXPECT_EQ(leaves[slot + 8 * j], primitives[i].data[j - 1]) << "shape " << primitives[i].shape << " row " << j;
   }
 }
@@ -68,7 +70,7 @@ TEST(Encode, SecondTreeRefersToItsOwnNodes) {
         EXPECT_GT(static_cast<std::size_t>(child), n);
       }
       if (child < 0) {
-        EXPECT_GE(std::uint32_t(child) & CAPLET_LEAF_ROW_MASK, leaves.size() / 16);
+        EXPECT_GE(std::uint32_t(child) & ((1u << CAPLET_LEAF_ROW_BITS) - 1), leaves.size() / 16);
       }
     }
   EXPECT_EQ(second.depth, first.depth);
@@ -110,15 +112,26 @@ TEST(Encode, BoxesHoldWhatTheKernelsMayReport) {
 
 TEST(Encode, LimitsOfTheLayout) {
   constexpr std::uint64_t most_rows = std::uint64_t(1) << 27, most_nodes = std::uint64_t(1) << 31;
-  EXPECT_NO_THROW(check_tree_limits(most_rows, most_nodes));
-  EXPECT_THROW(check_tree_limits(most_rows + 1, 0), InputError);
-  EXPECT_THROW(check_tree_limits(0, most_nodes + 1), InputError);
+  EXPECT_NO_THROW(check_tree_limits(most_rows, most_nodes, 4));
+  EXPECT_THROW(check_tree_limits(most_rows + 1, 0, 4), InputError);
+  EXPECT_THROW(check_tree_limits(0, most_nodes + 1, 4), InputError);
+  // Two bits more for the kind are two less for the row.
+  EXPECT_NO_THROW(check_tree_limits(most_rows / 4, 0, 6));
+  EXPECT_THROW(check_tree_limits(most_rows / 4 + 1, 0, 6), InputError);
   // A hundred million capsules fit, eight to a leaf of eight rows.
   std::array<std::uint64_t, shape_count> counts{};
   counts[shape_capsule] = 100'000'000;
   EXPECT_LT(least_rows(counts), most_rows);
   counts[shape_capsule] = std::uint64_t(-8) / 16;  // nothing overflows
-  EXPECT_THROW(check_tree_limits(least_rows(counts), 0), InputError);
+  EXPECT_THROW(check_tree_limits(least_rows(counts), 0, 4), InputError);
+}
+
+TEST(Encode, BitsOfAKind) {
+  EXPECT_EQ(leaf_kind_bits(0), 4);
+  for (const auto& [kind, bits] : {std::pair(15, 4), {16, 5}, {31, 5}, {32, 6}, {63, 6}}) {
+    EXPECT_EQ(leaf_kind_bits(std::uint64_t{1} << kind), bits) << kind;
+    EXPECT_EQ(leaf_kind_bits(std::uint64_t{1} << kind | 1), bits) << kind;
+  }
 }
 
 // Nothing is made of them: 110 million triangles as FlatPrimitives would be 6 GB.

@@ -69,9 +69,9 @@ std::vector<RayRecord> random_rays(unsigned seed, int count) {
   return out;
 }
 
-Encoded encode(const std::vector<FlatPrimitive>& primitives) {
+Encoded encode(const std::vector<FlatPrimitive>& primitives, int kind_bits) {
   Encoded out;
-  out.tree = encode_tree(primitives, out.nodes, out.leaves);
+  out.tree = encode_tree(primitives, out.nodes, out.leaves, kind_bits);
   return out;
 }
 

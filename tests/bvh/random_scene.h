@@ -38,6 +38,6 @@ struct Encoded {
   std::vector<float> nodes, leaves;
   EncodedTree tree;
 };
-Encoded encode(const std::vector<FlatPrimitive>& primitives);
+Encoded encode(const std::vector<FlatPrimitive>& primitives, int kind_bits = CAPLET_LEAF_KIND_BITS);
 
 }  // namespace caplet::test

@@ -2,15 +2,17 @@
 // Copyright Caplet authors
 //
 // Closest and any hit of every shape against brute force in double, in both encodings.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "brute.h"
 #include "device_tracer.h"
 #include "random_scene.h"
-#include "shared/kinds.h"
+#include "shared/shapes.h"
 #include "support/test_device.h"
 
 namespace caplet::test {
@@ -84,6 +86,28 @@ TEST_P(Trace, EncodingsAgreeAndAnyIsWhetherClosestExists) {
   // Contraction may differ between the two texts; what is left are rays that graze a silhouette within the bound: an interval of
   // 2e-6 around a silhouette of size 0.1 is met by one ray in 1e4 a primitive in the way.
   EXPECT_LE(different, 10);
+}
+
+TEST_P(Trace, KernelsForTheseShapesAloneAndWithMoreBitsForTheirKindSeeTheSame) {
+  const auto primitives = random_scene(19 + GetParam(), GetParam(), 2000, 0.1f);
+  std::uint64_t shapes = 0;
+  for (const FlatPrimitive& p : primitives) shapes |= shape_bit(p.shape);
+  const auto rays = random_rays(6, 20000);
+  const Encoded scene = encode(primitives), roomy = encode(primitives, 6);
+  const std::string options = fmt::format("-DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS=6", shapes);
+  for (const int width : {8, 1}) {
+    DeviceTracer &all = width == 8 ? wide() : scalar(), own(Device::choose("cpu"), width, options);
+    all.upload(scene.nodes, scene.leaves, {}, scene.tree.root);
+    own.upload(roomy.nodes, roomy.leaves, {}, roomy.tree.root);
+    const auto expected = all.closest(rays), seen = own.closest(rays);
+    EXPECT_EQ(all.any(rays), own.any(rays));
+    int hit = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      hit += seen[i].slot != CAPLET_NONE ? 1 : 0;
+      ASSERT_EQ(std::memcmp(&seen[i], &expected[i], sizeof seen[i]), 0) << i;
+    }
+    EXPECT_GT(hit, 1000);
+  }
 }
 
 TEST_P(Trace, LimitsOfTheRay) {

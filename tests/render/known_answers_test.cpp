@@ -12,9 +12,11 @@
 #include <iterator>
 #include <set>
 
+#include "lower/lower.h"
 #include "reference/scene_witness.h"
 #include "render/known_rays.h"
 #include "render_scene.h"
+#include "shared/shapes.h"
 #include "support/data.h"
 #include "support/kinds.h"
 
@@ -52,27 +54,34 @@ class ChangedKernels {
   ChangedKernels& operator=(const ChangedKernels&) = delete;
 };
 
-constexpr Trial rendering{false, true, false, false}, nearest{false, false, true, false}, lists{false, false, false, true};
-constexpr Trial rendering_basic{true, true, false, false};
+constexpr std::uint64_t every_shape = ~std::uint64_t{0},
+                        tapered_and_instances = shape_bit(shape_tapered_capsule) | shape_bit(shape_instance);
+constexpr Trial rendering{every_shape, true, false, false}, nearest{every_shape, false, true, false},
+    lists{every_shape, false, false, true};
 
-std::vector<std::string> names(bool basic_shapes) {
-  if (basic_shapes) return {"sphere", "capsule", "tapered_capsule", "triangle", "disk", "instance"};
-  std::vector<std::string> all;
-  for (const Kind& shape : all_shapes) all.emplace_back(shape.name);
-  return all;
+std::vector<std::string> names(std::uint64_t shapes) {
+  std::vector<std::string> out;
+  for (int shape = 0; shape < shape_count; ++shape)
+    if (shapes & shape_bit(static_cast<std::uint32_t>(shape))) out.push_back(shape_name(shape));
+  return out;
 }
 
 TEST(KnownRays, AreOfEveryShape) {
-  for (const bool basic : {false, true}) {
+  for (std::uint32_t shape = 0; shape <= shape_count; ++shape) {
+    const std::uint64_t asked = shape < shape_count ? shape_bit(shape) : every_shape;
+    if (shape == shape_instance) continue;  // of nothing
+    const KnownScene known = known_scene(asked);
     std::set<std::string> seen;
-    for (const KnownRay& ray : known_scene(basic).rays) seen.insert(shape_name(ray.kind));
-    const std::vector<std::string> all = names(basic);
+    for (const KnownRay& ray : known.rays) seen.insert(shape_name(ray.kind));
+    const std::vector<std::string> all = names(shapes_on_trial(asked));
     EXPECT_EQ(seen, std::set<std::string>(all.begin(), all.end()));
+    // What is tried is what a scene of these shapes will use.
+    EXPECT_EQ(lower(known.scene).shapes, shapes_on_trial(asked)) << shape_name(static_cast<int>(shape));
   }
 }
 
 TEST(KnownRays, CrossingsAreTheWitnesss) {
-  const KnownScene known = known_scene(false);
+  const KnownScene known = known_scene(every_shape);
   const reference::SceneWitness witness(known.scene);
   std::size_t crossings = 0;
   for (std::size_t i = 0; i < known.rays.size(); ++i) {
@@ -98,13 +107,13 @@ TEST(KnownRays, CrossingsAreTheWitnesss) {
 TEST(KnownAnswers, AreGivenHere) {
   for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
     EXPECT_THAT(known_answer_failures(test_device(encoding), whole_trial), IsEmpty());
-    EXPECT_THAT(known_answer_failures(test_device(encoding), {.basic_shapes = true, .render = true}), IsEmpty());
+    EXPECT_THAT(known_answer_failures(test_device(encoding), {.shapes = shape_bit(shape_capsule), .render = true}), IsEmpty());
   }
 }
 
 /// A line for each shape that begins with its name and this check.
 void expect_all(const std::vector<std::string>& failures, const std::string& check) {
-  for (const std::string& name : names(false)) EXPECT_THAT(failures, Contains(StartsWith(name + ": " + check))) << name;
+  for (const std::string& name : names(every_shape)) EXPECT_THAT(failures, Contains(StartsWith(name + ": " + check))) << name;
 }
 
 TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
@@ -117,9 +126,10 @@ TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
 
 TEST(KnownAnswers, SeeCrossingsThatAreMissedByShadowRaysAlone) {
   const ChangedKernels changed({{"trace/trace.cl", "if (any && found) {", "if (any) found = 0;\n          if (any && found) {"}});
-  const std::vector<std::string> failures = known_answer_failures(test_device(), rendering_basic);
-  ASSERT_EQ(failures.size(), names(true).size());
-  for (const std::string& name : names(true))
+  const std::vector<std::string> failures =
+      known_answer_failures(test_device(), {.shapes = tapered_and_instances, .render = true});
+  ASSERT_EQ(failures.size(), names(tapered_and_instances).size());
+  for (const std::string& name : names(tapered_and_instances))
     EXPECT_THAT(failures, Contains(StartsWith(name + ": any crossing (connect)"))) << name;
 }
 
@@ -142,14 +152,15 @@ TEST(KnownAnswers, SeeWrongLists) {
 TEST(KnownAnswers, SeeTheSidesOfOneSidedShapesSwapped) {
   const ChangedKernels changed({{"trace/trace.cl", "if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;",
                                  "if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;"}});
-  const std::vector<std::string> failures = known_answer_failures(test_device(), rendering_basic);
+  const std::vector<std::string> failures =
+      known_answer_failures(test_device(), {.shapes = tapered_and_instances, .render = true});
   for (const char* solid : {"sphere", "capsule", "tapered_capsule"})
     EXPECT_THAT(failures, Contains(StartsWith(std::string(solid) + ": nearest crossing (extend)"))) << solid;
 }
 
 TEST(KnownAnswers, AreRememberedByKernelsAndEncoding) {
   ::setenv("CAPLET_CACHE", temporary_folder().c_str(), 1);
-  const Trial& trial = rendering_basic;
+  const Trial& trial = {.shapes = tapered_and_instances, .render = true};
   const Device wide = test_device(Encoding::wide), single = test_device(Encoding::single);
   EXPECT_TRUE(needs_trial(wide, trial));
   try_device(wide, trial);

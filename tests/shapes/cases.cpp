@@ -14,6 +14,7 @@
 #include <ostream>
 
 #include "lower/flat_shapes.h"
+#include "lower/shapes.h"
 #include "reference/from_scene.h"
 #include "shared/kinds.h"
 

@@ -12,10 +12,11 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <stdexcept>
 
 #include "base/check.h"
 #include "lower/flat_shapes.h"
-#include "shared/kinds.h"
+#include "lower/shapes.h"
 
 namespace caplet {
 
@@ -26,12 +27,6 @@ using glm::dvec3;
 
 constexpr double eps = 0x1p-24;
 constexpr std::size_t lanes_per_group = 4;
-
-constexpr std::array<std::uint32_t, shape_count> rows_of = {
-#define SHAPE(name, rows) rows,
-#include "shared/shapes.def"
-#undef SHAPE
-};
 
 struct Solid {
   const Shape* shape;
@@ -87,111 +82,42 @@ class Flattening {
   std::uint32_t surfaces_ = 0;
 };
 
-/// A solid's kernel data, by the same functions as for shapes that are no operands.
+/// What a solid's kernel form is: that of the shape by itself.
 struct FlatOf {
   const Matrix& m;
   std::vector<float>& leaves;
   const SourceLocation& where;
 
-  FlatPrimitive operator()(const SphereShape& s) const { return flat_primitive(s, m, leaves); }
-  FlatPrimitive operator()(const CylinderShape& s) const { return flat_primitive(s, m, leaves); }
-  FlatPrimitive operator()(const ConeShape& s) const { return flat_primitive(s, m, leaves); }
-  FlatPrimitive operator()(const BoxShape& s) const { return flat_primitive(s, m, leaves); }
-  FlatPrimitive operator()(const PolyhedronShape& s) const { return flat_primitive(s, m, leaves); }
   FlatPrimitive operator()(const CapsulesShape& capsules) const {
     if (capsules.p0.size() != 1) throw InputError(where, "a csg operand of capsules must hold exactly one");
-    const double scale = similarity_scale(m);
-    const float r0 = capsules.radius0[0], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[0];
-    FlatPrimitive p{};
-    put(p, 0, apply_point(m, dvec3(capsules.p0[0])));
-    if (capsules.p0[0] == capsules.p1[0]) {
-      p.shape = shape_sphere;
-      p.data[3] = static_cast<float>(std::max(r0, r1) * scale);
-      return p;
-    }
-    p.shape = r0 == r1 ? shape_capsule : shape_tapered_capsule;
-    put(p, 3, apply_point(m, dvec3(capsules.p1[0])));
-    p.data[6] = static_cast<float>(r0 * scale);
-    p.data[7] = p.shape == shape_capsule ? 0 : static_cast<float>(r1 * scale);
-    return p;
+    return flat_capsule(capsules, 0, &m, similarity_scale(m));
   }
-  template <class Open>
-  FlatPrimitive operator()(const Open&) const {
-    throw InputError(where, "a csg operand must be a closed solid");
+  FlatPrimitive operator()(const TriangleMeshShape&) const { return open(); }
+  FlatPrimitive operator()(const BilinearMeshShape&) const { return open(); }
+  template <class One>
+  FlatPrimitive operator()(const One& one) const {
+    const FlatPrimitive p = flat_primitive(one, m, leaves);
+    return shape_has(p.shape, trait_solid) ? p : open();
   }
+  [[noreturn]] FlatPrimitive open() const { throw InputError(where, "a csg operand must be a closed solid"); }
 };
 
 double length3(const double (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-/// By how much the radius of a flat end grows when the side of slope `k` (radius lost a unit of height towards the other end) and
-/// the end itself move out by `b`: where the two moved lines meet.
-double rim_growth(double k, double b) { return b * (std::sqrt(1 + k * k) + k); }
-
-/// Radius lost a unit of height, seen from a flat end of radius `flat` across `length` to a ball of radius `round`: the tangent
-/// from the rim to the ball.
-double slope_to_ball(double flat, double round, double length) {
-  const double distance = std::hypot(flat, length);
-  return distance > round ? -std::tan(std::asin(round / distance) - std::atan2(flat, length)) : 0;
-}
-
-/// A cylinder or cone with its surfaces moved out by `b`.
-FlatPrimitive grown_hull(FlatPrimitive p, double b) {
-  const bool cylinder = p.shape == shape_cylinder;
-  float* d = p.data;
-  const double r0 = double(d[6]), r1 = cylinder ? r0 : double(d[7]);
-  const bool round0 = d[cylinder ? 7 : 8] == CAPLET_CAP_ROUND, round1 = d[cylinder ? 8 : 9] == CAPLET_CAP_ROUND;
-  const dvec3 p0(d[0], d[1], d[2]), p1(d[3], d[4], d[5]);
-  const double length = glm::length(p1 - p0);
-  const dvec3 axis = length > 0 ? (p1 - p0) / length : dvec3(0);
-  const double k = !(length > 0) || cylinder ? 0
-                   : round0 == round1        ? (r0 - r1) / length
-                   : round1                  ? slope_to_ball(r0, r1, length)
-                                             : -slope_to_ball(r1, r0, length);
-  if (!round0) put(p, 0, p0 - b * axis);
-  if (!round1) put(p, 3, p1 + b * axis);
-  if (cylinder) {
-    d[6] = static_cast<float>(r0 + b);
-  } else {
-    d[6] = static_cast<float>(r0 + (round0 ? b : rim_growth(k, b)));
-    d[7] = static_cast<float>(r1 + (round1 ? b : rim_growth(-k, b)));
-  }
-  return p;
-}
-
 /// The solid with its surfaces moved out by `b`.
-FlatPrimitive grown_by(FlatPrimitive p, double b, std::vector<float>& leaves) {
-  const auto more = [b](float& x, double sign) { x = static_cast<float>(double(x) + sign * b); };
+FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& leaves) {
   switch (p.shape) {
-    case shape_sphere:
-      more(p.data[3], 1);
+#define SHAPE(name, traits)                                                       \
+  case shape_##name:                                                              \
+    if constexpr (((traits)&trait_solid) != 0) return name##_grown(p, b, leaves); \
+    break;
+#define COMPOUND(name, traits)
+#include "shared/shapes.def"
+#undef SHAPE
+    default:
       break;
-    case shape_tapered_capsule:
-      more(p.data[7], 1);
-      [[fallthrough]];
-    case shape_capsule:
-      more(p.data[6], 1);
-      break;
-    case shape_cylinder:
-    case shape_cone:
-      return grown_hull(p, b);
-    case shape_box:
-      for (int k = 0; k < 3; ++k) {
-        more(p.data[k], -1);
-        more(p.data[3 + k], 1);
-      }
-      break;
-    default: {
-      CHECK_EQ_(p.shape, std::uint32_t(shape_polyhedron));
-      const std::size_t from = std::bit_cast<std::uint32_t>(p.data[0]), to = leaves.size();
-      const std::size_t count = std::bit_cast<std::uint32_t>(leaves[from + 3]);
-      leaves.resize(to + 8 + (4 * count + 7) / 8 * 8);
-      std::copy_n(leaves.begin() + static_cast<std::ptrdiff_t>(from), 8 + 4 * count,
-                  leaves.begin() + static_cast<std::ptrdiff_t>(to));
-      for (std::size_t i = 0; i < count; ++i) more(leaves[to + 8 + 4 * i + 3], 1);
-      p.data[0] = std::bit_cast<float>(narrow<std::uint32_t>(to));
-    }
   }
-  return p;
+  throw std::logic_error("only solids grow");
 }
 
 /// `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of `radius` around it.
@@ -270,7 +196,7 @@ std::size_t append_rows(std::vector<float>& leaves, std::size_t count) {
 void write_group(const Group& group, const std::vector<Operand>& operands, std::size_t first, std::size_t row,
                  std::vector<float>& leaves) {
   const Operand& one = operands[group.operands[0]];
-  const std::uint32_t rows = rows_of[one.flat.shape];
+  const std::uint32_t rows = rows_of(one.flat.shape);
   const std::size_t block = append_rows(leaves, rows * 8);
   for (std::size_t lane = 0; lane < lanes_per_group; ++lane) {
     // Lanes without an operand repeat the first.
@@ -292,6 +218,17 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
 }
 
 }  // namespace
+
+std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves) {
+  const auto number = [&](std::size_t at) { return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]); };
+  std::uint64_t shapes = 0;
+  for (std::size_t group = 0; group < number(4); ++group) shapes |= shape_bit(number(8 * (1 + group)));
+  return shapes;
+}
+
+// Operands hold their own transforms.
+bool bakes_under(const CsgShape&, const Matrix&) { return true; }
+glm::dmat3 turn_under(const CsgShape&, const Matrix&) { return glm::dmat3(1); }
 
 FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<float>& leaves) {
   Flattening flattening;
@@ -344,9 +281,9 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
   }
 
   FlatPrimitive p{shape_csg, 0, {}};
-  p.data[0] = bits(begin);
-  put(p, 3, box.min - error);
-  put(p, 6, box.max + error);
+  p.data[csg_at_begin] = bits(begin);
+  put(p, csg_data, box.min - error);
+  put(p, csg_data + 3, box.max + error);
   return p;
 }
 
