@@ -32,8 +32,8 @@ test::Result render(const fs::path& kernels, const std::vector<std::string>& mor
 
 TEST(Trial, ADriverThatAbortsIsToldOf) {
   CAPLET_NEEDS_POCL();  // a trap of a GPU's is no signal
-  const test::Result result = render(test::changed_kernels("stages/extend.cl", "const uint path = g->queue[item];",
-                                                           "const uint path = g->queue[item]; __builtin_trap();"));
+  const test::Result result = render(test::changed_kernels("stages/extend.cl", "const uint path = g->queues.queue[item];",
+                                                           "const uint path = g->queues.queue[item]; __builtin_trap();"));
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_EQ(result.signal, 0);
   EXPECT_THAT(result.err, AllOf(HasSubstr("its driver ended with signal"), HasSubstr("caplet doctor")));
