@@ -71,7 +71,8 @@ class Developer {
       : film_(film),
         rgb_from_xyz_(rgb_from_xyz(scene.film.space)),
         exposure_(scene.film.exposure_time * scene.film.iso / 100),
-        limit_(scene.film.max_component_value) {}
+        limit_(scene.film.max_component_value),
+        brightest_(std::ldexp(1.0, film.layout().color_exponent)) {}
 
   void look_at(std::size_t pixel) {
     pixel_ = pixel;
@@ -107,8 +108,13 @@ class Developer {
         if (samples_ < 2) return {};
         const Vector square = per_sample_ * sums(layer);
         Vector of_mean{};
-        for (std::size_t c = 0; c < 3; ++c)
-          of_mean[c] = gain_ * gain_ * std::max(0.0, square[c] - rgb_[c] * rgb_[c]) / (samples_ - 1);
+        for (std::size_t c = 0; c < 3; ++c) {
+          // A mean of squares is not below the mean's square, but where the squares were too large for their sum.
+          const double least = rgb_[c] * rgb_[c];
+          const bool unknown = least > brightest_ * brightest_ && square[c] < 0.5 * least;
+          of_mean[c] = unknown ? std::numeric_limits<double>::infinity()
+                               : gain_ * gain_ * std::max(0.0, square[c] - least) / (samples_ - 1);
+        }
         return of_mean;
       }
       case LayerHow::number:
@@ -127,7 +133,7 @@ class Developer {
 
   const Film& film_;
   const std::array<double, 9> rgb_from_xyz_;
-  const double exposure_, limit_;
+  const double exposure_, limit_, brightest_;
   std::size_t pixel_ = 0;
   double samples_ = 0, hits_ = 0, per_sample_ = 0, per_hit_ = 0, gain_ = 0;
   Vector rgb_{};
