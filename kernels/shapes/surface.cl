@@ -72,7 +72,8 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   s.primitive = primitive;
   s.surface = surface;
   s.leaving = leaving;
-  const uint base = placed ? tree->instances[hit->instance].light_base : 0u;
+  uint base = 0u;
+  if (placed) base = tree->instances[hit->instance].light_base;
   s.light = s.primitive_light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
                                     ? CAPLET_NONE
                                     : base + geometry.light_offset + (primitive - geometry.primitive_begin);
