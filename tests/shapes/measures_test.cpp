@@ -14,6 +14,7 @@
 #include <random>
 
 #include "lower/area.h"
+#include "lower/flat_shapes.h"
 #include "lower/shapes.h"
 #include "scene/scene.h"
 #include "shared/kinds.h"
