@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "device/accounting.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
+#include "device/detail/accounting.h"
 #include "device/device.h"
 #include "device/select.h"
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A render's picture, developed a few rows at a time from the device's film: neither film nor picture is in memory as a whole.
+#pragma once
+
+#include "device/device.h"
+#include "film/develop.h"
+#include "film/image.h"
+#include "scene/scene.h"
+#include "shared/records.h"
+
+namespace caplet::report {
+
+/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `params`, `scene` and
+/// `not_finite`.
+BandedImage developed_in_bands(const Buffer<FilmRecord>& film, const ParamsRecord& params, const Scene& scene, Layers layers,
+                               NotFinite& not_finite);
+
+}  // namespace caplet::report
