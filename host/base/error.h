@@ -1,43 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Errors with a place. Exceptions inside, one catch per door (host/cli).
+// Errors with a place (caplet/error.h), and a collection of them. Exceptions inside, one catch per door (host/cli).
 #pragma once
 
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "caplet/error.h"
+
 namespace caplet {
-
-/// Where something was said. Lines and columns count from 1; 0: unknown. `file` may also be a flag ("--size") or a device.
-struct SourceLocation {
-  std::string file;
-  int line = 0;
-  int column = 0;
-
-  /// "file:line:column", leaving out what is unknown.
-  std::string to_string() const;
-};
-
-/// Wrong input or usage: exit code 2. One line per message, each already carrying its place.
-class InputError : public std::runtime_error {
- public:
-  explicit InputError(const std::string& message);
-  InputError(const SourceLocation& where, const std::string& message);
-  explicit InputError(std::vector<std::string> messages);
-  const std::vector<std::string>& messages() const { return messages_; }
-
- private:
-  std::vector<std::string> messages_;
-};
-
-/// Failed while working (device, disk): exit code 1.
-class RunError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Collects input errors so that several are reported at once. Errors of one kind are one line, the first, with the number of the
 /// others; of what goes beyond `limit` lines only the number is said.

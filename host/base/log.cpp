@@ -2,39 +2,53 @@
 // Copyright Caplet authors
 #include "base/log.h"
 
-#include <spdlog/sinks/base_sink.h>
-#include <spdlog/sinks/stdout_sinks.h>
-
 #include <atomic>
+#include <cstdio>
 #include <mutex>
+#include <string>
 
-namespace caplet::log {
+namespace caplet {
 
 namespace {
 
 std::atomic<int> errors{0};
+std::atomic<LogLevel> least{LogLevel::warning};
+std::mutex writing;
 
-class CountingSink : public spdlog::sinks::base_sink<std::mutex> {
- protected:
-  void sink_it_(const spdlog::details::log_msg& message) override {
-    if (message.level >= spdlog::level::err) ++errors;
-  }
-  void flush_() override {}
-};
+/// Lasts as long as the process: what is destroyed at its end may still have something to say.
+LogSink& sink() {
+  static auto* set = new LogSink;
+  return *set;
+}
 
-struct Setup {
-  Setup() {
-    auto console = std::make_shared<spdlog::sinks::stderr_sink_mt>();
-    auto counter = std::make_shared<CountingSink>();
-    auto logger = std::make_shared<spdlog::logger>("caplet", spdlog::sinks_init_list{console, counter});
-    logger->set_pattern("caplet: %^%l%$: %v");
-    spdlog::set_default_logger(logger);
-  }
-} setup;
+const char* name_of(LogLevel level) {
+  return level == LogLevel::error ? "error" : level == LogLevel::warning ? "warning" : "info";
+}
 
 }  // namespace
 
-void set_quiet(bool quiet) { spdlog::set_level(quiet ? spdlog::level::warn : spdlog::level::info); }
-int error_count() { return errors; }
+void set_log_sink(LogSink to) {
+  const std::lock_guard lock(writing);
+  sink() = std::move(to);
+}
 
-}  // namespace caplet::log
+void set_log_level(LogLevel level) { least = level; }
+
+namespace log {
+
+int error_count() { return errors; }
+bool is_shown(LogLevel level) { return level >= least; }
+
+void write(LogLevel level, std::string_view message) {
+  if (level == LogLevel::error) ++errors;
+  if (!is_shown(level)) return;
+  const std::lock_guard lock(writing);
+  if (sink()) return sink()(level, message);
+  const std::string line = fmt::format("caplet: {}: {}\n", name_of(level), message);
+  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace log
+
+}  // namespace caplet

@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Diagnostics go to stderr, one line each; results never do. Levels: quiet shows warnings and errors only.
+// Diagnostics, one line each: to stderr unless a sink is set (caplet/log.h); results never are.
 #pragma once
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "caplet/log.h"
 
 namespace caplet::log {
 
-void set_quiet(bool quiet);
+/// Warnings and errors only, or what is told at `info` as well.
+inline void set_quiet(bool quiet) { set_log_level(quiet ? LogLevel::warning : LogLevel::info); }
 /// Number of errors logged since the start; tests fail when it moved unexpectedly.
 int error_count();
 
-using spdlog::debug;
-using spdlog::error;
-using spdlog::info;
-using spdlog::warn;
+bool is_shown(LogLevel level);
+void write(LogLevel level, std::string_view message);
+
+template <class... Values>
+void info(fmt::format_string<Values...> text, Values&&... values) {
+  if (is_shown(LogLevel::info)) write(LogLevel::info, fmt::format(text, std::forward<Values>(values)...));
+}
+template <class... Values>
+void warn(fmt::format_string<Values...> text, Values&&... values) {
+  if (is_shown(LogLevel::warning)) write(LogLevel::warning, fmt::format(text, std::forward<Values>(values)...));
+}
+/// Counted whether it is shown or not.
+template <class... Values>
+void error(fmt::format_string<Values...> text, Values&&... values) {
+  write(LogLevel::error, fmt::format(text, std::forward<Values>(values)...));
+}
 
 }  // namespace caplet::log

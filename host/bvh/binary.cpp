@@ -3,7 +3,7 @@
 //
 // Top-down binned surface area heuristic (Wald 2007). Parallel over subtrees and, near the root, over ranges; minima, maxima and
 // counts do not depend on the order they are taken in, and partitions are stable, so neither does the tree.
-#include "bvh/binary.h"
+#include "bvh/detail/binary.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -6,7 +6,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include "base/check.h"
-#include "bvh/binary.h"
+#include "bvh/detail/binary.h"
 
 namespace caplet::bvh {
 namespace {

@@ -23,7 +23,7 @@ void run_bench(std::vector<std::string> arguments) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path() / "caplet_bench";
   if (error || !fs::exists(program, error))
-    throw InputError("bench: caplet_bench is not built; configure with -DCAPLET_BENCH=ON (needs libembree-dev) and build again");
+    throw InputError("bench: caplet_bench is not built; configure with -DCAPLET_BENCH=ON and build again");
   std::vector<char*> argv;
   std::string name = program.string();
   argv.push_back(name.data());

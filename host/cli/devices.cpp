@@ -7,33 +7,19 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/device_json.h"
 #include "device/device.h"
+#include "report/device_json.h"
 
 namespace caplet::cli {
-
-nlohmann::ordered_json device_json(const DeviceInfo& device) {
-  return {{"index", device.index},
-          {"name", device.name},
-          {"type", device.type},
-          {"vendor", device.vendor},
-          {"driver", device.driver},
-          {"version", device.version},
-          {"platform", device.platform},
-          {"compute_units", device.compute_units},
-          {"native_float_width", device.native_float_width},
-          {"encoding", name_of(natural_encoding(device))},
-          {"global_bytes", device.global_bytes},
-          {"max_allocation_bytes", device.max_allocation_bytes}};
-}
 
 namespace {
 
 void print_json(const std::vector<DeviceInfo>& devices) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const DeviceInfo& device : devices) out.push_back(device_json(device));
+  for (const DeviceInfo& device : devices) out.push_back(report::device_json(device));
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

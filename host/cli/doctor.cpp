@@ -7,12 +7,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/device_json.h"
-#include "device/doctor/diagnosis.h"
+#include "cli/options.h"
+#include "doctor/diagnosis.h"
 #include "render/known_answers.h"
 #include "render/renderer.h"
+#include "report/device_json.h"
 
 namespace caplet::cli {
 
@@ -41,7 +43,7 @@ void print_json(const doctor::Diagnosis& diagnosis) {
                          {"vendor", platform.vendor},
                          {"version", platform.version},
                          {"devices", platform.devices.size()}});
-    for (const doctor::DeviceFacts& device : platform.devices) devices.push_back(device_json(device.info));
+    for (const doctor::DeviceFacts& device : platform.devices) devices.push_back(report::device_json(device.info));
   }
   const nlohmann::ordered_json out{{"findings", findings}, {"platforms", platforms}, {"devices", devices}};
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -69,10 +71,11 @@ void add_doctor(CLI::App& app) {
     chosen->options.least_bytes = batch_bytes;
     chosen->options.test = [](const Device& device) { try_device(device, whole_trial); };
     const bool json = chosen->json;
-    const doctor::Diagnosis diagnosis =
-        doctor::diagnose(doctor::this_machine(), chosen->options, [json](const doctor::Finding& finding) {
-          if (!json) print_line(finding);
-        });
+    const doctor::Diagnosis diagnosis = with_device_flag([&] {
+      return doctor::diagnose(doctor::this_machine(), chosen->options, [json](const doctor::Finding& finding) {
+        if (!json) print_line(finding);
+      });
+    });
     if (json) print_json(diagnosis);
     std::fflush(stdout);
     if (diagnosis.anything_wrong()) throw CLI::RuntimeError(1);

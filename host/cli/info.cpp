@@ -6,12 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/summary.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/lower.h"
+#include "report/summary.h"
 
 namespace caplet::cli {
 
@@ -47,8 +48,8 @@ void add_info(CLI::App& app) {
   command->add_flag("--json", options->json, "Print a JSON object for machines");
   command->callback([options] {
     const Scene scene = import_scene(options->scene, FileImageReader());
-    const nlohmann::ordered_json info = scene_summary(scene, lower(scene));
-    options->json ? fmt::print("{}", to_text(info)) : print_text(info);
+    const nlohmann::ordered_json info = report::scene_summary(scene, lower(scene));
+    options->json ? fmt::print("{}", report::to_text(info)) : print_text(info);
   });
 }
 

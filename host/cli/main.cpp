@@ -16,6 +16,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "cli/commands.h"
 #include "device/second_try.h"
 
@@ -84,6 +85,7 @@ int run(CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  caplet::log::set_quiet(false);
   // A closed pipe and a file size limit shall be write errors, not signals: there are other outputs, and files to remove.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "import/pbrt_names.h"
-#include "import/presentation.h"
+#include "base/spelling.h"
+#include "present/film_window.h"
 
 namespace caplet::cli {
 
@@ -37,26 +37,6 @@ std::vector<long long> whole_numbers(std::string_view text, char separator) {
 }
 
 [[noreturn]] void refuse(const char* flag, const std::string& message) { throw InputError(SourceLocation{flag}, message); }
-
-void check_crop(const std::array<int, 4>& crop, const FilmSettings& film) {
-  if (crop[0] < 0 || crop[1] < 0 || crop[2] > film.width || crop[3] > film.height)
-    refuse("--crop", fmt::format("{},{},{},{} is not within the image of {}x{}", crop[0], crop[1], crop[2], crop[3], film.width,
-                                 film.height));
-}
-
-/// Keeps a crop's place in the picture when the picture's size changes; never empty.
-std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& film, const ImageSize& size) {
-  const auto scaled = [](int value, int to, int from) {
-    return static_cast<int>(std::lround(static_cast<double>(value) * to / from));
-  };
-  std::array<int, 4> out{scaled(crop[0], size.width, film.width), scaled(crop[1], size.width, film.width),
-                         scaled(crop[2], size.height, film.height), scaled(crop[3], size.height, film.height)};
-  out[0] = std::min(out[0], size.width - 1);
-  out[1] = std::max(out[1], out[0] + 1);
-  out[2] = std::min(out[2], size.height - 1);
-  out[3] = std::max(out[3], out[2] + 1);
-  return out;
-}
 
 }  // namespace
 
@@ -89,17 +69,6 @@ std::array<int, 2> parse_pixel(const std::string& text) {
   return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
 }
 
-void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film) {
-  const auto [x, y] = pixel;
-  if (x >= film.width || y >= film.height)
-    refuse("--pixel",
-           fmt::format("{},{} is outside of the image of {}x{} (pixels count from 0,0)", x, y, film.width, film.height));
-  if (!film.crop) return;
-  const std::array<int, 4>& crop = *film.crop;
-  if (x < crop[0] || x >= crop[1] || y < crop[2] || y >= crop[3])
-    refuse("--pixel", fmt::format("{},{} is outside of the crop {},{},{},{}", x, y, crop[0], crop[2], crop[1], crop[3]));
-}
-
 RayNumbers parse_ray(const std::string& text) {
   std::array<double, 6> numbers{};
   std::size_t count = 0;
@@ -129,13 +98,17 @@ Layers parse_layers(const std::optional<std::string>& list, bool variance) {
         for (const LayerRow& row : layer_rows)
           if (*row.option) names.emplace_back(row.option);
         refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like Z,albedo, or all, or none)",
-                                       name, pbrt::nearest_name(name, names)));
+                                       name, nearest_name(name, names)));
       }
       layers = layers.with(static_cast<Layer>(found - layer_rows.begin()));
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }
   return variance ? layers.with(Layer::variance) : layers;
+}
+
+Device choose_device(const std::string& choice, Encoding encoding) {
+  return with_device_flag([&] { return Device::choose(choice, encoding); });
 }
 
 void add_encoding(CLI::App& command, Encoding& encoding) {
@@ -147,18 +120,8 @@ void add_encoding(CLI::App& command, Encoding& encoding) {
 }
 
 void apply(const Overrides& overrides, Scene& scene) {
-  FilmSettings& film = scene.film;
-  if (overrides.size) {
-    if (film.crop) film.crop = rescaled(*film.crop, film, *overrides.size);
-    film.width = overrides.size->width;
-    film.height = overrides.size->height;
-    if (scene.automatic_camera) frame_camera(scene);
-  }
-  if (overrides.crop) {
-    const std::array<int, 4>& crop = *overrides.crop;
-    check_crop(crop, film);
-    film.crop = {crop[0], crop[2], crop[1], crop[3]};
-  }
+  if (overrides.size) set_film_size(scene, overrides.size->width, overrides.size->height);
+  if (overrides.crop) with_flag("--crop", [&] { set_crop(scene, *overrides.crop); });
   if (overrides.samples_per_pixel) scene.sampler.samples_per_pixel = *overrides.samples_per_pixel;
   if (overrides.seed) scene.sampler.seed = *overrides.seed;
   if (overrides.max_depth) scene.integrator.max_depth = *overrides.max_depth;

@@ -34,15 +34,37 @@ std::array<int, 4> parse_crop(const std::string& text);
 /// "X,Y": a pixel of the full image, from the top left. Throws InputError naming --pixel.
 std::array<int, 2> parse_pixel(const std::string& text);
 
-/// Throws InputError naming --pixel when the pixel is not of the image, or not within its crop.
-void check_pixel(const std::array<int, 2>& pixel, const FilmSettings& film);
-
 /// "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError naming --ray.
 RayNumbers parse_ray(const std::string& text);
 
 /// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_rows' options between commas.
 /// And the variance, when asked for. Throws InputError naming --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
+
+/// What `work` does; what it throws as InputError names `flag`.
+template <class Work>
+auto with_flag(const char* flag, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(SourceLocation{flag}, error.what());
+  }
+}
+
+/// What `choose` returns: a device, or its number. What it throws about the choice names --device.
+template <class Choose>
+auto with_device_flag(const Choose& choose) {
+  try {
+    return choose();
+  } catch (const UnknownDevice& error) {
+    throw InputError(SourceLocation{"--device"}, error.what());
+  } catch (const NoDevice& error) {
+    throw RunError(std::string("--device: ") + error.what() + "; `caplet doctor` tells what is missing");
+  }
+}
+
+/// Device::choose.
+Device choose_device(const std::string& choice, Encoding encoding);
 
 /// Adds `--encoding`, which forces the way kernels go through the tree.
 void add_encoding(CLI::App& command, Encoding& encoding);

@@ -5,24 +5,25 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <limits>
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/pick_report.h"
-#include "cli/pick_table.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/camera.h"
 #include "lower/lower.h"
+#include "present/film_window.h"
 #include "render/query.h"
+#include "report/pick_report.h"
+#include "report/pick_table.h"
 #include "table/ray_file.h"
 
 namespace caplet::cli {
@@ -58,29 +59,29 @@ RayRecord to_record(const RayNumbers& n) {
 void pick_one(const Options& options, const Scene& scene, const FlatScene& flat, const std::optional<std::array<int, 2>>& pixel,
               const RayRecord& ray, const Device& device) {
   Query query(flat, device);
-  PickReport report;
-  report.pixel = pixel;
-  report.ray = ray;
-  report.device = device.info().name;
-  report.all = options.all;
+  report::PickReport told;
+  told.pixel = pixel;
+  told.ray = ray;
+  told.device = device.info().name;
+  told.all = options.all;
   if (options.all) {
     HitLists lists = query.all(std::span(&ray, 1), options.limit);
     if (!lists.overflowed.empty()) refuse_overflow({0}, options.limit);
-    report.crossings = std::move(lists.crossings);
+    told.crossings = std::move(lists.crossings);
   } else if (const PickRecord pick = query.closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
-    report.crossings = {pick};
+    told.crossings = {pick};
   }
   SecondTry::driver_works();
-  if (options.reference) report.reference = reference_crossings(scene, ray, options.all);
-  fmt::print("{}", options.json ? json_text(report, scene) : plain_text(report, scene));
+  if (options.reference) told.reference = report::reference_crossings(scene, ray, options.all);
+  fmt::print("{}", options.json ? report::json_text(told, scene) : report::plain_text(told, scene));
 }
 
 // --- Lists of rays ---
 
 /// Rows of a chunk of rays, numbered from `first`; rays with more crossings than the limit are added to `overflowed`.
-std::vector<PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const Options& options,
-                            std::vector<std::uint64_t>& overflowed) {
-  std::vector<PickRow> rows;
+std::vector<report::PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const Options& options,
+                                    std::vector<std::uint64_t>& overflowed) {
+  std::vector<report::PickRow> rows;
   if (options.all) {
     const HitLists lists = query.all(rays, options.limit);
     for (const std::size_t ray : lists.overflowed) overflowed.push_back(first + ray);
@@ -98,8 +99,8 @@ std::vector<PickRow> answer(Query& query, std::span<const RayRecord> rays, std::
 
 void pick_many(const Options& options, const Scene& scene, const FlatScene& flat, RayFile& file, const fs::path& out,
                const Device& device) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const Clock::time_point start = Clock::now();
+  const auto seconds = [start] { return seconds_since(start); };
   Query query(flat, device);
   // Compiles the kernels before the rays are read: after a driver's crash the program starts again, and a pipe cannot be read
   // twice.
@@ -112,7 +113,8 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
   const std::size_t chunk =
       options.all ? std::clamp<std::size_t>(crossings_in_a_chunk / options.limit, 1, rays_in_a_chunk) : rays_in_a_chunk;
   write_atomically(out, [&](const fs::path& temporary) {
-    const std::unique_ptr<PickTable> table = create_pick_table(temporary, table_format(out).value(), scene, out);
+    const std::unique_ptr<report::PickTable> table =
+        report::create_pick_table(temporary, report::table_format(out).value(), scene, out);
     std::vector<std::uint64_t> overflowed;
     for (;;) {
       if (interrupt_requested()) throw RunError("interrupted; nothing is written");
@@ -121,7 +123,7 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
       rays.reserve(numbers.size());
       for (const RayNumbers& n : numbers) rays.push_back(to_record(n));
       const double before = seconds();
-      const std::vector<PickRow> rows = answer(query, rays, ray_count, options, overflowed);
+      const std::vector<report::PickRow> rows = answer(query, rays, ray_count, options, overflowed);
       device_seconds += seconds() - before;
       SecondTry::driver_works();
       if (overflowed.empty()) table->append(rows);  // otherwise read on only to name all rays that overflow
@@ -168,18 +170,18 @@ void run_pick(const Options& options, bool has_limit) {
   Outputs outputs;
   std::optional<RayFile> rays;
   if (!options.rays.empty()) {
-    check_table_format(out, "--out");
+    report::check_table_format(out, "--out");
     outputs.add("--out", out);
     rays.emplace(options.rays);
     outputs.check_inputs();
     install_interrupt_handlers();
   }
-  const Device device = Device::choose(options.device, options.encoding);
+  const Device device = choose_device(options.device, options.encoding);
   Scene scene = import_scene(options.scene, FileImageReader());
   outputs.check_inputs();
   apply(overrides, scene);
   if (pixel) {
-    check_pixel(*pixel, scene.film);
+    with_flag("--pixel", [&] { check_pixel(*pixel, scene.film); });
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
   const FlatScene flat = lower(scene);

@@ -6,25 +6,24 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <thread>
 
 #include "base/atomic_file.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "cli/bands.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/summary.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "film/image.h"
-#include "film/preview.h"
 #include "import/import.h"
 #include "lower/lower.h"
 #include "render/render.h"
+#include "report/bands.h"
+#include "report/picture.h"
+#include "report/summary.h"
 
 namespace caplet::cli {
 
@@ -41,18 +40,6 @@ struct Options {
   std::optional<double> time_limit;
   std::size_t batch_paths = 0;
   bool variance = false, quiet = false;
-};
-
-class Stopwatch {
- public:
-  /// Seconds since the construction or the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 constexpr const char* no_picture = "none";
@@ -131,54 +118,15 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
   }
 }
 
-std::map<std::string, std::string> metadata_of(const Scene& scene, const Options& options, const Invocation& invocation,
-                                               const Device& device, const RenderResult& result) {
-  return {{"software", "Caplet " CAPLET_VERSION},
-          {"caplet.version", CAPLET_VERSION},
-          {"caplet.scene", options.scene},
-          {"caplet.command", invocation.command_line()},
-          {"caplet.samples_per_pixel", fmt::format("{}", result.samples_per_pixel)},
-          {"caplet.seed", fmt::format("{}", scene.sampler.seed)},
-          {"caplet.max_depth", fmt::format("{}", scene.integrator.max_depth)},
-          {"caplet.device", device.info().name},
-          {"caplet.driver", device.info().driver},
-          {"caplet.platform", device.info().platform},
-          {"caplet.render_seconds", fmt::format("{:.3f}", result.render_seconds)},
-          {"caplet.interrupted", result.interrupted ? "yes" : "no"}};
-}
-
-/// The picture and its preview, developed once, band by band.
-void write_pictures(const Files& files, const BandedImage& picture, std::size_t channels, double render_seconds) {
-  std::vector<std::uint8_t> preview;
-  BandedImage shown = picture;
-  if (!files.preview.empty())
-    shown.band = [&](int first, int rows) {
-      LayeredImage band = picture.band(first, rows);
-      const std::vector<std::uint8_t> rgb = preview_rgb8(band);
-      preview.insert(preview.end(), rgb.begin(), rgb.end());
-      return band;
-    };
-  const LayeredImage& whole = picture.whole;
-  if (!files.picture.empty()) {
-    const std::uint64_t bytes =
-        static_cast<std::uint64_t>(whole.data_width) * static_cast<std::uint64_t>(whole.data_height) * channels * sizeof(float);
-    write_exr(files.picture, shown, compression_for(bytes, render_seconds, std::thread::hardware_concurrency()));
-  } else if (!files.preview.empty()) {
-    for (int first = 0; first < whole.data_height; first += shown.rows)
-      shown.band(first, std::min(shown.rows, whole.data_height - first));
-  }
-  if (!files.preview.empty()) write_preview(files.preview, whole.data_width, whole.data_height, preview);
-}
-
 void run_render(const Options& options, const Invocation& invocation) {
   Stopwatch total, phase;
-  RunSeconds seconds;
+  report::RunSeconds seconds;
   log::set_quiet(options.quiet);
   Files files;
   const Overrides overrides = check_options(options, files);
   const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
-  const Device device = Device::choose(options.device, options.encoding);
+  const Device device = choose_device(options.device, options.encoding);
 
   phase.lap();
   Scene scene = import_scene(options.scene, FileImageReader());
@@ -208,14 +156,14 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.render = result.render_seconds;
 
   NotFinite not_finite;
-  BandedImage picture = developed_in_bands(result.device_film, scene, layers, not_finite);
-  picture.whole.metadata = metadata_of(scene, options, invocation, device, result);
+  BandedImage picture = report::developed_in_bands(result.device_film, scene, layers, not_finite);
+  picture.whole.metadata = report::picture_metadata(scene, options.scene, invocation.command_line(), device, result);
   phase.lap();
-  write_pictures(files, picture, layers.channels(), result.render_seconds);
+  report::write_pictures(files.picture, files.preview, picture, layers.channels(), result.render_seconds);
   not_finite.warn();
   seconds.write = phase.lap();
   seconds.total = total.lap();
-  if (!files.stats.empty()) write_bytes(files.stats, to_text(run_summary(seconds, result, device)));
+  if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result, device)));
   const fs::path& first = files.picture.empty() ? files.preview.empty() ? files.stats : files.preview : files.picture;
   if (result.interrupted)
     log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(), result.samples_per_pixel,

@@ -13,9 +13,9 @@
 #include "base/log.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "device/doctor/child.h"
 #include "device/second_try.h"
 #include "device/self_test.h"
+#include "doctor/child.h"
 
 namespace caplet::cli {
 
@@ -88,7 +88,7 @@ void add_try_device(CLI::App& app) {
   command->callback([o] {
     log::set_quiet(true);
     try {
-      try_device(Device::choose(o->device, o->encoding), o->trial);
+      try_device(choose_device(o->device, o->encoding), o->trial);
     } catch (const WrongDevice& wrong) {
       std::string message = wrong.what();
       std::ranges::replace(message, '\n', ' ');

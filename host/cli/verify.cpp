@@ -5,24 +5,24 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "cli/commands.h"
-#include "cli/heatmap.h"
 #include "cli/options.h"
 #include "cli/trial.h"
-#include "cli/verify_report.h"
 #include "device/second_try.h"
 #include "device/self_test.h"
 #include "film/image.h"
 #include "import/import.h"
+#include "report/heatmap.h"
+#include "report/verify_report.h"
 #include "verify/cases.h"
 #include "verify/torture.h"
 
@@ -42,10 +42,10 @@ struct Options {
 std::vector<Device> devices_of(const Options& o) {
   std::vector<Device> out;
   if (!o.all_devices) {
-    out.push_back(Device::choose(o.device, o.encoding));
+    out.push_back(choose_device(o.device, o.encoding));
   } else {
     for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index), o.encoding));
-    if (out.empty()) out.push_back(Device::choose(""));  // says what is missing
+    if (out.empty()) out.push_back(choose_device("", o.encoding));  // says what is missing
   }
   for (const Device& device : out) {
     try {
@@ -124,30 +124,30 @@ void run_verify(const Options& o) {
   if (!o.heatmap.empty()) {
     const FilmSettings film = scene ? scene->film : verify::torture_scene(o.seed, 0).film;
     const ImageSize size = overrides.size.value_or(ImageSize{film.width, film.height});
-    check_exr_size(size.width, size.height, heatmap_channels, "--size");
+    check_exr_size(size.width, size.height, report::heatmap_channels, "--size");
   }
   const std::vector<Device> devices = devices_of(o);
   install_interrupt_handlers();
 
   ProgressReporter progress(ProgressReporter::style_for_stderr(o.quiet));
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   verify::Options options;
   options.rays = o.rays;
   options.seed = o.seed;
   options.progress = [&](std::uint64_t done) {
     if (done > 0) SecondTry::driver_works();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    progress.update(static_cast<double>(done) / static_cast<double>(o.rays), 0,
-                    fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds));
+    progress.update(
+        static_cast<double>(done) / static_cast<double>(o.rays), 0,
+        fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds_since(start)));
   };
-  const verify::Report report = verify::verify(scene ? &*scene : nullptr, o.scene, devices, options);
+  const verify::Report found = verify::verify(scene ? &*scene : nullptr, o.scene, devices, options);
   const std::string label = scene_label({o.scene, o.seed, 0});
-  fmt::print("{}", o.json ? json_text(report, label, options) : plain_text(report, label));
+  fmt::print("{}", o.json ? report::json_text(found, label, options) : report::plain_text(found, label));
 
   std::size_t failures = 0;
   if (!o.failures.empty()) {
     std::vector<verify::Failure> all;
-    for (const verify::DeviceReport& device : report.devices)
+    for (const verify::DeviceReport& device : found.devices)
       all.insert(all.end(), device.failures.begin(), device.failures.end());
     failures = all.size();
     if (failures > 0) {
@@ -155,14 +155,14 @@ void run_verify(const Options& o) {
       log::info("{} cases in {}: see caplet verify --replay {}", failures, o.failures, o.failures);
     }
   }
-  if (!o.heatmap.empty() && !report.interrupted) {
+  if (!o.heatmap.empty() && !found.interrupted) {
     Scene shown = scene ? *scene : verify::torture_scene(o.seed, 0);
     apply(overrides, shown);
-    write_heatmap(o.heatmap, shown, verify::heatmap(shown, devices));
+    report::write_heatmap(o.heatmap, shown, verify::heatmap(shown, devices));
     log::info("wrote {}", o.heatmap);
   }
-  if (report.disagreements() > 0) throw CLI::RuntimeError(exit_disagreed);
-  if (report.interrupted) throw RunError("interrupted before all rays were asked");
+  if (found.disagreements() > 0) throw CLI::RuntimeError(exit_disagreed);
+  if (found.interrupted) throw RunError("interrupted before all rays were asked");
 }
 
 }  // namespace

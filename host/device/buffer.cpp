@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "device/accounting.h"
 #include "device/cl_error.h"
+#include "device/detail/accounting.h"
 #include "device/device.h"
 
 namespace caplet {

@@ -32,8 +32,20 @@ class DriverError : public RunError {
   cl_int code_;
 };
 
+/// What was asked for is no device, or not one alone; the message lists what there is.
+class UnknownDevice : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// There is no OpenCL device.
+class NoDevice : public RunError {
+ public:
+  using RunError::RunError;
+};
+
 struct DeviceInfo {
-  int index = 0;  // over all platforms, as `--device` takes it
+  int index = 0;  // over all platforms, as Device::choose takes it
   std::string name, vendor, driver, version, platform;
   std::string type;  // "cpu", "gpu", "accelerator", "other"
   unsigned compute_units = 0;
@@ -60,8 +72,8 @@ Encoding natural_encoding(const DeviceInfo& info);
 class Device {
  public:
   /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
-  /// Throws InputError with place "--device" listing what there is when nothing or more than one name matches, and RunError when
-  /// there is no device. `encoding` automatic: what the environment variable CAPLET_ENCODING says, else natural_encoding.
+  /// Throws UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment
+  /// variable CAPLET_ENCODING says, else natural_encoding.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
   /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver

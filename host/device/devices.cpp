@@ -6,9 +6,9 @@
 #include <cstdlib>
 
 #include "base/check.h"
-#include "device/accounting.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
+#include "device/detail/accounting.h"
 #include "device/device.h"
 #include "device/select.h"
 

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path root = argv[2];
   std::ofstream out(argv[1]);
-  out << "#include \"device/embedded.h\"\nnamespace caplet {\nnamespace {\nusing namespace std::string_view_literals;\n"
+  out << "#include \"device/detail/embedded.h\"\nnamespace caplet {\nnamespace {\nusing namespace std::string_view_literals;\n"
          "constexpr EmbeddedFile files[] = {\n";
   for (int i = 3; i < argc; ++i) {
     std::ifstream in(argv[i], std::ios::binary);

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "device/detail/embedded.h"
 #include "device/device.h"
-#include "device/embedded.h"
 #include "device/flatten.h"
 
 namespace caplet {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "device/layout.h"
+#include "device/detail/layout.h"
 
 #include <fmt/format.h>
 

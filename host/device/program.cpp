@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/check.h"
+#include "base/clock.h"
 #include "base/log.h"
 #include "device/cache.h"
 #include "device/cl_error.h"
@@ -17,11 +18,7 @@ namespace {
 
 using Binary = std::vector<unsigned char>;
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double noticeable_seconds = 0.5;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::string cache_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
   std::string key = "program";

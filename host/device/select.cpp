@@ -23,7 +23,7 @@ std::string lower_case(std::string text) {
   std::string list;
   for (const DeviceInfo& info : devices)
     list += fmt::format("{}{} '{}' ({})", list.empty() ? "" : ", ", info.index, info.name, info.type);
-  throw InputError(SourceLocation{"--device"}, fmt::format("{}; the devices are {}", message, list));
+  throw UnknownDevice(fmt::format("{}; the devices are {}", message, list));
 }
 
 /// devices.size() when there is none.
@@ -50,9 +50,7 @@ std::size_t by_name(const Devices& devices, const std::string& choice) {
 
 std::size_t select_device(const Devices& devices, const std::string& choice) {
   if (devices.empty())
-    throw RunError(
-        "--device: no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU); "
-        "`caplet doctor` tells what is missing");
+    throw NoDevice("no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU)");
   if (choice.empty()) return first_of_type(devices, "gpu") % devices.size();
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which of some devices a `--device` choice means.
+// Which of some devices a choice means.
 #pragma once
 
 #include <cstddef>

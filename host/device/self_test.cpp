@@ -17,7 +17,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "device/cache.h"
-#include "device/layout.h"
+#include "device/detail/layout.h"
 
 namespace caplet {
 

@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "film/image_files.h"
+#include "film/detail/image_files.h"
 
 namespace caplet {
 

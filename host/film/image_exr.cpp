@@ -33,8 +33,8 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "film/chromaticities.h"
+#include "film/detail/limits.h"
 #include "film/image.h"
-#include "film/limits.h"
 
 namespace caplet {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "film/image_files.h"
+#include "film/detail/image_files.h"
 
 namespace caplet::image_files {
 

@@ -17,9 +17,9 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "film/image_files.h"
-#include "film/limits.h"
-#include "film/transfer.h"
+#include "film/detail/image_files.h"
+#include "film/detail/limits.h"
+#include "film/detail/transfer.h"
 
 namespace caplet::image_files {
 

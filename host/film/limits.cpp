@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "film/limits.h"
+#include "film/detail/limits.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -10,8 +10,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "film/image_files.h"
-#include "film/transfer.h"
+#include "film/detail/image_files.h"
+#include "film/detail/transfer.h"
 
 namespace caplet {
 

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The text is cut at line ends into chunks that are parsed in parallel; what they hold is joined in the order of the file.
-#include "import/capsules.h"
+#include "import/detail/capsules.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -16,9 +16,9 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "import/importers.h"
-#include "import/presentation.h"
-#include "import/text_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/text_file.h"
+#include "present/present.h"
 
 namespace caplet {
 

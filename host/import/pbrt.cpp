@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt.h"
+#include "import/detail/pbrt.h"
 
-#include "import/importers.h"
-#include "import/pbrt_file.h"
-#include "import/pbrt_parser.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/pbrt_parser.h"
 
 namespace caplet {
 
@@ -14,7 +14,7 @@ Scene pbrt::import_text(const std::string& file, std::string text, const ImageRe
 }
 
 Scene import_pbrt(const std::filesystem::path& path, const ImageReader& images) {
-  return pbrt::import_text(path.string(), pbrt::read_text(path, {}), images);
+  return pbrt::import_text(path.string(), read_text(path, {}), images);
 }
 
 }  // namespace caplet

@@ -3,7 +3,7 @@
 #include <set>
 #include <variant>
 
-#include "import/pbrt_geometry.h"
+#include "import/detail/pbrt_geometry.h"
 
 namespace caplet::pbrt {
 

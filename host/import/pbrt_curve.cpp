@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/log.h"
-#include "import/pbrt_geometry.h"
+#include "import/detail/pbrt_geometry.h"
 
 namespace caplet::pbrt {
 

@@ -11,13 +11,14 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
-#include "import/pbrt_lights.h"
-#include "import/pbrt_materials.h"
-#include "import/pbrt_names.h"
-#include "import/pbrt_options.h"
-#include "import/pbrt_parser.h"
-#include "import/pbrt_shapes.h"
-#include "import/pbrt_v3.h"
+#include "base/spelling.h"
+#include "import/detail/pbrt_lights.h"
+#include "import/detail/pbrt_materials.h"
+#include "import/detail/pbrt_names.h"
+#include "import/detail/pbrt_options.h"
+#include "import/detail/pbrt_parser.h"
+#include "import/detail/pbrt_shapes.h"
+#include "import/detail/pbrt_v3.h"
 
 namespace caplet::pbrt {
 

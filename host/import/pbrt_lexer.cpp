@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_lexer.h"
+#include "import/detail/pbrt_lexer.h"
 
 #include <algorithm>
 #include <charconv>

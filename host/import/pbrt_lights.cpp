@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_lights.h"
+#include "import/detail/pbrt_lights.h"
 
 #include <cmath>
 #include <filesystem>

@@ -3,7 +3,7 @@
 //
 // Triangle meshes and bilinear meshes.
 #include "base/log.h"
-#include "import/pbrt_geometry.h"
+#include "import/detail/pbrt_geometry.h"
 
 namespace caplet::pbrt {
 

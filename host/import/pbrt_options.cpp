@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_options.h"
+#include "import/detail/pbrt_options.h"
 
 #include <cmath>
 #include <cstdint>

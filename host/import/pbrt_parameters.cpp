@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_parameters.h"
+#include "import/detail/pbrt_parameters.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <unordered_map>
 #include <utility>
 
-#include "import/pbrt_file.h"
-#include "import/pbrt_names.h"
-#include "import/pbrt_spectrum_file.h"
-#include "import/pbrt_v3.h"
+#include "base/spelling.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/pbrt_names.h"
+#include "import/detail/pbrt_spectrum_file.h"
+#include "import/detail/pbrt_v3.h"
 
 namespace caplet::pbrt {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_parser.h"
+#include "import/detail/pbrt_parser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,11 @@
 #include <unordered_set>
 
 #include "base/log.h"
-#include "import/pbrt_file.h"
-#include "import/pbrt_names.h"
-#include "import/pbrt_v3.h"
-#include "import/presentation.h"
+#include "base/spelling.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/pbrt_names.h"
+#include "import/detail/pbrt_v3.h"
+#include "present/present.h"
 
 namespace caplet::pbrt {
 

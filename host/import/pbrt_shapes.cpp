@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_shapes.h"
+#include "import/detail/pbrt_shapes.h"
 
 #include <filesystem>
 #include <stdexcept>
 
-#include "import/capsules.h"
-#include "import/pbrt_geometry.h"
-#include "import/ply.h"
+#include "import/detail/capsules.h"
+#include "import/detail/pbrt_geometry.h"
+#include "import/detail/ply.h"
 
 namespace caplet::pbrt {
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "import/pbrt_geometry.h"
+#include "import/detail/pbrt_geometry.h"
 
 namespace caplet::pbrt {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/pbrt_spectrum_file.h"
+#include "import/detail/pbrt_spectrum_file.h"
 
-#include "import/pbrt_file.h"
-#include "import/pbrt_lexer.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/pbrt_lexer.h"
 
 namespace caplet::pbrt {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/ply.h"
+#include "import/detail/ply.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/log.h"
-#include "import/pbrt_file.h"
+#include "import/detail/gzip_file.h"
 
 #ifdef CAPLET_WITH_PLY
 #include <assimp/scene.h>
@@ -80,7 +80,7 @@ TriangleMeshShape parse_ply(const std::string& file, const std::string&) {
 #endif
 
 TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where) {
-  return parse_ply(path.string(), pbrt::read_file(path, where));
+  return parse_ply(path.string(), read_file(path, where));
 }
 
 }  // namespace caplet

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "import/ply.h"
+#include "import/detail/ply.h"
 
 namespace caplet::ply {
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <optional>
 
-#include "import/ply.h"
+#include "import/detail/ply.h"
 
 namespace caplet::ply {
 

@@ -2,8 +2,8 @@
 // Copyright Caplet authors
 //
 // One row a format.
+#include "import/detail/importers.h"
 #include "import/import.h"
-#include "import/importers.h"
 
 namespace caplet {
 

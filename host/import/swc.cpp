@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Samples are parsed and linked first; then somata become spheres or chains and every other sample a segment to its parent.
-#include "import/swc.h"
+#include "import/detail/swc.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +18,9 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "import/importers.h"
-#include "import/presentation.h"
-#include "import/text_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/text_file.h"
+#include "present/present.h"
 
 namespace caplet {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/text_file.h"
+#include "import/detail/text_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

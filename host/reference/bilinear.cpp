@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

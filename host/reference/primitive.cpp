@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

@@ -14,8 +14,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
+#include "reference/detail/uv.h"
 #include "reference/from_scene.h"
-#include "reference/uv.h"
 
 namespace caplet::reference {
 

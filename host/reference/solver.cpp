@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

@@ -2,14 +2,14 @@
 // Copyright Caplet authors
 //
 // Angles from a direction carried along by a rotation, lengths along the profile that the support function gives (spool.cpp).
-#include "reference/uv.h"
+#include "reference/detail/uv.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "parts.h"
+#include "reference/detail/parts.h"
 
 namespace caplet::reference {
 

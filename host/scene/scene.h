@@ -277,7 +277,7 @@ struct Scene {
   SamplerSettings sampler;
   IntegratorSettings integrator;
   std::string source;             // the file it came from
-  bool automatic_camera = false;  // the camera was framed to the shapes (import/presentation.h), for the film's size as it was
+  bool automatic_camera = false;  // the camera was framed to the shapes (present/present.h), for the film's size as it was
   bool has_no_up = false;         // no direction is up (a neuron): the automatic camera may turn the scene within the image
 };
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <mutex>
 
+#include "base/clock.h"
 #include "base/interrupt.h"
 #include "lower/camera.h"
 #include "verify/torture.h"
@@ -24,10 +25,6 @@ namespace {
 constexpr std::size_t few_crossings = 32, many_crossings = std::size_t{1} << 16;
 constexpr std::size_t chunk_rays = 65'536 - 64;
 constexpr std::uint64_t rays_a_round = 250'000;
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 struct DeviceAnswers {
   std::vector<PickRecord> nearest;

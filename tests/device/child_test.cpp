@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Work in a child process: answers, exceptions, signals, time limits.
-#include "device/doctor/child.h"
+#include "doctor/child.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

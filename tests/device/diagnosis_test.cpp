@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The doctor's findings over machines made up of files, and over answers made up of values.
-#include "device/doctor/diagnosis.h"
+#include "doctor/diagnosis.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "device/doctor/machine.h"
+#include "doctor/detail/machine.h"
 #include "support/data.h"
 
 namespace caplet::doctor {

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <set>
 
+#include "device/detail/embedded.h"
 #include "device/device.h"
-#include "device/embedded.h"
 #include "environment.h"
 #include "support/data.h"
 

@@ -57,8 +57,7 @@ TEST(Select, AFullNameIsNotAmbiguous) {
 }
 
 TEST(Select, RefusalsListTheDevices) {
-  const auto list =
-      AllOf(HasSubstr("--device: "), HasSubstr("0 'pthread-EPYC' (cpu), 1 'Tesla A' (gpu), 2 'Tesla B' (gpu), 3 'Odd'"));
+  const auto list = HasSubstr("0 'pthread-EPYC' (cpu), 1 'Tesla A' (gpu), 2 'Tesla B' (gpu), 3 'Odd'");
   EXPECT_THAT(refusal(some_devices(), "4"), AllOf(list, HasSubstr("no device has the index 4")));
   EXPECT_THAT(refusal(some_devices(), "99999999999999999999"), AllOf(list, HasSubstr("no device has the index")));
   EXPECT_THAT(refusal(some_devices(), "radeon"), AllOf(list, HasSubstr("no device has 'radeon' in its name")));
@@ -68,8 +67,8 @@ TEST(Select, RefusalsListTheDevices) {
 }
 
 TEST(Select, NothingToChooseFromNamesThePackage) {
-  EXPECT_THAT(refusal({}, ""), AllOf(HasSubstr("failed: --device: "), HasSubstr("pocl-opencl-icd")));
-  EXPECT_THAT(refusal({}, "0"), AllOf(HasSubstr("pocl-opencl-icd"), HasSubstr("caplet doctor")));
+  EXPECT_THAT(refusal({}, ""), AllOf(HasSubstr("failed: no OpenCL device"), HasSubstr("pocl-opencl-icd")));
+  EXPECT_THAT(refusal({}, "0"), HasSubstr("pocl-opencl-icd"));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
 /// A curve in the three ways that it is traced, and what the witness has of it.
 class Curve {
  public:
-  explicit Curve(const RoundCurves& curves) : peer_(curves, RTC_SCENE_FLAG_ROBUST), tracer_(test_device(), test_width()) {
+  explicit Curve(const RoundCurves& curves) : peer_(curves, PeerMode::robust), tracer_(test_device(), test_width()) {
     CsgShape csg;
     for (const unsigned first : curves.first) {
       const auto &a = curves.vertices[first], &b = curves.vertices[first + 1];

@@ -142,7 +142,7 @@ void compare_singles(const Kind& kind, bool hard, double least) {
     std::vector<PeerHit> theirs;
     for (std::uint32_t i = 0; i < cases.primitives.size(); ++i) {
       const auto [first, last] = std::equal_range(cases.which.begin(), cases.which.end(), i);
-      const Peer peer(std::span(&cases.primitives[i], 1), RTC_SCENE_FLAG_ROBUST);
+      const Peer peer(std::span(&cases.primitives[i], 1), PeerMode::robust);
       const auto some =
           peer.closest({&*cases.rays.begin() + (first - cases.which.begin()), static_cast<std::size_t>(last - first)});
       theirs.insert(theirs.end(), some.begin(), some.end());
@@ -217,7 +217,7 @@ TEST_P(ThirdOpinion, OnScenes) {
     DeviceTracer tracer(test_device(), test_width());
     tracer.upload(nodes, leaves, {}, tree.root);
     const std::vector<HitRecord> ours = tracer.closest(rays);
-    const std::vector<PeerHit> theirs = Peer(primitives, RTC_SCENE_FLAG_ROBUST).closest(rays);
+    const std::vector<PeerHit> theirs = Peer(primitives, PeerMode::robust).closest(rays);
     tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
       const Judge judge(primitives, witnesses, rays[i]);
       const std::uint32_t id = ours[i].slot == CAPLET_NONE ? CAPLET_NONE : id_of[ours[i].slot];

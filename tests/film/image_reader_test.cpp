@@ -10,8 +10,8 @@
 #include <limits>
 
 #include "base/error.h"
+#include "film/detail/limits.h"
 #include "film/image.h"
-#include "film/limits.h"
 #include "images.h"
 #include "support/data.h"
 

@@ -3,7 +3,7 @@
 //
 // Scene text of any bytes either imports and is sound once it is validated, or is refused. It can name the files of the folder
 // beside/.
-#include "import/pbrt.h"
+#include "import/detail/pbrt.h"
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // PLY bytes either give a mesh whose indices are in range, or are refused.
-#include "import/ply.h"
+#include "import/detail/ply.h"
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Any bytes as an SWC file.
-#include "import/importers.h"
+#include "import/detail/importers.h"
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

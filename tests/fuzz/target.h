@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "scene/image_reader.h"
 #include "scene/scene.h"
 
@@ -35,7 +36,7 @@ inline void require(bool condition, const char* file = __builtin_FILE(), int lin
 /// Runs a target on one input; InputError is the only way in which it may refuse it.
 template <class Target>
 int run_target(Target target) {
-  spdlog::set_level(spdlog::level::off);
+  set_log_level(LogLevel::none);
   try {
     target();
   } catch (const InputError&) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "import/detail/pbrt.h"
 #include "import/import.h"
-#include "import/pbrt.h"
 #include "support/data.h"
 
 namespace caplet::test {

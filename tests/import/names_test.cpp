@@ -8,7 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "import/pbrt_names.h"
+#include "base/spelling.h"
+#include "import/detail/pbrt_names.h"
 #include "import_text.h"
 
 namespace caplet::test {
@@ -64,8 +65,8 @@ TEST(Names, EveryDirectiveHasAHandler) {
 }
 
 TEST(Names, NearestIsByEditDistance) {
-  EXPECT_EQ(pbrt::nearest_name("spehre", {"disk", "sphere", "cone"}), "sphere");
-  EXPECT_EQ(pbrt::nearest_name("x", {}), "");
+  EXPECT_EQ(nearest_name("spehre", {"disk", "sphere", "cone"}), "sphere");
+  EXPECT_EQ(nearest_name("x", {}), "");
 }
 
 }  // namespace

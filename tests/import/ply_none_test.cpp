@@ -4,7 +4,7 @@
 // A build without assimp says so.
 #include <gtest/gtest.h>
 
-#include "import/ply.h"
+#include "import/detail/ply.h"
 #include "import_text.h"
 
 namespace caplet::test {

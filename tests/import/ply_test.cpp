@@ -10,7 +10,7 @@
 #include <bit>
 #include <sstream>
 
-#include "import/ply.h"
+#include "import/detail/ply.h"
 #include "import_text.h"
 
 namespace caplet::test {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The records lie in device memory as they do in the host's.
-#include "device/layout.h"
+#include "device/detail/layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,14 +2,14 @@
 // Copyright Caplet authors
 //
 // .capsules files: the grammar of docs/formats/capsules.md, large files in parallel, and bad input.
-#include "import/capsules.h"
+#include "import/detail/capsules.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "import/importers.h"
+#include "import/detail/importers.h"
 #include "neuron_files.h"
 
 namespace caplet {

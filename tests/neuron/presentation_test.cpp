@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The automatic camera sees everything, as large as fits, from a sensible side; the studio light stays out of the picture.
-#include "import/presentation.h"
+#include "present/present.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <numbers>
 #include <random>
 
-#include "import/importers.h"
+#include "import/detail/importers.h"
 #include "neuron_files.h"
 
 namespace caplet {

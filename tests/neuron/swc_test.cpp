@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // SWC: the conventions of docs/formats/swc.md, the shared files with their independent counts, and bad input.
-#include "import/swc.h"
+#include "import/detail/swc.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "import/importers.h"
+#include "import/detail/importers.h"
 #include "neuron_files.h"
 
 namespace caplet {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The witness's texture coordinates at points whose (u, v) follows from docs/shapes.md by hand.
-#include "reference/uv.h"
+#include "reference/detail/uv.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What was meant by a name that is not known.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace caplet {
+
+/// The known name with the smallest edit distance; empty if there is none. Takes time by the number of names: pointless for an
+/// error that is not shown (Diagnostics::is_full).
+std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
+
+}  // namespace caplet

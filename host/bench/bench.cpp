@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "bench/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include "base/clock.h"
+#include "bench/detail/walks.h"
+#include "bench/device_tracer.h"
+#include "bench/peer.h"
+#include "lower/lower.h"
+#include "shared/kinds.h"
+
+namespace caplet::bench {
+
+namespace {
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+void say(const Say& line, const std::string& name, double ours, double peer, const std::string& unit,
+         const std::string& more = {}) {
+  const std::string beside =
+      peer > 0 ? fmt::format("\"embree\": {:.4g}, \"ratio\": {:.4g}", peer, ours / peer) : "\"embree\": null, \"ratio\": null";
+  line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, {}, \"unit\": \"{}\"{}}}", name, ours, beside, unit, more));
+}
+
+struct Bench {
+  const Say& line;
+  DeviceTracer& tracer;
+  const Peer* peer;  // null: Embree has no such shape
+  const std::vector<float>& leaves;
+  double seconds;
+  bool by_shape = false;  // ids of the peer are not primitive ids
+
+  /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
+  void run(const std::string& name, const std::vector<RayRecord>& ours, const std::vector<RayRecord>& theirs) {
+    if (ours.empty()) return;
+    std::vector<std::uint32_t> ids(theirs.size());
+    tracer.set_rays(ours);
+    tracer.run_closest();
+    const std::size_t peer_hits = peer ? peer->trace(theirs, ids) : 0;
+    std::vector<double> a, b;
+    const auto begin = Clock::now();
+    while (a.size() < 3 || seconds_since(begin) < seconds) {
+      auto start = Clock::now();
+      tracer.run_closest();
+      a.push_back(static_cast<double>(ours.size()) / seconds_since(start) * 1e-6);
+      if (peer == nullptr) continue;
+      start = Clock::now();
+      peer->trace(theirs, ids);
+      b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
+    }
+    const auto hits = tracer.hits();
+    const auto our_hits = std::count_if(hits.begin(), hits.end(), [](const HitRecord& h) { return h.slot != CAPLET_NONE; });
+    std::string more = fmt::format(", \"rays\": {}, \"hits\": {}", ours.size(), our_hits);
+    if (peer) more += fmt::format(", \"embree_hits\": {}", peer_hits);
+    if (peer && &ours == &theirs && !by_shape) {
+      std::size_t same = 0;
+      for (std::size_t i = 0; i < hits.size(); i++)
+        same +=
+            ids[i] == (hits[i].slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hits[i].slot])) ? 1 : 0;
+      more += fmt::format(", \"same_primitive\": {:.6f}", static_cast<double>(same) / static_cast<double>(hits.size()));
+    }
+    say(line, name, median(a), peer ? median(b) : 0, "Mrays/s", more);
+  }
+};
+
+/// As a renderer builds its kernels (stage_options).
+std::string kernel_options(std::uint64_t shapes, int kind_bits) {
+  return fmt::format("-DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}", shapes, kind_bits);
+}
+
+int width_for(const Device& device, const Options& options) {
+  return options.width != 0 ? options.width : device.is_cpu() ? 8 : 1;
+}
+
+void run_shapes(const std::string& kind, const Device& device, const Options& options, const Say& line) {
+  std::vector<FlatPrimitive> same;
+  const FlatScene scene = lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
+  std::optional<Peer> peer;
+  if (!same.empty() && Peer::is_there()) peer.emplace(same);
+  DeviceTracer tracer(device, width_for(device, options), kernel_options(scene.shapes, scene.leaf_kind_bits));
+  tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
+  Bench bench{line, tracer, peer ? &*peer : nullptr, scene.leaves, options.seconds, true};
+  const auto camera = camera_rays(options.size);
+  bench.run(kind + " camera", camera, camera);
+  const auto scattered = scattered_rays(camera, tracer.closest(camera));
+  bench.run(kind + " scattered", scattered, scattered);
+}
+
+void run_walks(const Device& device, const Options& options, const Say& line) {
+  const std::string& kind = options.kind;
+  const auto primitives = kind == "triangles" ? walk_triangles(options.count) : walk_capsules(options.count);
+  std::vector<float> nodes, leaves;
+  const Clock::time_point start = Clock::now();
+  std::uint64_t shapes = 0;
+  for (const FlatPrimitive& p : primitives) shapes |= shape_bit(p.shape);
+  const EncodedTree tree = encode_tree(primitives, nodes, leaves, leaf_kind_bits(shapes));
+  const double build = seconds_since(start);
+  std::optional<Peer> peer;
+  if (Peer::is_there()) peer.emplace(primitives);
+  say(line, kind + " build", build, peer ? peer->build_seconds() : 0, "s",
+      fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth, tree.sah));
+  const double n = static_cast<double>(options.count);
+  say(line, kind + " memory", static_cast<double>((nodes.size() + leaves.size() + options.count) * sizeof(float)) / n, 0,
+      "bytes/primitive",
+      fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}", static_cast<double>(nodes.size() * sizeof(float)) / n,
+                  static_cast<double>(leaves.size() * sizeof(float)) / n));
+
+  DeviceTracer tracer(device, width_for(device, options), kernel_options(shapes, leaf_kind_bits(shapes)));
+  tracer.upload(nodes, leaves, {}, tree.root);
+  Bench bench{line, tracer, peer ? &*peer : nullptr, leaves, options.seconds};
+  const auto camera = camera_rays(options.size);
+  bench.run(kind + " camera", camera, camera);
+  auto bounce = bounce_rays(primitives, tree.slots, camera, tracer.closest(camera));
+  bench.run(kind + " bounce", bounce, bounce);
+  if (options.sorted) {
+    auto in_order = bounce;
+    sort_rays(in_order);
+    bench.run(kind + " bounce sorted", in_order, bounce);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> kinds() {
+  std::vector<std::string> out{"capsules", "triangles", "shapes"};
+  out.insert(out.end(), walk_kinds().begin(), walk_kinds().end());
+  return out;
+}
+
+void run(const Options& options, const Say& line) {
+  const Device device = Device::choose(options.device);
+  if (options.kind == "triangles" || options.kind == "capsules") return run_walks(device, options, line);
+  for (const std::string& one : walk_kinds())
+    if (options.kind == "shapes" || options.kind == one) run_shapes(one, device, options, line);
+}
+
+}  // namespace caplet::bench

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Rays through the traversal kernels, without the renderer around them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/device.h"
+#include "shared/records.h"
+
+namespace caplet::bench {
+
+class DeviceTracer {
+ public:
+  /// width: CAPLET_REAL_WIDTH, 8 or 1. Without further options for all shapes.
+  DeviceTracer(const Device& device, int width, const std::string& options = "");
+  void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
+  void set_rays(std::span<const RayRecord> rays);
+  /// Runs over the rays set before; blocks.
+  void run_closest();
+  void run_any();
+  std::vector<HitRecord> hits() const;
+  std::vector<int> any() const;
+
+  std::vector<HitRecord> closest(std::span<const RayRecord> rays);
+  std::vector<int> any(std::span<const RayRecord> rays);
+
+ private:
+  void run(cl::Kernel& kernel, const cl::Buffer& out);
+
+  Device device_;
+  Program program_;
+  cl::Kernel closest_, any_;
+  Buffer<float> nodes_, leaves_;
+  Buffer<InstanceRecord> instances_;
+  Buffer<RayRecord> rays_;
+  Buffer<HitRecord> hits_;
+  Buffer<int> anys_;
+  uint root_ = 0;
+};
+
+}  // namespace caplet::bench

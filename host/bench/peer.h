@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Embree, 3 or 4, on the same primitives and rays: single rays, all cores. Only peer.cpp knows it.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lower/encode.h"
+#include "shared/kinds.h"
+#include "shared/records.h"
+
+namespace caplet::bench {
+
+struct PeerHit {
+  std::uint32_t id = CAPLET_NONE;  // of the primitive; CAPLET_NONE: none
+  float t = std::numeric_limits<float>::infinity();
+};
+
+/// Round linear curves: segment i runs from vertex first[i] (x y z radius) to the next one. Those that share a vertex are
+/// neighbours where they follow each other.
+struct RoundCurves {
+  std::vector<std::array<float, 4>> vertices;
+  std::vector<unsigned> first;
+};
+
+/// Embree's scene flags: none, or RTC_SCENE_FLAG_ROBUST.
+enum class PeerMode { fast, robust };
+
+class Peer {
+ public:
+  /// False where this is built without Embree; everything else then throws std::runtime_error.
+  static bool is_there();
+  /// Of one kind. Capsules become two-vertex round linear curves, spheres and disks Embree's points.
+  /// Throws std::runtime_error.
+  explicit Peer(std::span<const FlatPrimitive> primitives, PeerMode mode = PeerMode::fast);
+  explicit Peer(const RoundCurves& curves, PeerMode mode = PeerMode::fast);
+  ~Peer();
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  /// Traces all rays; returns how many hit. `ids` (same length) receives the primitive hit, CAPLET_NONE: none.
+  std::size_t trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const;
+  std::vector<PeerHit> closest(std::span<const RayRecord> rays) const;
+  double build_seconds() const { return build_seconds_; }
+
+  /// "3.13.5", and which kinds of faces it was built to ignore.
+  static std::string version();
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+  double build_seconds_ = 0;
+};
+
+}  // namespace caplet::bench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The statements before WorldBegin: camera, film, filter, sampler, integrator, options.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "import/detail/pbrt_parameters.h"
+#include "scene/scene.h"
+
+namespace caplet::pbrt {
+
+/// `camera_from_world` is the current transform.
+void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Scene& scene);
+void set_film(Parameters& parameters, ColorSpace space, Scene& scene);
+void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
+/// Returns the sampler's own seed, if it has one.
+std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene);
+void set_integrator(const std::string& type, Parameters& parameters, Scene& scene);
+/// Accelerators change no picture: their parameters are checked and have no effect.
+void check_accelerator(const std::string& type, Parameters& parameters);
+
+/// One Option statement; `value` is the token after the name. Returns the seed if it sets one.
+std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const Lexer& lexer,
+                                        Diagnostics& diagnostics);
+
+}  // namespace caplet::pbrt

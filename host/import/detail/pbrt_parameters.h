@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Parameter lists ("type name" values) of pbrt statements: parsing them, and reading them with their types checked. What a
+// statement asks for is what it knows: everything else in its list is an error.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "import/detail/pbrt_lexer.h"
+#include "scene/scene.h"
+#include "scene/spectrum.h"
+
+namespace caplet::pbrt {
+
+struct Parameter {
+  std::string type, name;  // old type names are replaced by the new ones ("point" -> "point3")
+  SourceLocation where;
+  std::vector<double> numbers;       // integer, float, points, vectors, normal, rgb, blackbody, spectrum (pairs)
+  std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
+  std::vector<bool> bools;
+  ColorSpace space = ColorSpace::srgb;
+  bool broken = false;                     // reported already; it counts as given, without a value
+  bool used = false;                       // something took its value
+  bool consulted = false;                  // an Attribute's: a statement of its target followed
+  std::shared_ptr<Parameter> replaced_by;  // an Attribute's: a later one of the same name
+};
+
+/// Reads the parameters up to the next directive. Errors of single parameters are reported
+/// and the parameter is marked broken.
+std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnostics& diagnostics);
+
+enum class SpectrumUse { albedo, unbounded, illuminant };
+
+/// What a Texture statement was resolved to: a constant, or the reason why it cannot be rendered.
+struct TextureValue {
+  bool is_float = false;
+  double number = 0;
+  Spectrum spectrum;
+  std::string refusal;  // empty: a constant
+};
+using TextureTable = std::map<std::string, TextureValue>;
+
+/// Finds a finished object by its name; otherwise gives null and says in `problem` why there is none.
+using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;
+
+using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
+
+/// Adds what is wrong with a file that is named at `where`: each line has both places.
+void add_errors(const InputError& problem, const SourceLocation& where, Diagnostics& diagnostics);
+
+/// Finds files that statements name: beside the file with the statement, else beside the scene's main file.
+std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
+
+/// One statement's parameters. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). Reading
+/// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback. Names asked for are literals:
+/// they are kept as they are.
+class Parameters {
+ public:
+  Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
+             const std::string& main_file, ColorSpace space, Diagnostics& diagnostics);
+
+  bool has(std::string_view name);
+  double number(std::string_view name, double fallback);
+  int integer(std::string_view name, int fallback);
+  bool boolean(std::string_view name, bool fallback);
+  std::string text(std::string_view name, const std::string& fallback);
+  glm::dvec3 point(std::string_view name, const glm::dvec3& fallback);
+  /// All values of a parameter whose type is one of `types`; null when it is not there.
+  const Parameter* values(std::string_view name, std::initializer_list<std::string_view> types);
+  std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures = nullptr);
+  /// A float or a constant float texture.
+  double number_or_texture(std::string_view name, double fallback, const TextureTable& textures);
+  /// Reports that a parameter is known but not rendered yet, if it is there.
+  void refuse(std::string_view name);
+  /// Marks a parameter as known and without effect here.
+  void ignore(std::string_view name);
+  /// Everything not asked for is an error that lists the nearest name asked for.
+  void finish();
+
+  /// `kind` as for Diagnostics::error.
+  void error(std::string_view name, const std::string& message, const std::string& kind = {});
+  void error(const std::string& message) { diagnostics_->error(where_, owner_ + ": " + message); }
+  const SourceLocation& where() const { return where_; }
+  SourceLocation where(std::string_view name) const;
+  const std::string& owner() const { return owner_; }
+  const std::string& main_file() const { return *main_file_; }
+  /// The colour space at the statement.
+  ColorSpace space() const { return space_; }
+  Diagnostics& diagnostics() { return *diagnostics_; }
+  /// Errors from now on go there.
+  void report_to(Diagnostics& diagnostics) { diagnostics_ = &diagnostics; }
+
+ private:
+  Parameter* find(std::string_view name);
+  const Parameter* lookup(std::string_view name) const;
+  std::optional<Spectrum> spectrum_of(const Parameter& parameter, SpectrumUse use, const TextureTable* textures);
+
+  std::vector<Parameter> own_;
+  SharedParameters attributes_;
+  std::string owner_;
+  SourceLocation where_;
+  const std::string* main_file_;
+  ColorSpace space_;
+  Diagnostics* diagnostics_;
+  std::vector<std::string_view> asked_;
+};
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Reads pbrt-v4 statements in order, keeps the graphics state, and builds the scene. One method a directive.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "base/spelling.h"
+#include "import/detail/pbrt_lexer.h"
+#include "import/detail/pbrt_names.h"
+#include "import/detail/pbrt_parameters.h"
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet::pbrt {
+
+class Parser {
+ public:
+  Parser(std::string main_file, const ImageReader& images) : main_file_(std::move(main_file)), images_(images) {}
+
+  /// The scene of the main file's text. Throws InputError with everything that is wrong.
+  Scene parse(std::string text);
+
+ private:
+  struct State {
+    glm::dmat4 ctm{1};
+    bool reverse_orientation = false;
+    ColorSpace space = ColorSpace::srgb;
+    std::uint32_t material = 0;  // index into uses_
+    std::optional<AreaEmission> emission;
+    std::map<std::string, SharedParameters> attributes;
+  };
+  struct Block {
+    std::string opener;
+    SourceLocation where;
+    State saved;
+  };
+  struct MaterialStatement {
+    std::string type, name;
+    Parameters parameters;
+    std::string refusal = {};  // of a type that is not rendered yet: an error only where a shape uses it
+    SourceLocation where = {};
+  };
+  /// What shapes refer to until all materials are known: the default, a Material statement, or a name.
+  struct MaterialUse {
+    std::optional<std::size_t> statement;
+    std::string name;
+    SourceLocation where;
+  };
+  struct Medium {
+    SourceLocation where;
+    std::string type;
+  };
+  struct OpenFile {
+    std::string name, canonical;
+  };
+  struct InstanceUse {
+    std::string name;
+    glm::dmat4 world_from_object;
+    SourceLocation where;
+  };
+  struct Handler {
+    const char* name;
+    void (Parser::*run)();
+    enum class Allowed { anywhere, options, world } allowed;
+  };
+  static const std::vector<Handler>& handlers();
+
+  // Reading
+  void parse_file(const std::string& file, std::string text);
+  void parse_statement();
+  void skip_to_directive();
+  std::string string_argument(const char* what);
+  double number_argument();
+  glm::dvec3 vector_argument();
+  glm::dmat4 matrix_argument();
+  Parameters parameters(const std::string& owner, const char* attribute_target = nullptr);
+  std::string owner(const std::string& type) const { return directive_ + " \"" + type + "\""; }
+
+  // Directives
+  void accelerator();
+  void active_transform();
+  void area_light_source();
+  void attribute();
+  void attribute_begin();
+  void attribute_end();
+  void camera();
+  void color_space();
+  void concat_transform();
+  void coord_sys_transform();
+  void coordinate_system();
+  void film();
+  void identity();
+  void import();
+  void include();
+  void integrator();
+  void light_source();
+  void look_at();
+  void make_named_material();
+  void make_named_medium();
+  void material();
+  void medium_interface();
+  void named_material();
+  void object_begin();
+  void object_end();
+  void object_instance();
+  void option();
+  void pixel_filter();
+  void reverse_orientation();
+  void rotate();
+  void sampler();
+  void scale();
+  void shape();
+  void texture();
+  void transform();
+  void transform_times();
+  void translate();
+  void world_begin();
+
+  // Help for directives
+  void multiply(const glm::dmat4& matrix);
+  void open_block();
+  void close_block(const std::string& opener);
+  void report_unclosed(std::size_t first_block);
+  std::string included_file();
+  void read_included(const std::string& file);
+  std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
+  const Object* finished_object(const std::string& name, std::string& problem) const;
+
+  // At the end
+  /// "; the nearest known name is ..." for an error that is shown: one among many does without, as it takes time by their number.
+  template <class Map>
+  std::string nearest(const std::string& name, const Map& map) const {
+    if (map.empty() || diagnostics_.is_full()) return {};
+    std::vector<std::string> known;
+    for (const auto& [one, value] : map) known.push_back(one);
+    return "; the nearest known name is \"" + nearest_name(name, known) + "\"";
+  }
+  void finish_attributes();
+  std::vector<bool> used_materials();
+  std::vector<std::uint32_t> make_materials(const std::vector<bool>& used);
+  void resolve_materials();
+  void resolve_instances();
+  void present();
+
+  std::string main_file_;
+  const ImageReader& images_;
+  Diagnostics diagnostics_;
+  Scene scene_;
+
+  Lexer* lexer_ = nullptr;
+  std::string directive_;
+  SourceLocation where_;
+  std::vector<OpenFile> open_files_;
+  std::unordered_set<std::string> files_read_;  // canonical
+  std::size_t included_files_ = 0, included_again_ = 0;
+  State state_;
+  std::vector<Block> blocks_;
+  std::size_t block_floor_ = 0;  // blocks below were opened outside the imported file
+  bool in_world_ = false, has_camera_ = false, warned_transform_begin_ = false;
+  std::optional<std::uint32_t> option_seed_, sampler_seed_;
+  std::map<std::string, glm::dmat4> coordinate_systems_;
+  std::optional<std::size_t> object_;  // being defined
+  SourceLocation object_where_;
+  std::map<std::string, std::uint32_t> object_names_;
+  std::vector<InstanceUse> instances_;
+  std::vector<MaterialStatement> materials_;
+  std::map<std::string, std::size_t> named_materials_;
+  std::vector<MaterialUse> uses_{1};
+  std::map<std::string, std::uint32_t> uses_by_name_;
+  std::map<std::string, Medium> media_;
+  TextureTable textures_;
+  SharedParameters all_attributes_;
+};
+
+}  // namespace caplet::pbrt

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "caplet/device.h"
+
+#include "library/detail/inside.h"
+
+namespace caplet::v0 {
+
+DeviceInfo to_public(const caplet::DeviceInfo& info) {
+  return {info.index,    info.name, info.vendor,        info.driver,      info.version,
+          info.platform, info.type, info.compute_units, info.global_bytes};
+}
+
+std::vector<DeviceInfo> devices() {
+  std::vector<DeviceInfo> out;
+  for (const caplet::DeviceInfo& info : list_devices()) out.push_back(to_public(info));
+  return out;
+}
+
+Device::Device(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+Device::Device(const Device&) = default;
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(const Device&) = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+const DeviceInfo& Device::info() const { return data_->info; }
+
+Device choose_device(const std::string& choice) {
+  caplet::Device device = caplet::Device::choose(choice);
+  DeviceInfo info = to_public(device.info());
+  return Inside::device(std::move(device), std::move(info));
+}
+
+}  // namespace caplet::v0

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "caplet/film.h"
+
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "base/spelling.h"
+#include "library/detail/inside.h"
+
+namespace caplet::v0 {
+
+namespace {
+
+const Channel& channel_of(const LayeredImage& image, const std::string& name) {
+  if (const Channel* channel = image.find(name)) return *channel;
+  std::vector<std::string> names;
+  for (const Channel& channel : image.channels) names.push_back(channel.name);
+  throw InputError(fmt::format("there is no channel '{}'; the nearest is '{}'", name, nearest_name(name, names)));
+}
+
+}  // namespace
+
+Film::Film(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+Film::Film(const Film&) = default;
+Film::Film(Film&&) noexcept = default;
+Film& Film::operator=(const Film&) = default;
+Film& Film::operator=(Film&&) noexcept = default;
+Film::~Film() = default;
+
+int Film::width() const { return data_->image.data_width; }
+int Film::height() const { return data_->image.data_height; }
+int Film::x() const { return data_->image.x; }
+int Film::y() const { return data_->image.y; }
+int Film::samples_per_pixel() const { return data_->samples_per_pixel; }
+
+std::vector<std::string> Film::channels() const {
+  std::vector<std::string> out;
+  for (const Channel& channel : data_->image.channels) out.push_back(channel.name);
+  return out;
+}
+
+std::vector<float> Film::values(const std::string& channel) const {
+  const Channel& found = channel_of(data_->image, channel);
+  if (found.floats.empty()) throw InputError(fmt::format("channel '{}' holds ids", channel));
+  return found.floats;
+}
+
+std::vector<std::uint32_t> Film::ids(const std::string& channel) const {
+  const Channel& found = channel_of(data_->image, channel);
+  if (found.uints.empty()) throw InputError(fmt::format("channel '{}' holds no ids", channel));
+  return found.uints;
+}
+
+void Film::write_exr(const std::filesystem::path& file) const {
+  const LayeredImage& image = data_->image;
+  const std::uint64_t bytes = std::uint64_t{4} * image.channels.size() * static_cast<std::uint64_t>(image.data_width) *
+                              static_cast<std::uint64_t>(image.data_height);
+  caplet::write_exr(file, image, compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
+}
+
+void Film::write_preview(const std::filesystem::path& file) const {
+  check_preview_format(file, "preview");
+  check_preview_size(file, width(), height(), "preview");
+  caplet::write_preview(file, data_->image);
+}
+
+}  // namespace caplet::v0

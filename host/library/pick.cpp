@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "caplet/pick.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "library/detail/inside.h"
+#include "lower/camera.h"
+#include "lower/identity.h"
+#include "lower/lower.h"
+#include "present/film_window.h"
+#include "render/known_answers.h"
+#include "render/query.h"
+
+namespace caplet::v0 {
+
+namespace {
+
+RayRecord to_record(const Ray& ray) {
+  return {ray.origin[0],    ray.origin[1],    ray.origin[2],    ray.t_min,
+          ray.direction[0], ray.direction[1], ray.direction[2], ray.t_max};
+}
+
+std::vector<RayRecord> to_records(std::span<const Ray> rays) {
+  std::vector<RayRecord> out(rays.size());
+  std::ranges::transform(rays, out.begin(), to_record);
+  return out;
+}
+
+Hit to_hit(const PickRecord& pick, const caplet::Scene& scene) {
+  const Identity identity = identity_of(scene, pick);
+  Hit hit;
+  hit.t = pick.t;
+  std::ranges::copy(pick.point, hit.point.begin());
+  std::ranges::copy(pick.normal, hit.normal.begin());
+  hit.uv = {pick.u, pick.v};
+  hit.error = pick.error;
+  hit.entering = pick.leaving == 0;
+  hit.object = identity.shape->name;
+  hit.material = scene.materials[pick.material].name;
+  hit.object_id = pick.object;
+  hit.material_id = pick.material;
+  hit.primitive = pick.primitive;
+  hit.surface = pick.surface;
+  hit.instance = identity.instance;
+  return hit;
+}
+
+std::optional<Hit> to_nearest(const PickRecord& pick, const caplet::Scene& scene) {
+  return pick.object == CAPLET_NONE ? std::nullopt : std::optional(to_hit(pick, scene));
+}
+
+}  // namespace
+
+struct Picker::Data {
+  Data(std::shared_ptr<const caplet::Scene> model, const caplet::Device& on)
+      : scene(std::move(model)), flat(lower(*scene)), device(on), query(flat, on) {}
+
+  std::shared_ptr<const caplet::Scene> scene;
+  FlatScene flat;
+  caplet::Device device;
+  Query query;
+};
+
+Picker::Picker(const Scene& scene, const Device& device)
+    : data_(std::make_unique<Data>(Inside::model(scene), Inside::device(device))) {}
+Picker::Picker(Picker&&) noexcept = default;
+Picker& Picker::operator=(Picker&&) noexcept = default;
+Picker::~Picker() = default;
+
+std::optional<Hit> Picker::pixel(int x, int y) {
+  check_pixel({x, y}, data_->scene->film);
+  try_device(data_->device, {.shapes = data_->flat.shapes, .nearest = true});
+  const RayRecord ray = ray_of_pixel(*data_->scene, x, y);
+  return to_nearest(data_->query.closest(std::span(&ray, 1)).front(), *data_->scene);
+}
+
+std::optional<Hit> Picker::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
+
+std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) {
+  try_device(data_->device, {.shapes = data_->flat.shapes, .nearest = true});
+  std::vector<std::optional<Hit>> out;
+  if (rays.empty()) return out;
+  out.reserve(rays.size());
+  for (const PickRecord& pick : data_->query.closest(to_records(rays))) out.push_back(to_nearest(pick, *data_->scene));
+  return out;
+}
+
+std::vector<std::vector<Hit>> Picker::all(std::span<const Ray> rays, std::size_t most) {
+  if (most < 1 || most > max_query_capacity)
+    throw InputError(fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
+  try_device(data_->device, {.shapes = data_->flat.shapes, .lists = true});
+  std::vector<std::vector<Hit>> out(rays.size());
+  if (rays.empty()) return out;
+  const HitLists lists = data_->query.all(to_records(rays), most);
+  if (!lists.overflowed.empty())
+    throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0], most, lists.overflowed.size()));
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) out[i].push_back(to_hit(lists.crossings[k], *data_->scene));
+  return out;
+}
+
+}  // namespace caplet::v0

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "present/present.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace caplet {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double radians(double degrees) { return degrees * kPi / 180; }
+
+constexpr double kFieldOfView = radians(35);  // of the shorter side
+constexpr double kMargin = 0.05;              // of the half image, on each side
+/// Thinner than this part of its middle extent, a scene counts as flat (extents as standard deviations along the principal axes).
+constexpr double kFlat = 0.35;
+
+// --- What is to be framed ---
+
+struct Ball {
+  glm::dvec3 center;
+  double radius;
+};
+
+/// Spheres whose hull holds every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything else.
+std::vector<Ball> balls_of(const Scene& scene) {
+  std::vector<Ball> balls;
+  const auto add_corners = [&balls](const Bounds& bounds) {
+    if (bounds.empty()) return;
+    for (int corner = 0; corner < 8; ++corner)
+      balls.push_back({{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
+                        corner & 4 ? bounds.max.z : bounds.min.z},
+                       0});
+  };
+  for (const Shape& shape : scene.shapes) {
+    const glm::dmat3 linear(shape.world_from_object);
+    const auto place = [&shape](const glm::dvec3& p) { return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)); };
+    // The Frobenius norm bounds the largest stretch; divided by sqrt(3) it is that of a uniform scale.
+    const double stretch =
+        std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) + glm::dot(linear[2], linear[2]));
+    const bool uniform = std::abs(glm::dot(linear[0], linear[1])) + std::abs(glm::dot(linear[1], linear[2])) +
+                             std::abs(glm::dot(linear[2], linear[0])) <=
+                         1e-12 * stretch * stretch;
+    const double scale = uniform ? std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])}) : stretch;
+    if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
+      balls.push_back({place({0, 0, 0}), scale * sphere->radius});
+    } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
+      balls.reserve(balls.size() + 2 * capsules->p0.size());
+      for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
+        const float radius1 = capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i];
+        balls.push_back({place(capsules->p0[i]), scale * capsules->radius0[i]});
+        balls.push_back({place(capsules->p1[i]), scale * radius1});
+      }
+    } else {
+      add_corners(bounds_of(shape));
+    }
+  }
+  if (!scene.instances.empty()) {
+    Scene placed;
+    placed.objects = scene.objects;
+    placed.instances = scene.instances;
+    add_corners(bounds_of(placed));
+  }
+  return balls;
+}
+
+// --- The direction of view ---
+
+struct Axes {
+  glm::dvec3 extent{0};  // standard deviations, largest first
+  glm::dmat3 axis{1};    // columns, unit
+};
+
+/// Principal axes of the balls' centres, by cyclic Jacobi rotations.
+Axes principal_axes(const std::vector<Ball>& balls) {
+  glm::dvec3 mean(0);
+  for (const Ball& ball : balls) mean += ball.center / static_cast<double>(balls.size());
+  glm::dmat3 a(0), v(1);
+  for (const Ball& ball : balls) {
+    const glm::dvec3 d = ball.center - mean;
+    a += glm::outerProduct(d, d) / static_cast<double>(balls.size());
+  }
+  constexpr int kSweeps = 16;  // quadratic convergence: 3x3 needs about 6
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+      if (a[q][p] == 0) continue;
+      const double theta = (a[q][q] - a[p][p]) / (2 * a[q][p]);
+      const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+      const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+      glm::dmat3 rotation(1);
+      rotation[p][p] = rotation[q][q] = c;
+      rotation[q][p] = s;
+      rotation[p][q] = -s;
+      a = glm::transpose(rotation) * a * rotation;
+      v = v * rotation;
+    }
+  std::array<int, 3> order{0, 1, 2};
+  std::ranges::sort(order, [&a](int i, int j) { return a[i][i] > a[j][j]; });
+  Axes axes;
+  for (int i = 0; i < 3; ++i) {
+    axes.extent[i] = std::sqrt(std::max(0.0, a[order[static_cast<std::size_t>(i)]][order[static_cast<std::size_t>(i)]]));
+    axes.axis[i] = v[order[static_cast<std::size_t>(i)]];
+  }
+  return axes;
+}
+
+/// Right-handed world, so `right` x `up` points back at the viewer.
+struct View {
+  glm::dvec3 right, up, forward;
+};
+
+/// `toward_viewer` need not be of unit length; y is up unless one looks along it, then -z is.
+View view_from(const glm::dvec3& toward_viewer) {
+  View view;
+  view.forward = -glm::normalize(toward_viewer);
+  const bool steep = std::abs(view.forward.y) > 0.95;
+  const glm::dvec3 up = steep ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
+  view.right = glm::normalize(glm::cross(view.forward, up));
+  view.up = glm::cross(view.right, view.forward);
+  return view;
+}
+
+/// Turns the viewer to the right by `azimuth` and up by `elevation`.
+View turned(const View& view, double azimuth, double elevation) {
+  const glm::dvec3 level = -view.forward * std::cos(azimuth) + view.right * std::sin(azimuth);
+  return view_from(level * std::cos(elevation) + view.up * std::sin(elevation));
+}
+
+bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1]; }
+
+/// For scenes without an up: the longer side goes along the image's longer side, a quarter turn where that is clearly better.
+View along_image(const View& view, const std::vector<Ball>& balls, double aspect) {
+  glm::dvec2 low(1e300), high(-1e300);
+  for (const Ball& ball : balls) {
+    const glm::dvec2 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center));
+    low = glm::min(low, p - ball.radius);
+    high = glm::max(high, p + ball.radius);
+  }
+  const glm::dvec2 size = high - low;
+  const double upright = std::max(size.x / aspect, size.y), turned = std::max(size.y / aspect, size.x);
+  return turned < 0.8 * upright ? View{view.up, -view.right, view.forward} : view;
+}
+
+View choose_view(const std::vector<Ball>& balls) {
+  const Axes axes = principal_axes(balls);
+  const auto facing = [](glm::dvec3 n) {
+    // Seen from the front, from above or from the right, whichever the normal is nearest to.
+    const glm::dvec3 size = glm::abs(n);
+    const double main = size.z >= size.x && size.z >= size.y ? n.z : (size.y >= size.x ? n.y : n.x);
+    return main < 0 ? -n : n;
+  };
+  if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), radians(10), radians(6));
+  // A volume: across its widest level direction, three-quarter.
+  glm::dvec3 wide(axes.axis[0].x, 0, axes.axis[0].z);
+  if (glm::length(wide) < 0.5) wide = {axes.axis[1].x, 0, axes.axis[1].z};
+  glm::dvec3 across = glm::length(wide) > 0 ? glm::cross(glm::normalize(wide), glm::dvec3(0, 1, 0)) : glm::dvec3(0, 0, 1);
+  return turned(view_from(facing(across)), radians(30), radians(18));
+}
+
+// --- The studio ---
+
+/// A round soft light: `radiance` within `radius` of `direction`, falling to 0 over `edge`. Angles in radians; the direction is
+/// in the viewer's axes (right, up, toward the viewer).
+struct SoftLight {
+  glm::dvec3 direction;
+  double radius, edge;
+  glm::dvec3 radiance;
+};
+
+glm::dvec3 from_angles(double azimuth, double elevation) {
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
+}
+
+/// Irradiance of a disk of angular radius a at its centre: pi L sin(a)^2. The key gives about 2.8, so a reflectance of 0.6 facing
+/// it shows 0.53 of it, and with fill and background 0.6 to 0.7. All lights lie outside what the camera sees (up to 33 degrees
+/// off its axis in the corners of a 16:9 image).
+EnvironmentImage studio() {
+  const std::array<SoftLight, 3> lights = {
+      SoftLight{from_angles(radians(-48), radians(42)), radians(24), radians(8), {4.2, 4.0, 3.7}},
+      SoftLight{from_angles(radians(62), radians(8)), radians(30), radians(14), {0.72, 0.8, 0.92}},
+      SoftLight{from_angles(radians(150), radians(58)), radians(18), radians(8), {2.8, 2.9, 3.1}},
+  };
+  EnvironmentImage image;
+  image.width = 512;
+  image.height = 256;
+  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  std::size_t texel = 0;
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      const double theta = kPi * (row + 0.5) / image.height, phi = 2 * kPi * (column + 0.5) / image.width;
+      // Light space: z up, x toward the viewer, y to the viewer's right.
+      const glm::dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
+      glm::dvec3 radiance(0.020, 0.024, 0.032);
+      for (const SoftLight& light : lights) {
+        const double angle = std::acos(std::clamp(glm::dot(direction, light.direction), -1.0, 1.0));
+        const double t = std::clamp((light.radius + light.edge - angle) / light.edge, 0.0, 1.0);
+        radiance += light.radiance * (t * t * (3 - 2 * t));
+      }
+      for (int channel = 0; channel < 3; ++channel) image.rgb[texel++] = static_cast<float>(radiance[channel]);
+    }
+  return image;
+}
+
+}  // namespace
+
+void frame_camera(Scene& scene) {
+  const std::vector<Ball> balls = balls_of(scene);
+  if (balls.empty()) return;
+  View view = choose_view(balls);
+  const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
+  if (scene.has_no_up) view = along_image(view, balls, width / height);
+
+  // A ball is inside a side of the view pyramid when its centre is one radius behind the plane. With the plane's angle a to the
+  // axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and -cos(a) x - sin(a) z >= L, R and L being the largest of
+  // +-cos(a) cx - sin(a) cz + r; both are equal when x is centred, which gives the nearest apex.
+  const double half = std::tan(kFieldOfView / 2) * (1 - kMargin);
+  struct Side {
+    double sine, cosine, right, left;
+  };
+  const auto fit = [&](const glm::dvec3& across, double tangent) {
+    const double angle = std::atan(tangent);
+    Side side{std::sin(angle), std::cos(angle), -1e300, -1e300};
+    for (const Ball& ball : balls) {
+      const double x = side.cosine * glm::dot(across, ball.center);
+      const double depth = ball.radius - side.sine * glm::dot(view.forward, ball.center);
+      side.right = std::max(side.right, x + depth);
+      side.left = std::max(side.left, -x + depth);
+    }
+    return side;
+  };
+  const Side horizontal = fit(view.right, half * width / shorter), vertical = fit(view.up, half * height / shorter);
+  const auto nearest = [](const Side& side) { return -(side.right + side.left) / (2 * side.sine); };
+  const double z = std::min(nearest(horizontal), nearest(vertical));
+  const double x = (horizontal.right - horizontal.left) / (2 * horizontal.cosine);
+  const double y = (vertical.right - vertical.left) / (2 * vertical.cosine);
+  const glm::dvec3 eye = x * view.right + y * view.up + z * view.forward;
+
+  scene.camera = Camera{};
+  scene.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
+  scene.camera.fov = kFieldOfView;
+  scene.automatic_camera = true;
+}
+
+void add_presentation(Scene& scene) {
+  frame_camera(scene);
+  InfiniteLight light;
+  static const auto image = std::make_shared<const EnvironmentImage>(studio());
+  light.image = image;
+  const glm::dmat3 camera(scene.camera.world_from_camera);
+  light.world_from_light = glm::dmat3(-camera[2], camera[0], camera[1]);
+  scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
+}
+
+glm::dvec3 palette_color(std::size_t index) {
+  static constexpr std::array<std::array<double, 3>, 10> colors = {{
+      {0.12, 0.48, 0.82},  // blue
+      {0.85, 0.23, 0.12},  // red
+      {0.86, 0.62, 0.22},  // amber
+      {0.16, 0.56, 0.28},  // green
+      {0.66, 0.22, 0.66},  // purple
+      {0.12, 0.62, 0.60},  // teal
+      {0.86, 0.36, 0.50},  // pink
+      {0.52, 0.66, 0.16},  // lime
+      {0.45, 0.27, 0.16},  // brown
+      {0.62, 0.63, 0.62},  // grey
+  }};
+  const auto& color = colors[index % colors.size()];
+  return {color[0], color[1], color[2]};
+}
+
+}  // namespace caplet

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A render's picture as files: what is noted in it, and the picture with its preview.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "device/device.h"
+#include "film/image.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace caplet::report {
+
+/// Attributes of a picture (docs/output.md). `scene_file` and `command`: how the scene was named, and what made the picture (a
+/// command line, a program's name).
+std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
+                                                    const Device& device, const RenderResult& result);
+
+/// The picture and its preview, developed once, band by band. An empty path: not written. `channels`: of 32 bits;
+/// `render_seconds` weighs how long packing may take. Throws RunError.
+void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& image,
+                    std::size_t channels, double render_seconds);
+
+}  // namespace caplet::report

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "report/summary.h"
+
+#include <sys/resource.h>
+
+#include <set>
+
+namespace caplet::report {
+
+namespace {
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+using Counted = std::set<const void*>;
+
+/// Operands of csg shapes may be shared: each is counted once.
+std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
+  std::uint64_t out = sizeof(Shape);
+  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    out += bytes_of(capsules->p0) + bytes_of(capsules->p1) + bytes_of(capsules->radius0) + bytes_of(capsules->radius1) +
+           bytes_of(capsules->materials);
+  if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+    out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
+  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
+    out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
+  if (const auto* polyhedron = std::get_if<PolyhedronShape>(&shape.geometry))
+    out += bytes_of(polyhedron->points) + bytes_of(polyhedron->normals);
+  if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
+    for (const auto& operand : csg->operands)
+      if (counted.insert(operand.get()).second) out += bytes_of(*operand, counted);
+  return out + bytes_of(shape.materials);
+}
+
+nlohmann::ordered_json to_json(const glm::dvec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+
+}  // namespace
+
+std::uint64_t model_bytes(const Scene& scene) {
+  std::uint64_t out = bytes_of(scene.materials) + bytes_of(scene.instances) + bytes_of(scene.lights);
+  Counted counted;
+  for (const Shape& shape : scene.shapes) out += bytes_of(shape, counted);
+  for (const Object& object : scene.objects)
+    for (const Shape& shape : object.shapes) out += bytes_of(shape, counted);
+  std::set<const EnvironmentImage*> images;
+  for (const Light& light : scene.lights)
+    if (const auto* infinite = std::get_if<InfiniteLight>(&light.model); infinite && infinite->image)
+      if (images.insert(infinite->image.get()).second) out += bytes_of(infinite->image->rgb);
+  return out;
+}
+
+std::uint64_t light_count(const FlatScene& flat) { return flat.lights.size(); }
+
+std::uint64_t peak_process_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) {
+  nlohmann::ordered_json out;
+  out["scene"] = scene.source;
+  out["primitives"] = nlohmann::ordered_json::object();
+  for (const auto& [kind, count] : count_primitives(scene)) out["primitives"][kind] = count;
+  const Bounds bounds = bounds_of(scene);
+  out["bounds"] = {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}};
+  out["materials"] = scene.materials.size();
+  out["lights"] = light_count(flat);
+  out["objects"] = scene.objects.size();
+  out["instances"] = scene.instances.size();
+  out["image"] = {{"width", scene.film.width}, {"height", scene.film.height}};
+  out["samples_per_pixel"] = scene.sampler.samples_per_pixel;
+  out["max_depth"] = scene.integrator.max_depth;
+  out["bytes"] = {{"host", model_bytes(scene)}, {"device", flat.device_bytes()}};
+  out["bvh"] = {{"nodes", flat.bvh_nodes}, {"depth", flat.bvh_depth}, {"sah", flat.bvh_sah}};
+  return out;
+}
+
+nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result, const Device& device) {
+  nlohmann::ordered_json out;
+  out["seconds"] = {{"load", seconds.load},     {"build", seconds.build}, {"compile", seconds.compile},
+                    {"render", seconds.render}, {"write", seconds.write}, {"total", seconds.total}};
+  out["first_pass_seconds"] = result.first_pass_seconds;
+  out["compile_seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, stage_seconds] : result.stage_compile_seconds) out["compile_seconds"][stage] = stage_seconds;
+  out["stage_seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, stage_seconds] : result.stage_seconds) out["stage_seconds"][stage] = stage_seconds;
+  out["samples_per_pixel"] = result.samples_per_pixel;
+  out["interrupted"] = result.interrupted;
+  out["rays"] = {{"camera", result.camera_rays}, {"bounce", result.bounce_rays}, {"shadow", result.shadow_rays}};
+  out["device"] = device.info().name;
+  out["driver"] = device.info().driver;
+  out["peak_bytes"] = peak_process_bytes();
+  out["peak_device_bytes"] = result.peak_device_bytes;
+  return out;
+}
+
+std::string to_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace caplet::report

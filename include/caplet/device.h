@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The OpenCL devices that renders and questions run on.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "caplet/error.h"
+#include "caplet/export.h"
+
+CAPLET_BEGIN
+
+struct DeviceInfo {
+  int index = 0;  // over all platforms
+  std::string name, vendor, driver, version, platform;
+  std::string type;  // "cpu", "gpu", "accelerator", "other"
+  unsigned compute_units = 0;
+  std::uint64_t global_bytes = 0;  // memory
+};
+
+/// All of them; empty when there is none.
+CAPLET_API std::vector<DeviceInfo> devices();
+
+/// An open device. Copies are the same one.
+class CAPLET_API Device {
+ public:
+  Device(const Device&);
+  Device(Device&&) noexcept;
+  Device& operator=(const Device&);
+  Device& operator=(Device&&) noexcept;
+  ~Device();
+
+  const DeviceInfo& info() const;
+
+ private:
+  friend struct Inside;
+  struct Data;
+  explicit Device(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+/// `choice`: an index, "cpu", "gpu" or part of a name; empty: a GPU if there is one, else the first device. Throws InputError
+/// that lists the devices when none or more than one is meant, and RunError when there is none. Before its first render or
+/// question a device is tried once with answers that are known, which takes the time that its kernels take to compile; a wrong
+/// one throws RunError.
+CAPLET_API Device choose_device(const std::string& choice = {});
+
+CAPLET_END

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A rendered picture with its layers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "caplet/error.h"
+#include "caplet/export.h"
+
+CAPLET_BEGIN
+
+class CAPLET_API Film {
+ public:
+  Film(const Film&);
+  Film(Film&&) noexcept;
+  Film& operator=(const Film&);
+  Film& operator=(Film&&) noexcept;
+  ~Film();
+
+  /// Of what was rendered: the crop, where the scene has one, whose place in the whole picture x and y are.
+  int width() const;
+  int height() const;
+  int x() const;
+  int y() const;
+  /// That were finished.
+  int samples_per_pixel() const;
+
+  /// "R", "G", "B", "A", "Z", "albedo.R", "N.X", "P.X", "variance.R", ... and "object.id", "primitive.id".
+  std::vector<std::string> channels() const;
+  /// Values of one channel, row by row from the top: scene-linear in the film's colour space. Throws InputError when there is no
+  /// such channel, or when it holds ids.
+  std::vector<float> values(const std::string& channel) const;
+  /// The same of a channel of ids; 2^32 - 1 where nothing is.
+  std::vector<std::uint32_t> ids(const std::string& channel) const;
+
+  /// All channels as OpenEXR. The file is replaced as a whole, or is as it was. Throws RunError.
+  void write_exr(const std::filesystem::path& file) const;
+  /// Tone-mapped, 8 bits a channel, in the format of the extension. Throws InputError when that is unknown, and RunError.
+  void write_preview(const std::filesystem::path& file) const;
+
+ private:
+  friend struct Inside;
+  struct Data;
+  explicit Film(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+CAPLET_END

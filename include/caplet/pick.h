@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What a pixel shows, and what rays hit.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "caplet/device.h"
+#include "caplet/scene.h"
+
+CAPLET_BEGIN
+
+struct Ray {
+  std::array<float, 3> origin{};
+  std::array<float, 3> direction{0, 0, 1};                          // of any length, in which t counts
+  float t_min = 0, t_max = std::numeric_limits<float>::infinity();  // hits are strictly between
+};
+
+/// A crossing of a ray and a surface.
+struct Hit {
+  float t = 0;
+  std::array<float, 3> point{};   // within `error` of the surface, world space
+  std::array<float, 3> normal{};  // unit, outward
+  std::array<float, 2> uv{};
+  float error = 0;                           // scene units
+  bool entering = false;                     // the ray goes into the solid
+  std::string object, material;              // names; empty where the scene gives none
+  std::uint32_t object_id = 0;               // as in the film's channel "object.id"
+  std::uint32_t material_id = 0;             // index into Scene::materials()
+  std::uint32_t primitive = 0, surface = 0;  // within the object
+  std::optional<std::uint32_t> instance;     // number of the instance, of shapes that are in one
+};
+
+/// Holds a scene, as it was when this was made, on a device. Members throw RunError.
+class CAPLET_API Picker {
+ public:
+  /// Throws InputError when the scene is beyond a limit.
+  Picker(const Scene& scene, const Device& device);
+  Picker(Picker&&) noexcept;
+  Picker& operator=(Picker&&) noexcept;
+  ~Picker();
+
+  /// Through the middle of this pixel of the whole picture, from the top left. Throws InputError when it is not in the picture or
+  /// its crop.
+  std::optional<Hit> pixel(int x, int y);
+  std::optional<Hit> nearest(const Ray& ray);
+  std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);
+  /// Every hit in order; throws RunError when a ray has more than `most` (1 to 2^20).
+  std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most = 256);
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+CAPLET_END

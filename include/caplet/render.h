@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// From a scene to a film.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "caplet/device.h"
+#include "caplet/film.h"
+#include "caplet/scene.h"
+
+CAPLET_BEGIN
+
+struct RenderProgress {
+  double fraction = 0;  // 0 to 1
+  double samples_per_second = 0;
+};
+
+struct RenderOptions {
+  std::optional<double> time_limit;  // seconds: the pass of samples under way is finished
+  std::function<void(const RenderProgress&)> progress;
+};
+
+/// Renders the scene's picture with its number of samples. Blocks. Throws RunError, and InputError when the scene is beyond a
+/// limit.
+CAPLET_API Film render(const Scene& scene, const Device& device, const RenderOptions& options = {});
+
+CAPLET_END
