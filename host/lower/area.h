@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "lower/encode.h"
+#include "lower/flat_primitive.h"
 
 namespace caplet {
 

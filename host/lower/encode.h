@@ -8,22 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "shared/shapes.h"
+#include "lower/flat_primitive.h"
 
 namespace caplet {
-
-/// One primitive: its fields (shapes.def: p.data[capsule_at_r], capsule_r(p.data)), in the space of its tree. Kinds with
-/// trait_kept_box have their box (min 3, max 3) behind them.
-struct FlatPrimitive {
-  std::uint32_t shape;
-  std::uint32_t id;  // global primitive id; for instances the index into FlatScene::instances
-  float data[12];
-  const float* kept_box() const { return data + data_of[shape]; }
-  float* kept_box() { return data + data_of[shape]; }
-};
-#define SHAPE(name, traits) static_assert(name##_data + ((traits)&trait_kept_box ? 6 : 0) <= 12, "FlatPrimitive holds a " #name);
-#include "shared/shapes.def"
-#undef SHAPE
 
 struct EncodedTree {
   std::uint32_t root = 0;            // node index

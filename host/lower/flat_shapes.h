@@ -7,7 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
-#include "lower/encode.h"
+#include "lower/flat_primitive.h"
 #include "scene/scene.h"
 
 namespace caplet {

@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "lower/encode.h"
+#include "lower/flat_primitive.h"
 #include "lower/pieces.h"
 #include "scene/scene.h"
 
