@@ -11,14 +11,19 @@
 
 #include "judge.h"
 #include "shared/kinds.h"
-#ifdef CAPLET_EMBREE
-#include "peer.h"
 #include "support/test_device.h"
+#ifdef CAPLET_EMBREE
+#include "bench/peer.h"
 #endif
 
 namespace caplet::test {
 
 namespace {
+
+#ifdef CAPLET_EMBREE
+using bench::Peer;
+using bench::PeerMode;
+#endif
 
 using glm::dvec3;
 
