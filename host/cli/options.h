@@ -37,8 +37,8 @@ std::array<int, 2> parse_pixel(const std::string& text);
 /// "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError naming --ray.
 RayNumbers parse_ray(const std::string& text);
 
-/// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_rows' options between commas.
-/// And the variance, when asked for. Throws InputError naming --layers.
+/// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_rows' options between
+/// commas. And the variance, when asked for. Throws InputError naming --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
 
 /// What `work` does; what it throws as InputError names `flag`.

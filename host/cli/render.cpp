@@ -99,7 +99,8 @@ void check_outputs(const Options& options, const Scene& scene, Layers layers, Fi
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
 
-RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const Device& device, const RenderOptions& render_options, bool quiet) {
+RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const Device& device,
+                                  const RenderOptions& render_options, bool quiet) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return render(flat, view, device, render_options, [&](const Progress& progress) {
