@@ -153,7 +153,7 @@ void scale_polyhedron(FlatPrimitive& p, float scale, std::vector<float>& leaves)
   const auto count = std::bit_cast<std::uint32_t>(data[3]);
   for (const std::size_t i : {0U, 1U, 2U, 4U}) data[i] *= scale;
   for (std::size_t i = 0; i < count; ++i) data[8 + 4 * i + 3] *= scale;
-  for (int i = 3; i < 9; ++i) p.data[i] *= scale;
+  for (int i = 0; i < 6; ++i) p.kept_box()[i] *= scale;
 }
 
 TEST_P(ShapeAgainstWitness, OrdinaryScales) { compare(GetParam(), 8, false, 1000, 60, 11); }
