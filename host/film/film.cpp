@@ -142,7 +142,7 @@ void add_words(std::uint64_t* sum, const std::uint64_t* more, int words) {
   }
 }
 
-double value_of_words(const std::uint64_t* sum, int words, int unit) {
+double value_of_words(const std::uint64_t* sum, int words, double unit) {
   const bool negative = sum[words - 1] >> 63 != 0;
   double value = 0;
   std::uint64_t carry = negative ? 1 : 0;
@@ -150,28 +150,37 @@ double value_of_words(const std::uint64_t* sum, int words, int unit) {
     // The magnitude, from its least word on: each addition rounds by half a unit in the last place at most.
     const std::uint64_t flipped = negative ? ~sum[w] : sum[w], word = flipped + carry;
     carry = word < flipped ? 1 : 0;
-    value += std::ldexp(static_cast<double>(word), 64 * w + unit);
+    value += static_cast<double>(word) * unit;
+    unit *= 0x1p64;
   }
   return negative ? -value : value;
 }
 
 Film::Film(const FilmLayout& layout)
-    : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(layout.window.pixels() * words_per_pixel_) {}
+    : Film(layout, std::vector<std::uint64_t>(layout.window.pixels() * layout.words_per_pixel()), {}) {}
 
 Film::Film(const FilmLayout& layout, std::vector<std::uint64_t> words, std::vector<FilmPart> parts)
     : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(std::move(words)), parts_(std::move(parts)) {
   CHECK_EQ_(words_.size(), layout.window.pixels() * words_per_pixel_);
+  for (std::size_t i = 0; i < layer_rows.size(); ++i) {
+    if (!layout.layers.has(static_cast<Layer>(i))) continue;
+    first_words_[i] = layout.first_word(static_cast<Layer>(i));
+    if (layer_rows[i].unit) units_[i] = std::ldexp(1.0, layer_rows[i].unit(layout.color_exponent, layout.length_exponent));
+  }
 }
 
 double Film::sum(Layer layer, std::size_t c, std::size_t pixel) const {
-  const LayerRow& row = row_of(layer);
-  const auto words = static_cast<std::size_t>(row.words);
-  return value_of_words(&words_[pixel * words_per_pixel_ + layout_.first_word(layer) + c * words], row.words,
-                        row.unit(layout_.color_exponent, layout_.length_exponent));
+  const auto row = static_cast<std::size_t>(layer);
+  CHECK_LT_(0u, first_words_[row]);
+  const int words = layer_rows[row].words;
+  return value_of_words(&words_[pixel * words_per_pixel_ + first_words_[row] + c * static_cast<std::size_t>(words)], words,
+                        units_[row]);
 }
 
 std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
-  return static_cast<std::uint32_t>(~words_[pixel * words_per_pixel_ + layout_.first_word(layer)]);
+  const std::size_t first = first_words_[static_cast<std::size_t>(layer)];
+  CHECK_LT_(0u, first);
+  return static_cast<std::uint32_t>(~words_[pixel * words_per_pixel_ + first]);
 }
 
 void Film::add(const Film& other) {

@@ -5,6 +5,7 @@
 // any order, from any number of devices and runs, and the same samples always make the same bits.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -50,8 +51,8 @@ struct FilmPart {
 
 /// Adds a sum of `words` words, two's complement, least significant first.
 void add_words(std::uint64_t* sum, const std::uint64_t* more, int words);
-/// Its value as a double, times 2^unit.
-double value_of_words(const std::uint64_t* sum, int words, int unit);
+/// Its value as a double, times `unit`, a power of two.
+double value_of_words(const std::uint64_t* sum, int words, double unit);
 
 class Film {
  public:
@@ -86,6 +87,9 @@ class Film {
  private:
   FilmLayout layout_;
   std::size_t words_per_pixel_ = 0;
+  // By layer: its first word of a pixel, 0 where the film does not have it, and its sums' unit.
+  std::array<std::size_t, layer_count> first_words_{};
+  std::array<double, layer_count> units_{};
   std::vector<std::uint64_t> words_;
   std::vector<FilmPart> parts_;
 };
