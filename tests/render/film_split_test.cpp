@@ -92,6 +92,20 @@ TEST(FilmSplit, WindowsAndSamplesInAnyOrder) {
   }
 }
 
+TEST(FilmSplit, NumbersAreThoseOfTheFirstSample) {
+  DeviceScene scene(test_device(), model().flat);
+  Renderer renderer(scene, model().view, {.layers = Layers::all()});
+  renderer.pass(whole().layout().window, 0, 1);
+  const Film first = renderer.film().read();
+  std::size_t seen = 0;
+  for (std::size_t pixel = 0; pixel < first.layout().window.pixels(); ++pixel) {
+    EXPECT_EQ(whole().number(Layer::object, pixel), first.number(Layer::object, pixel)) << pixel;
+    EXPECT_EQ(whole().number(Layer::primitive, pixel), first.number(Layer::primitive, pixel)) << pixel;
+    seen += first.number(Layer::object, pixel) != CAPLET_NONE ? 1 : 0;
+  }
+  EXPECT_GT(seen, 0u);
+}
+
 TEST(FilmSplit, FilmsAddedInAnyOrder) {
   DeviceScene scene(test_device(), model().flat);
   std::mt19937 random(2);
