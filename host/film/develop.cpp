@@ -37,15 +37,8 @@ float to_float(double value) {
   return static_cast<float>(value);
 }
 
-LayeredImage image_of(const Film& film, ColorSpace space, Layers layers) {
-  const FilmLayout& layout = film.layout();
-  LayeredImage image;
-  image.width = layout.width;
-  image.height = layout.height;
-  image.x = layout.window.x;
-  image.y = layout.window.y;
-  image.data_width = layout.window.width;
-  image.data_height = layout.window.height;
+LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers layers) {
+  LayeredImage image = image_of(layout);
   image.space = space;
   const std::size_t pixels = layout.window.pixels();
   for (std::size_t i = 0; i < layer_rows.size(); ++i) {
@@ -146,7 +139,7 @@ float instead_of(LayerHow how) { return how == LayerHow::variance ? std::numeric
 
 LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
   CHECK_EQ_(film.layout().layers.has_all(layers), true);
-  LayeredImage image = image_of(film, scene.film.space, layers);
+  LayeredImage image = black_image(film.layout(), scene.film.space, layers);
   const Window& window = film.layout().window;
   Developer developer(film, scene);
   not_finite.of += window.pixels();

@@ -12,7 +12,6 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "film/image.h"
 
 namespace caplet {
 
@@ -94,7 +93,8 @@ class Metadata {
   int number(const char* name) const {
     std::string_view left = text(name);
     std::int64_t value = 0;
-    if (!take_number(left, -1000, 1000, value) || !left.empty()) fail(fmt::format("'{}' is not a number", name));
+    if (!take_number(left, -largest_film_exponent, largest_film_exponent, value) || !left.empty())
+      fail(fmt::format("'{}' is not a number", name));
     return static_cast<int>(value);
   }
   [[noreturn]] void fail(const std::string& why) const {
@@ -224,14 +224,19 @@ void add_part(std::vector<FilmPart>& parts, const FilmPart& part) {
   parts.push_back(joined);
 }
 
-void Film::save(const std::filesystem::path& path) const {
+LayeredImage image_of(const FilmLayout& layout) {
   LayeredImage image;
-  image.width = layout_.width;
-  image.height = layout_.height;
-  image.x = layout_.window.x;
-  image.y = layout_.window.y;
-  image.data_width = layout_.window.width;
-  image.data_height = layout_.window.height;
+  image.width = layout.width;
+  image.height = layout.height;
+  image.x = layout.window.x;
+  image.y = layout.window.y;
+  image.data_width = layout.window.width;
+  image.data_height = layout.window.height;
+  return image;
+}
+
+void Film::save(const std::filesystem::path& path) const {
+  LayeredImage image = image_of(layout_);
   image.metadata = {{format_name, format_version},
                     {"caplet.film.layers", std::to_string(layout_.layers.bits())},
                     {"caplet.film.color_exponent", std::to_string(layout_.color_exponent)},

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "film/image.h"
 #include "film/layers.h"
 
 namespace caplet {
@@ -24,6 +25,9 @@ struct Window {
   bool holds(const Window& other) const;
   bool operator==(const Window&) const = default;
 };
+
+/// Exponents of a film are within plus and minus this: sums keep their room (kernels/math/exact.cl).
+inline constexpr int largest_film_exponent = 60;
 
 /// What the words of a film mean. Films with the same layout may be added.
 struct FilmLayout {
@@ -93,6 +97,9 @@ class Film {
   std::vector<std::uint64_t> words_;
   std::vector<FilmPart> parts_;
 };
+
+/// An image with the windows of a film, and no channels.
+LayeredImage image_of(const FilmLayout& layout);
 
 /// Adds a part to a list of parts without common samples, and joins what fits together. Throws InputError when they have samples
 /// in common with it.

@@ -74,7 +74,7 @@ inline float cap_number(Cap cap) {
   return cap == Cap::flat ? CAPLET_CAP_FLAT : cap == Cap::round ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN;
 }
 
-// --- Hulls of two ends: cylinders and cones (hulls.cpp) ---
+// --- Hulls of two ends: cylinders, cones and capsules (hulls.cpp) ---
 
 ExactBox hull_box(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1);
 /// The ends with the surfaces moved out by `b`.

@@ -38,15 +38,13 @@ struct Bindings {
 #undef GROUP_END
 };
 
-/// The groups of a scene.
-struct SceneBuffers {
 #define GROUP_BEGIN(Type, group) Type##Buffers group;
 #define BUFFER(name, type, access)
 #define GROUP_END(Type)
+
+/// The groups of a scene.
+struct SceneBuffers {
   SCENE_GROUPS
-#undef GROUP_BEGIN
-#undef BUFFER
-#undef GROUP_END
 
   SceneBuffers(const Device& device, const FlatScene& scene);
   void bind(Bindings& bindings) const;
@@ -54,13 +52,7 @@ struct SceneBuffers {
 
 /// The groups of a view.
 struct SensorBuffers {
-#define GROUP_BEGIN(Type, group) Type##Buffers group;
-#define BUFFER(name, type, access)
-#define GROUP_END(Type)
   VIEW_GROUPS
-#undef GROUP_BEGIN
-#undef BUFFER
-#undef GROUP_END
 
   SensorBuffers() = default;
   SensorBuffers(const Device& device, const FlatView& view);
@@ -69,18 +61,16 @@ struct SensorBuffers {
 
 /// Those of paths under way, which have `paths` places and `sort_bins` bins, for a film of such layers.
 struct PathBuffers {
-#define GROUP_BEGIN(Type, group) Type##Buffers group;
-#define BUFFER(name, type, access)
-#define GROUP_END(Type)
   PATH_GROUPS
-#undef GROUP_BEGIN
-#undef BUFFER
-#undef GROUP_END
 
   PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film);
   void bind(Bindings& bindings) const;
   /// Bytes on the device of each path.
   static std::uint64_t bytes_per_path(Layers of_film);
 };
+
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
 
 }  // namespace caplet

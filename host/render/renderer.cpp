@@ -35,7 +35,9 @@ Window window_of(const ViewRecord& view) {
 }
 
 /// The exponent of the power of two above |x|, within what sums have room for; 0 of what has none.
-int exponent_of(double x) { return x > 0 && std::isfinite(x) ? std::clamp(std::ilogb(x) + 1, -60, 60) : 0; }
+int exponent_of(double x) {
+  return x > 0 && std::isfinite(x) ? std::clamp(std::ilogb(x) + 1, -largest_film_exponent, largest_film_exponent) : 0;
+}
 
 /// Of the whole scene and the camera, as seen from the world's origin.
 double extent_of(const WorldRecord& world, const CameraRecord& camera) {

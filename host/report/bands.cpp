@@ -6,13 +6,7 @@ namespace caplet::report {
 
 BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
   BandedImage out;
-  const Window& window = film.layout.window;
-  out.whole.width = film.layout.width;
-  out.whole.height = film.layout.height;
-  out.whole.x = window.x;
-  out.whole.y = window.y;
-  out.whole.data_width = window.width;
-  out.whole.data_height = window.height;
+  out.whole = image_of(film.layout);
   out.whole.space = scene.film.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
   out.band = [&film, &scene, &not_finite, layers](int first, int rows) {

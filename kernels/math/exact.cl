@@ -9,7 +9,7 @@
 // 2^exponent, for exponents of normal numbers.
 static inline float power_of_two(int exponent) { return as_float((uint)(127 + exponent) << 23); }
 
-// Adds the components of v to four sums of `words` (1 to 3) words whose unit is 2^unit, |unit - 64 (words - 1)| <= 250. A value is
+// Adds the components of v to four sums of `words` (1 to 3) words whose unit is 2^unit, |unit + 64 (words - 1)| <= 250. A value is
 // rounded towards zero to whole units and counts as at most 2^(64 words - 26) of them (infinity and NaN too), so that 2^25 additions
 // cannot overflow.
 //

@@ -176,6 +176,7 @@ TEST(Film, FilesThatAreNoneAreRefused) {
                                                         {"caplet.film.layers", "1000000"},
                                                         {"caplet.film.layers", "7x"},
                                                         {"caplet.film.color_exponent", "x"},
+                                                        {"caplet.film.length_exponent", "61"},
                                                         {"caplet.film.samples", "4 3 5 4 4"},
                                                         {"caplet.film.samples", "0 0 20 10 4 8"},
                                                         {"caplet.film.samples", "4 3 5 4 4 8,4 3 1 1 6 1"}}) {

@@ -41,14 +41,8 @@ bool bakes_under(const CapsulesShape&, const Matrix& m) { return similarity_scal
 glm::dmat3 turn_under(const CapsulesShape&, const Matrix& m) { return turn_of_similarity(m); }
 
 ExactBox capsule_box(const FlatPrimitive& p) {
-  const double r = double(capsule_r(p.data));
-  ExactBox box;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double a = double(capsule_p0(p.data)[k]), b = double(capsule_p1(p.data)[k]);
-    box.min[k] = std::min(a - r, b - r);
-    box.max[k] = std::max(a + r, b + r);
-  }
-  return box;
+  const HullEnd end{double(capsule_r(p.data)), CAPLET_CAP_ROUND};
+  return hull_box(capsule_p0(p.data), capsule_p1(p.data), end, end);
 }
 
 double capsule_area(const FlatPrimitive& p, const std::vector<float>&) {

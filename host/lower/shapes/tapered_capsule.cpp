@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include <algorithm>
 #include <glm/geometric.hpp>
 
 #include "lower/flat_shapes.h"
@@ -12,14 +11,8 @@ using glm::dvec3;
 using Matrix = glm::dmat4;
 
 ExactBox tapered_capsule_box(const FlatPrimitive& p) {
-  const double r0 = double(tapered_capsule_r0(p.data)), r1 = double(tapered_capsule_r1(p.data));
-  ExactBox box;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double a = double(tapered_capsule_p0(p.data)[k]), b = double(tapered_capsule_p1(p.data)[k]);
-    box.min[k] = std::min(a - r0, b - r1);
-    box.max[k] = std::max(a + r0, b + r1);
-  }
-  return box;
+  return hull_box(tapered_capsule_p0(p.data), tapered_capsule_p1(p.data), {double(tapered_capsule_r0(p.data)), CAPLET_CAP_ROUND},
+                  {double(tapered_capsule_r1(p.data)), CAPLET_CAP_ROUND});
 }
 
 double tapered_capsule_area(const FlatPrimitive& p, const std::vector<float>&) {
