@@ -136,6 +136,17 @@ TEST_F(Library, AFilmHasThePicture) {
   EXPECT_THROW(film.write_preview(folder_ / "out.nothing"), caplet::InputError);
 }
 
+TEST_F(Library, TheTimeLimitEndsARender) {
+  caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
+  scene.set_size(320, 240);
+  scene.set_samples_per_pixel(1 << 20);  // hours
+  caplet::RenderOptions options;
+  options.time_limit = 1e-9;
+  const int samples = caplet::render(scene, test_device(), options).samples_per_pixel();
+  EXPECT_GT(samples, 0);
+  EXPECT_LT(samples, 1 << 10);
+}
+
 TEST_F(Library, PicksTellWhatAPixelShowsAndRaysHit) {
   const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   caplet::Picker picker(scene, test_device());

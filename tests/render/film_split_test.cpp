@@ -171,6 +171,13 @@ TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
   EXPECT_TRUE(same(sum, whole()));
 }
 
+TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
+  Session session(model().flat, model().view, {test_device()},
+                  {.sample_count = samples, .layers = Layers::none(), .pass_samples = 4, .time_limit = 1e-9});
+  const Film film = session.run();
+  EXPECT_THAT(film.parts(), testing::ElementsAre(FilmPart{film.layout().window, 0, 4}));
+}
+
 // A layer that is not asked for takes no room, and changes nothing of the others.
 TEST(FilmSplit, LayersDoNotSeeEachOther) {
   DeviceScene scene(test_device(), model().flat);
