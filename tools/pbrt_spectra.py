@@ -25,7 +25,7 @@ text = """// SPDX-License-Identifier: Apache-2.0
 //
 // Made by tools/pbrt_spectra.py: the metals and glasses behind pbrt-v4's names, from its src/pbrt/util/spectrum.cpp (5f7a606);
 // wavelength in nm, value.
-#include "scene/spectrum_tables.h"
+#include "scene/detail/spectrum_tables.h"
 
 namespace caplet {
 

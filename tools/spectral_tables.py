@@ -42,7 +42,7 @@ def observer():
     table = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
     assert list(table.wavelengths) == list(range(360, 831))
     text = HEAD + ("// Made by tools/spectral_tables.py: the CIE 1931 2 degree standard observer at 1 nm, 360 to 830 nm: x y z.\n"
-                   '#include "lower/spectrum_observer.h"\n\nnamespace caplet {\n\n// clang-format off\n')
+                   '#include "lower/detail/spectrum_observer.h"\n\nnamespace caplet {\n\n// clang-format off\n')
     text += array("const double cie_1931_observer[471 * 3]", table.values.ravel())
     write(ROOT / "host/lower/spectrum_observer.cpp", text + "// clang-format on\n\n}  // namespace caplet\n")
 
@@ -64,7 +64,7 @@ def illuminants():
 def scene_tables():
     text = HEAD + ("// Made by tools/spectral_tables.py: CIE standard illuminants (CIE 15:2018) at 5 nm, and optical constants of metals\n"
                    "// (refractiveindex.info database, CC0), wavelength in nm, n, k.\n"
-                   '#include "scene/spectrum_tables.h"\n\nnamespace caplet {\n\nnamespace {\n\n// clang-format off\n')
+                   '#include "scene/detail/spectrum_tables.h"\n\nnamespace caplet {\n\nnamespace {\n\n// clang-format off\n')
     rows = []
     wavelengths, tables = illuminants()
     for name, values in tables.items():

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "device/flatten.h"
+#include "device/detail/flatten.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 
 #include "device/detail/embedded.h"
 #include "device/device.h"
-#include "device/flatten.h"
+#include "device/detail/flatten.h"
 
 namespace caplet {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/area.h"
+#include "lower/detail/area.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include <glm/matrix.hpp>
 #include <numbers>
 
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

@@ -4,7 +4,7 @@
 // The scene's camera and film window -> CameraRecord and the image fields of the uniforms.
 #pragma once
 
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 
 namespace caplet {
 

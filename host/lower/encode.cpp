@@ -14,7 +14,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "bvh/bvh.h"
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 namespace {

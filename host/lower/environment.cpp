@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/environment.h"
+#include "lower/detail/environment.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

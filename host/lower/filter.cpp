@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/filter.h"
+#include "lower/detail/filter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/flat_shapes.h"
+#include "lower/detail/flat_shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "base/check.h"
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/geometry.h"
+#include "lower/detail/geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@
 #include <span>
 
 #include "base/check.h"
-#include "lower/area.h"
+#include "lower/detail/area.h"
 #include "lower/encode.h"
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

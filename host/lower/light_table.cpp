@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/light_table.h"
+#include "lower/detail/light_table.h"
 
 #include <algorithm>
 #include <cmath>

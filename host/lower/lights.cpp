@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/lights.h"
+#include "lower/detail/lights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "base/check.h"
-#include "lower/environment.h"
-#include "lower/light_table.h"
+#include "lower/detail/environment.h"
+#include "lower/detail/light_table.h"
 
 namespace caplet {
 

@@ -7,9 +7,9 @@
 
 #include "base/check.h"
 #include "lower/camera.h"
-#include "lower/filter.h"
-#include "lower/geometry.h"
-#include "lower/lights.h"
+#include "lower/detail/filter.h"
+#include "lower/detail/geometry.h"
+#include "lower/detail/lights.h"
 #include "lower/spectrum.h"
 
 namespace caplet {
@@ -50,33 +50,7 @@ class MaterialLowering {
   SpectrumTable& spectra_;
 };
 
-template <class T>
-std::uint64_t bytes_of(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
-}
-template <class T>
-std::uint64_t bytes_of(const T& record) {
-  return sizeof(record);
-}
-
 }  // namespace
-
-std::uint64_t FlatScene::geometry_bytes() const {
-  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +
-         bytes_of(mesh_normals) + bytes_of(mesh_uvs);
-}
-
-std::uint64_t FlatScene::device_bytes() const {
-  std::uint64_t bytes = 0;
-#define GROUP_BEGIN(Type, group)
-#define GROUP_END(Type)
-#define BUFFER(name, type, access) bytes += bytes_of(name);
-  SCENE_GROUPS
-#undef GROUP_BEGIN
-#undef GROUP_END
-#undef BUFFER
-  return bytes;
-}
 
 FlatScene lower(const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "lower/spectrum_color.h"
-#include "lower/spectrum_uplift.h"
+#include "lower/detail/spectrum_color.h"
+#include "lower/detail/spectrum_uplift.h"
 
 namespace caplet {
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "scene/spectrum.h"
 
 namespace caplet {

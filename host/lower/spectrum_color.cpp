@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/spectrum_color.h"
+#include "lower/detail/spectrum_color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "base/check.h"
 #include "lower/spectrum.h"
-#include "lower/spectrum_observer.h"
+#include "lower/detail/spectrum_observer.h"
 
 namespace caplet {
 

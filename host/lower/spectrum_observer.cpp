@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Made by tools/spectral_tables.py: the CIE 1931 2 degree standard observer at 1 nm, 360 to 830 nm: x y z.
-#include "lower/spectrum_observer.h"
+#include "lower/detail/spectrum_observer.h"
 
 namespace caplet {
 

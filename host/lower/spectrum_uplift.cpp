@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/spectrum_uplift.h"
+#include "lower/detail/spectrum_uplift.h"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "lower/spectrum.h"
-#include "lower/spectrum_color.h"
+#include "lower/detail/spectrum_color.h"
 
 namespace caplet {
 

@@ -10,7 +10,7 @@
 
 #include "device/device.h"
 #include "film/film.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "shared/groups.h"
 #include "shared/records.h"
 

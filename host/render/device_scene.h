@@ -5,7 +5,7 @@
 #pragma once
 
 #include "device/device.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "render/buffers.h"
 #include "render/kernels.h"
 

@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "base/check.h"
-#include "render/known_rays.h"
+#include "render/detail/known_rays.h"
 
 namespace caplet {
 

@@ -17,7 +17,7 @@
 #include "base/log.h"
 #include "device/self_test.h"
 #include "render/device_scene.h"
-#include "render/known_rays.h"
+#include "render/detail/known_rays.h"
 #include "render/query.h"
 
 namespace caplet {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "render/known_rays.h"
+#include "render/detail/known_rays.h"
 
 #include <algorithm>
 #include <cmath>

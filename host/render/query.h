@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "device/device.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "render/device_scene.h"
 
 namespace caplet {

@@ -11,7 +11,7 @@
 
 #include "device/device.h"
 #include "film/film.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "render/buffers.h"
 #include "render/device_scene.h"
 

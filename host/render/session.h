@@ -13,7 +13,7 @@
 
 #include "device/device.h"
 #include "film/film.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 
 namespace caplet {
 

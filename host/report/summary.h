@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device/device.h"
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "render/render.h"
 #include "scene/scene.h"
 

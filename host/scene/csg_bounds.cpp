@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Branch and bound: boxes are told to be outside, inside or neither by functions of each solid that grow no faster than distance.
-#include "scene/csg_bounds.h"
+#include "scene/detail/csg_bounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "scene/csg_bounds.h"
+#include "scene/detail/csg_bounds.h"
 
 namespace caplet {
 

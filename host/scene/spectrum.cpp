@@ -10,7 +10,7 @@
 #include <map>
 #include <span>
 
-#include "scene/spectrum_tables.h"
+#include "scene/detail/spectrum_tables.h"
 
 namespace caplet {
 

@@ -3,7 +3,7 @@
 //
 // Made by tools/spectral_tables.py: CIE standard illuminants (CIE 15:2018) at 5 nm, and optical constants of metals
 // (refractiveindex.info database, CC0), wavelength in nm, n, k.
-#include "scene/spectrum_tables.h"
+#include "scene/detail/spectrum_tables.h"
 
 namespace caplet {
 

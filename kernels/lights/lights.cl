@@ -28,7 +28,7 @@ typedef struct {
 } LightSample;
 
 // A light with its chance of being chosen by the random number u. In whole numbers: row u n >> 32 of n, and the rest of u n
-// within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/light_table.h).
+// within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/detail/light_table.h).
 static inline uint light_select(const Lights* lights, uint u, float* probability) {
   const uint count = lights->lighting->light_count;
   const uint i = mul_hi(u, count);

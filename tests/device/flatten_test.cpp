@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The flattener on small sets of files.
-#include "device/flatten.h"
+#include "device/detail/flatten.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

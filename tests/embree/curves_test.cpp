@@ -20,7 +20,7 @@
 #include "curves_file.h"
 #include "device_tracer.h"
 #include "film/image.h"
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 #include "reference/from_scene.h"
 #include "support/data.h"
 #include "support/test_device.h"

@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "device/device.h"
-#include "device/flatten.h"
+#include "device/detail/flatten.h"
 #include "host_kernels/host_kernels.h"
 #include "host_kernels/model_maker.h"
 #include "host_kernels/scene_arrays.h"

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "light_bench.h"
-#include "lower/light_table.h"
+#include "lower/detail/light_table.h"
 #include "support/chi_square.h"
 
 namespace caplet::test {

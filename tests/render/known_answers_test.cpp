@@ -14,7 +14,7 @@
 
 #include "lower/lower.h"
 #include "reference/scene_witness.h"
-#include "render/known_rays.h"
+#include "render/detail/known_rays.h"
 #include "render_scene.h"
 #include "shared/shapes.h"
 #include "support/data.h"

@@ -18,7 +18,7 @@
 
 #include "device/device.h"
 #include "lower/camera.h"
-#include "lower/filter.h"
+#include "lower/detail/filter.h"
 #include "support/filters.h"
 #include "support/test_device.h"
 

@@ -13,8 +13,8 @@
 #include <glm/matrix.hpp>
 #include <ostream>
 
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 #include "reference/from_scene.h"
 #include "shared/kinds.h"
 

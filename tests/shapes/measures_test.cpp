@@ -13,9 +13,9 @@
 #include <optional>
 #include <random>
 
-#include "lower/area.h"
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/area.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 #include "scene/scene.h"
 #include "shared/kinds.h"
 

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "device/flatten.h"
+#include "device/detail/flatten.h"
 #include "support/scene_buffers.h"
 #include "support/test_device.h"
 

@@ -13,7 +13,7 @@
 
 #include "cases.h"
 #include "judge.h"
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 #include "shared/kinds.h"
 #include "support/test_device.h"
 

@@ -10,7 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 #include "reference/from_scene.h"
 #include "shared/kinds.h"
 #include "support/test_device.h"

@@ -3,8 +3,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

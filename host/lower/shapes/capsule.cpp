@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

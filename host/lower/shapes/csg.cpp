@@ -15,8 +15,8 @@
 #include <stdexcept>
 
 #include "base/check.h"
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "lower/shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

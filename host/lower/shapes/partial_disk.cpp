@@ -2,8 +2,8 @@
 // Copyright Caplet authors
 #include <glm/geometric.hpp>
 
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

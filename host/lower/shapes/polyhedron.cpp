@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "base/check.h"
-#include "lower/flat_shapes.h"
-#include "lower/shapes.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/shapes.h"
 
 namespace caplet {
 

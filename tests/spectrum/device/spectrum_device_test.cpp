@@ -10,7 +10,7 @@
 
 #include "device/device.h"
 #include "lower/spectrum.h"
-#include "lower/spectrum_color.h"
+#include "lower/detail/spectrum_color.h"
 #include "support/test_device.h"
 
 namespace caplet {

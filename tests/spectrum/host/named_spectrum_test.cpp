@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "lower/spectrum.h"
-#include "lower/spectrum_color.h"
+#include "lower/detail/spectrum_color.h"
 #include "scene/spectrum.h"
 #include "support/data.h"
 

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "lower/spectrum.h"
-#include "lower/spectrum_color.h"
+#include "lower/detail/spectrum_color.h"
 
 namespace caplet {
 namespace {

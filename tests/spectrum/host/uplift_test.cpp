@@ -14,9 +14,9 @@
 #include <random>
 
 #include "lower/spectrum.h"
-#include "lower/spectrum_color.h"
-#include "lower/spectrum_observer.h"
-#include "lower/spectrum_uplift.h"
+#include "lower/detail/spectrum_color.h"
+#include "lower/detail/spectrum_observer.h"
+#include "lower/detail/spectrum_uplift.h"
 
 namespace caplet {
 namespace {

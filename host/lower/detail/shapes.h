@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lower/flat_primitive.h"
-#include "lower/pieces.h"
+#include "lower/detail/pieces.h"
 #include "scene/scene.h"
 
 namespace caplet {

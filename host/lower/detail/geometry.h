@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "lower/lights.h"
-#include "lower/lower.h"
+#include "lower/detail/lights.h"
+#include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 
 namespace caplet {

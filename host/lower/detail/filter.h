@@ -4,7 +4,7 @@
 // The pixel filter -> the tables that kernels/math/filter.cl samples.
 #pragma once
 
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 
 namespace caplet {
 

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 
 namespace caplet {
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "lower/lower.h"
+#include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 
 namespace caplet {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/flat_scene.h"
+
+namespace caplet {
+
+namespace {
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+template <class T>
+std::uint64_t bytes_of(const T& record) {
+  return sizeof(record);
+}
+
+}  // namespace
+
+std::uint64_t FlatScene::geometry_bytes() const {
+  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +
+         bytes_of(mesh_normals) + bytes_of(mesh_uvs);
+}
+
+std::uint64_t FlatScene::device_bytes() const {
+  std::uint64_t bytes = 0;
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) bytes += bytes_of(name);
+  SCENE_GROUPS
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+  return bytes;
+}
+
+}  // namespace caplet

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Flat arrays and records, by the names of the groups' buffers: what lowering makes of a scene and of a view of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shared/groups.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+// Members by the names and types of the groups' buffers.
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) access(type) name{};
+#define ONE(type) type
+#define IN(type) std::vector<type>
+
+/// Everything that a device needs of a scene, whoever looks at it.
+struct FlatScene {
+  SCENE_GROUPS
+
+  // What kernels are built for (stage_options): the kinds of shapes there are (bit k: kind k), operands of csg among them, and
+  // the bits of leaf references for them.
+  std::uint64_t shapes = ~std::uint64_t{0};
+  int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
+
+  // For `info` and statistics.
+  std::uint64_t primitive_count = 0, bvh_nodes = 0;
+  int bvh_depth = 0;
+  double bvh_sah = 0;
+  double build_seconds = 0;
+  std::uint64_t device_bytes() const;
+  std::uint64_t geometry_bytes() const;  // nodes, leaves, primitive_geometry, instances, mesh arrays
+};
+
+/// What is rendered of a scene: its camera, film and sampler.
+struct FlatView {
+  VIEW_GROUPS
+};
+
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+#undef ONE
+#undef IN
+
+}  // namespace caplet
