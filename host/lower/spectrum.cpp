@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "base/check.h"
 #include "lower/detail/spectrum_color.h"

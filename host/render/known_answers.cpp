@@ -16,8 +16,9 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "device/self_test.h"
-#include "render/device_scene.h"
+#include "lower/lower.h"
 #include "render/detail/known_rays.h"
+#include "render/device_scene.h"
 #include "render/query.h"
 
 namespace caplet {

@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "lower/camera.h"
+#include "lower/lower.h"
 #include "verify/torture.h"
 
 namespace caplet::verify {

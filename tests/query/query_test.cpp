@@ -13,6 +13,7 @@
 #include "import/import.h"
 #include "lower/camera.h"
 #include "lower/identity.h"
+#include "lower/lower.h"
 #include "reference/scene_witness.h"
 #include "render/query.h"
 #include "render_scene.h"

@@ -13,6 +13,7 @@
 
 #include "film/develop.h"
 #include "import/import.h"
+#include "lower/lower.h"
 #include "render_scene.h"
 #include "support/data.h"
 

@@ -13,6 +13,7 @@
 #include "film/film.h"
 #include "film/image.h"
 #include "import/import.h"
+#include "lower/lower.h"
 #include "render/render.h"
 #include "render/renderer.h"
 #include "render/session.h"

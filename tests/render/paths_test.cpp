@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "film/develop.h"
+#include "lower/lower.h"
 #include "render_scene.h"
 
 namespace caplet::test {

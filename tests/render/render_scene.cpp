@@ -8,6 +8,7 @@
 
 #include "film/develop.h"
 #include "import/import.h"
+#include "lower/lower.h"
 #include "support/data.h"
 
 namespace caplet::test {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "film/develop.h"
+#include "lower/lower.h"
 #include "render_scene.h"
 
 namespace caplet::test {

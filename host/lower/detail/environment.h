@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "lower/flat_scene.h"
+#include "scene/scene.h"
 
 namespace caplet {
 

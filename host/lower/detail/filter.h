@@ -5,6 +5,7 @@
 #pragma once
 
 #include "lower/flat_scene.h"
+#include "scene/scene.h"
 
 namespace caplet {
 

@@ -9,6 +9,7 @@
 #include "lower/detail/lights.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
+#include "scene/scene.h"
 
 namespace caplet {
 

@@ -8,6 +8,7 @@
 
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
+#include "scene/scene.h"
 
 namespace caplet {
 

@@ -9,8 +9,9 @@
 #include <random>
 
 #include "device/device.h"
-#include "lower/spectrum.h"
 #include "lower/detail/spectrum_color.h"
+#include "lower/lower.h"
+#include "lower/spectrum.h"
 #include "support/test_device.h"
 
 namespace caplet {

@@ -11,12 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <glm/common.hpp>
 #include <random>
 
-#include "lower/spectrum.h"
 #include "lower/detail/spectrum_color.h"
 #include "lower/detail/spectrum_observer.h"
 #include "lower/detail/spectrum_uplift.h"
+#include "lower/spectrum.h"
 
 namespace caplet {
 namespace {
