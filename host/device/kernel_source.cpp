@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "device/detail/embedded.h"
-#include "device/device.h"
 #include "device/detail/flatten.h"
+#include "device/device.h"
 
 namespace caplet {
 

@@ -15,9 +15,9 @@
 
 #include "base/check.h"
 #include "lower/detail/area.h"
-#include "lower/encode.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
+#include "lower/encode.h"
 
 namespace caplet {
 

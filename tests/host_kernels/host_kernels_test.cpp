@@ -14,8 +14,8 @@
 #include <random>
 #include <sstream>
 
-#include "device/device.h"
 #include "device/detail/flatten.h"
+#include "device/device.h"
 #include "host_kernels/host_kernels.h"
 #include "host_kernels/model_maker.h"
 #include "host_kernels/scene_arrays.h"

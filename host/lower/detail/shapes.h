@@ -11,8 +11,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "lower/flat_primitive.h"
 #include "lower/detail/pieces.h"
+#include "lower/flat_primitive.h"
 #include "scene/scene.h"
 
 namespace caplet {

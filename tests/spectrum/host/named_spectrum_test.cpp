@@ -10,8 +10,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "lower/spectrum.h"
 #include "lower/detail/spectrum_color.h"
+#include "lower/spectrum.h"
 #include "scene/spectrum.h"
 #include "support/data.h"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 
-#include "lower/spectrum.h"
 #include "lower/detail/spectrum_color.h"
+#include "lower/spectrum.h"
 
 namespace caplet {
 namespace {
