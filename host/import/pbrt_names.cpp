@@ -7,8 +7,26 @@
 #include "base/spelling.h"
 #include "import/detail/pbrt_lexer.h"
 #include "import/detail/pbrt_v3.h"
+#include "scene/shape.h"
 
 namespace caplet::pbrt {
+
+namespace {
+
+std::vector<std::string> shape_types() {
+  std::vector<std::string> types = {
+#define SHAPE_TYPE(name, make) #name,
+#include "import/pbrt_shape_types.def"
+#undef SHAPE_TYPE
+  };
+#define GEOMETRY(Type, name) \
+  if (FieldedShape<Type>) types.emplace_back(#name);
+#include "scene/geometries.def"
+  std::ranges::sort(types);
+  return types;
+}
+
+}  // namespace
 
 const std::vector<NameTable>& name_tables() {
   static const std::vector<NameTable> tables = {
@@ -33,13 +51,7 @@ const std::vector<NameTable>& name_tables() {
        {"msereferenceimage", "msereferenceout"}},
       {"PixelFilter", {"box", "gaussian", "mitchell", "triangle"}, {"sinc"}},
       {"Sampler", {"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, {}},
-      {"Shape",
-       {
-#define SHAPE_TYPE(name, make) #name,
-#include "import/pbrt_shape_types.def"
-#undef SHAPE_TYPE
-       },
-       {"loopsubdiv"}},
+      {"Shape", shape_types(), {"loopsubdiv"}},
       {"Texture",
        {"constant", "mix", "scale"},
        {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble", "ptex", "windy", "wrinkled"}},

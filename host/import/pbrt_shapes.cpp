@@ -48,12 +48,22 @@ Geometry make_capsules(Parameters& parameters, const MaterialIndex& material_ind
   });
 }
 
+template <class Type>
+std::optional<Geometry> made_by_fields(const char* name, const std::string& type, Parameters& parameters) {
+  if constexpr (FieldedShape<Type>)
+    if (type == name) return read_fields<Type>(parameters);
+  return {};
+}
+
 Geometry make_geometry(const std::string& type, Parameters& parameters, const MaterialIndex& material_or_default,
                        const ShapeContext& context) {
 #define SHAPE_TYPE(name, make) \
   if (type == #name) return make;
 #include "import/pbrt_shape_types.def"
 #undef SHAPE_TYPE
+#define GEOMETRY(Type, name) \
+  if (auto made = made_by_fields<Type>(#name, type, parameters)) return *std::move(made);
+#include "scene/geometries.def"
   throw std::logic_error("pbrt_names knows a type of shape that the list does not");
 }
 

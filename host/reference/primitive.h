@@ -1,129 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness's shapes, in double precision: what a shape is, stated from its definition. Solids are the set where an implicit
-// function is <= 0; open surfaces are part of a solid's boundary or of a plane, and the predicate that clips it. No formula here
-// solves for a ray: solver.h does, the same way for every shape.
+// What is asked of the witness's shapes, of whichever kind.
 #pragma once
 
-#include <array>
-#include <glm/mat4x4.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <memory>
-#include <span>
-#include <variant>
-#include <vector>
+#include "reference/shapes.h"
 
 namespace caplet::reference {
-
-inline constexpr double full_turn = 6.283185307179586;
-
-struct Sphere {
-  glm::dvec3 center{0};
-  double radius = 1;
-};
-/// The union of the balls whose centre and radius go linearly from (p0, radius0) to (p1, radius1): the convex hull of two
-/// spheres.
-struct Capsule {
-  glm::dvec3 p0{0}, p1{0, 0, 1};
-  double radius0 = 1, radius1 = 1;
-};
-struct Triangle {
-  glm::dvec3 v0, v1, v2;
-};
-/// `normal` need not be of unit length.
-struct Disk {
-  glm::dvec3 center{0}, normal{0, 0, 1};
-  double radius = 1;
-};
-
-/// Cylinders and cones: the convex hull of two ends, each a disk across the axis or a ball. Surfaces: 0 the side, which touches
-/// both ends; 1 and 2 what belongs to the end at p0 or p1 alone. `open`: that surface is not there, and the shape is no solid.
-/// Made by make_spool.
-struct Spool {
-  struct End {
-    double radius = 1;
-    bool round = false, open = false;
-  };
-  glm::dvec3 p0{0}, p1{0, 0, 1};
-  std::array<End, 2> ends;
-  // Made from the above: the axis, and the normals (along the axis, outward) of the planes that touch both ends.
-  glm::dvec3 axis{0, 0, 1};
-  double length = 1;
-  std::array<glm::dvec2, 2> side_normals;
-  int side_count = 0;
-};
-Spool make_spool(const glm::dvec3& p0, const glm::dvec3& p1, const Spool::End& end0, const Spool::End& end1);
-
-/// Surfaces: 0 and 1 at the least and greatest x, 2 and 3 y, 4 and 5 z.
-struct Box {
-  glm::dvec3 min{0}, max{1};
-};
-
-/// normals[i] . (x - center) <= offsets[i] for all i; surface i lies in plane i. Made by make_polyhedron.
-struct Polyhedron {
-  glm::dvec3 center{0};
-  std::vector<glm::dvec3> normals;  // unit
-  std::vector<double> offsets;
-  std::vector<glm::dvec3> corners;  // each as often as edges end there
-  glm::dvec3 ball_center{0};        // of a ball that holds them
-  double ball_radius = 0;
-};
-/// The normals may be of any length (offsets along with them). Unbounded or empty sets have no corners and a ball of no meaning.
-Polyhedron make_polyhedron(const glm::dvec3& center, std::span<const glm::dvec3> normals, std::span<const double> offsets);
-
-// Open shapes around the z axis, as pbrt's: of the sphere of `radius`, the tube or the disk what has z_min <= z <= z_max and an
-// angle from +x towards +y of at most phi_max.
-struct PartialSphere {
-  double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
-};
-struct OpenCylinder {
-  double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
-};
-/// Normal +z.
-struct PartialDisk {
-  double height = 0, radius = 1, inner_radius = 0, phi_max = full_turn;
-};
-
-/// (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11, 0 <= u, v <= 1. Normal: dp/du x dp/dv.
-struct Bilinear {
-  glm::dvec3 p00, p10, p01, p11;
-};
-
-/// Solids combined, nested to any depth. Surface numbers of the operands follow each other. Made by make_csg.
-struct CsgBody;
-struct Csg {
-  enum class Operation { set_union, set_intersection, set_difference } operation = Operation::set_union;
-  std::shared_ptr<const CsgBody> body;
-};
-
-using Primitive = std::variant<Sphere, Capsule, Triangle, Disk, Spool, Box, Polyhedron, PartialSphere, OpenCylinder, PartialDisk,
-                               Bilinear, Csg>;
-
-struct CsgOperand {
-  Primitive primitive;
-  glm::dmat4 operand_from_csg{1};
-  double stretch = 1;  // greatest length of an operand_from_csg'd unit vector
-  int surface_begin = 0;
-};
-struct CsgBody {
-  std::vector<CsgOperand> operands;
-  glm::dvec3 ball_center{0};  // of a ball that holds the shape
-  double ball_radius = 0;
-};
-struct CsgPart {
-  Primitive primitive;
-  glm::dmat4 csg_from_operand{1};
-};
-/// At least one part, all solids.
-Csg make_csg(Csg::Operation operation, std::span<const CsgPart> parts);
 
 /// The kinds that are told apart in reports, by name: capsules with two radii are tapered_capsules, spools are cylinders or cones
 /// by theirs.
 inline constexpr std::array kind_names = {
-    "sphere", "capsule",    "tapered_capsule", "triangle",      "disk",         "cylinder", "cone",
-    "box",    "polyhedron", "partial_sphere",  "open_cylinder", "partial_disk", "bilinear", "csg"};
+#define KIND(name) #name,
+#include "reference/primitives.def"
+};
 /// Index into kind_names.
 std::size_t kind_of(const Primitive& primitive);
 
@@ -137,12 +27,7 @@ int surface_count(const Primitive& primitive);
 /// each divided by its `stretch`. Open surfaces: distance to the surface, never negative.
 double value(const Primitive& primitive, const glm::dvec3& x);
 
-/// The surface that a point on (or next to) a solid's boundary belongs to, and how far (at least) one may go from there before it
-/// is another one.
-struct SurfaceAt {
-  int surface = 0;
-  double margin = 0;
-};
+/// Solids: the surface that a point on (or next to) the boundary belongs to.
 SurfaceAt surface_at(const Primitive& primitive, const glm::dvec3& x);
 
 /// The distance of x from what surface `surface` of a solid is part of: a whole sphere, tangent cone or plane (of csg shapes, at
@@ -150,11 +35,6 @@ SurfaceAt surface_at(const Primitive& primitive, const glm::dvec3& x);
 /// larger than that.
 double distance_from_surface(const Primitive& primitive, const glm::dvec3& x, int surface);
 
-/// A ball that holds the shape.
-struct Ball {
-  glm::dvec3 center;
-  double radius;
-};
 Ball bounding_ball(const Primitive& primitive);
 
 /// Unit gradient of value() by central differences over `step`; for open surfaces the unit normal at the shape's point nearest to
@@ -171,15 +51,6 @@ Primitive carrier_of(const Primitive& primitive);
 /// True when a point on the carrier's boundary, on its surface `surface`, belongs to the shape.
 bool keeps(const Primitive& primitive, const glm::dvec3& x, int surface);
 
-/// A curve in space, over [0, 1].
-struct Curve {
-  enum class Kind { segment, arc } kind = Kind::segment;
-  glm::dvec3 p,
-      q;  // segment: the ends; arc: p + radius (cos a, sin a) in the plane of q and r (unit, orthogonal), a from `from` to `to`
-  glm::dvec3 r{0};
-  double radius = 0, from = 0, to = 0;
-  glm::dvec3 at(double s) const;
-};
 /// Where an open shape ends: its rims and edges. Empty for solids.
 std::vector<Curve> boundary(const Primitive& primitive);
 

@@ -101,140 +101,19 @@ class Validator {
     roughness(m.alpha_u, m.alpha_v, where);
   }
 
-  void check(const SphereShape& sphere, const SourceLocation& where) { positive(sphere.radius, where, "the sphere's radius"); }
-  void check(const DiskShape& disk, const SourceLocation& where) {
-    positive(disk.radius, where, "the disk's radius");
-    if (!std::isfinite(disk.height)) error(where, "the disk's height is not finite");
-    if (disk.radius > 0 && !(disk.inner_radius >= 0 && disk.inner_radius < disk.radius))
-      error(where, "the disk's inner radius must be from 0 up and below its radius");
-    if (!(disk.phi_max > 0)) error(where, "the disk's greatest phi must be above 0");
-  }
-  void check(const CapsulesShape& capsules, const SourceLocation& where) {
-    const std::size_t count = capsules.p0.size();
-    if (capsules.p1.size() != count || capsules.radius0.size() != count ||
-        (!capsules.radius1.empty() && capsules.radius1.size() != count) ||
-        (!capsules.materials.empty() && capsules.materials.size() != count))
-      return error(where, "the capsules' lists differ in length");
-    for (std::size_t i = 0; i < count; ++i) {
-      const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
-      if (!finite(capsules.p0[i]) || !finite(capsules.p1[i]) || !std::isfinite(r0) || !std::isfinite(r1))
-        return error(where, "capsule " + std::to_string(i) + " is not finite");
-      if (r0 < 0 || r1 < 0) return error(where, "capsule " + std::to_string(i) + " has a negative radius");
-      if (!capsules.materials.empty() && capsules.materials[i] >= scene_.materials.size())
-        return error(where, "capsule " + std::to_string(i) + " has a material that does not exist");
-    }
-  }
-  void check(const TriangleMeshShape& mesh, const SourceLocation& where) {
-    vertices(mesh, where);
-    for (const auto& triangle : mesh.triangles) indices(triangle, mesh.positions.size(), where);
-  }
-  template <class Mesh>
-  void vertices(const Mesh& mesh, const SourceLocation& where) {
-    const std::size_t count = mesh.positions.size();
-    if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
-      return error(where, "the mesh has another number of normals or uvs than of vertices");
-    for (std::size_t i = 0; i < count; ++i) {
-      const char* what = !finite(mesh.positions[i])                          ? "position"
-                         : !mesh.normals.empty() && !finite(mesh.normals[i]) ? "normal"
-                         : !mesh.uvs.empty() && !finite(mesh.uvs[i])         ? "uv"
-                                                                             : nullptr;
-      if (what)
-        return error(where, std::string("the ") + what + " of vertex " + std::to_string(i) + " of the mesh is not finite");
-    }
-  }
-  template <class Face>
-  void indices(const Face& face, std::size_t count, const SourceLocation& where) {
-    for (const std::uint32_t vertex : face)
-      if (vertex >= count)
-        return error(where,
-                     "the mesh has the vertex index " + std::to_string(vertex) + ", but " + std::to_string(count) + " vertices");
-  }
-  void check(const CylinderShape& c, const SourceLocation& where) {
-    positive(c.radius, where, "the cylinder's radius");
-    ends(c.p0, c.p1, where, "the cylinder");
-  }
-  void check(const ConeShape& c, const SourceLocation& where) {
-    for (const double radius : c.radius)
-      if (!(radius >= 0 && std::isfinite(radius))) return error(where, "the cone's radii must be from 0 up and finite");
-    positive(std::max(c.radius[0], c.radius[1]), where, "the greater of the cone's radii");
-    ends(c.p0, c.p1, where, "the cone");
-  }
-  void check(const BoxShape& box, const SourceLocation& where) {
-    if (!finite(box.p0) || !finite(box.p1)) return error(where, "the box's corners are not finite");
-    for (int k = 0; k < 3; ++k)
-      if (static_cast<float>(box.p0[k]) == static_cast<float>(box.p1[k]))
-        return error(where, std::string("the box is flat: its corners have the same ") + "xyz"[k] + " as 32-bit floats");
-  }
-  void check(const PolyhedronShape& polyhedron, const SourceLocation& where) {
-    const std::size_t planes = polyhedron.points.size();
-    if (polyhedron.normals.size() != planes) return error(where, "the polyhedron has another number of normals than of points");
-    if (planes > max_polyhedron_planes)
-      return error(
-          where, "the polyhedron has " + std::to_string(planes) + " planes, more than " + std::to_string(max_polyhedron_planes));
-    double reach = 0;  // greatest distance of a point from the first
-    for (std::size_t i = 0; i < planes; ++i) {
-      const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
-      if (!finite(polyhedron.points[i]) || !finite(polyhedron.normals[i])) return error(where, plane() + "is not finite");
-      if (!(glm::length(polyhedron.normals[i]) > 0)) return error(where, plane() + "has no normal: it is zero");
-      reach = std::max(reach, glm::length(polyhedron.points[i] - polyhedron.points[0]));
-    }
-    std::size_t bad = 0;
-    if (!polyhedron_corners(polyhedron, &bad).empty()) return;
-    // Cut by a far box, an unbounded polyhedron has corners; one without an inside still has none.
-    PolyhedronShape boxed = polyhedron;
-    for (int side = 0; side < 6; ++side) {
-      glm::dvec3 n(0);
-      n[side / 2] = side % 2 ? 1 : -1;
-      boxed.points.push_back(polyhedron.points[0] + (reach > 0 ? 1e3 * reach : 1) * n);
-      boxed.normals.push_back(n);
-    }
-    const bool unbounded = !polyhedron_corners(boxed).empty();
-    error(where, std::string("the polyhedron ") + (unbounded ? "has no bounds" : "has no inside") + ": look at plane " +
-                     std::to_string(bad) + " (counted from 0)");
-  }
-  void check(const PartialSphereShape& s, const SourceLocation& where) {
-    positive(s.radius, where, "the sphere's radius");
-    part(s.z_min, s.z_max, s.phi_max, where, "the sphere");
-  }
-  void check(const OpenCylinderShape& c, const SourceLocation& where) {
-    positive(c.radius, where, "the cylinder's radius");
-    part(c.z_min, c.z_max, c.phi_max, where, "the cylinder");
-  }
-  void check(const BilinearMeshShape& mesh, const SourceLocation& where) {
-    vertices(mesh, where);
-    for (const auto& patch : mesh.patches) indices(patch, mesh.positions.size(), where);
-  }
-  void check(const CsgShape& csg, const SourceLocation& where) {
-    if (csg.operands.size() < 2) return error(where, "the csg has fewer than two operands");
-    for (const auto& operand : csg.operands) {
-      const auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
-      if (!is_closed(*operand)) return error(where, "the csg has an operand that is an open surface");
-      if (capsules && capsules->p0.size() != 1) return error(where, "the csg has an operand of more or fewer than one capsule");
-      if (operand->emission) return error(where, "the csg has an operand that is an area light");
-    }
-    std::size_t solids = 0;
-    for (const auto& operand : csg.operands) {
-      solids += solid_count(*operand);
-      if (solids > max_csg_operands)
-        return error(where, "the csg holds more than " + std::to_string(max_csg_operands) + " solids");
-    }
-    for (const auto& operand : csg.operands) geometry(*operand);
-  }
-  void positive(double value, const SourceLocation& where, const char* what) {
-    if (!(static_cast<float>(value) > 0 && std::isfinite(value)))
-      error(where, std::string(what) + " must be positive and finite");
-  }
-  /// The ends of an axis.
-  void ends(const glm::dvec3& p0, const glm::dvec3& p1, const SourceLocation& where, const std::string& what) {
-    if (!finite(p0) || !finite(p1))
-      error(where, what + "'s ends are not finite");
-    else if (glm::vec3(p0) == glm::vec3(p1))
-      error(where, what + " has no axis: its ends are the same point as 32-bit floats");
-  }
-  void part(double z_min, double z_max, double phi_max, const SourceLocation& where, const std::string& what) {
-    if (!(z_min < z_max && std::isfinite(z_max - z_min))) error(where, what + " must end at a greater z than it begins at");
-    if (!(phi_max > 0 && phi_max <= full_turn)) error(where, what + "'s greatest phi must be above 0 and at most a full turn");
-  }
+  /// What a geometry finds, at the place of its shape.
+  class Report : public ShapeCheck {
+   public:
+    Report(Validator& all, const SourceLocation& where) : all_(all), where_(where) {}
+    void error(const std::string& message) override { all_.error(where_, message); }
+    void error(std::string_view field, const std::string& message) override { error('"' + std::string(field) + "\" " + message); }
+    std::size_t materials() const override { return all_.scene_.materials.size(); }
+    void operand(const Shape& shape) override { all_.geometry(shape); }
+
+   private:
+    Validator& all_;
+    const SourceLocation& where_;
+  };
 
   /// Checks where instances come to lie, by the boxes of their objects.
   void instances() {
@@ -259,7 +138,8 @@ class Validator {
   /// Checks transform, geometry and materials, which operands have as well.
   void geometry(const Shape& s) {
     transform(s.world_from_object, s.where);
-    std::visit([&](const auto& own) { check(own, s.where); }, s.geometry);
+    Report report(*this, s.where);
+    check_geometry(s, report);
     if (s.material >= scene_.materials.size()) error(s.where, "the shape has a material that does not exist");
     for (const std::uint32_t material : s.materials)
       if (material >= scene_.materials.size()) error(s.where, "a surface of the shape has a material that does not exist");

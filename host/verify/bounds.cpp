@@ -80,10 +80,13 @@ struct TiltOf {
       out = std::max(out, tilt_of(operand.primitive, moved * operand.stretch));
     return out;
   }
+  template <class Model>
+  double operator()(const reference::Solid<Model>& solid) const {
+    return tilt_of(solid.shape, moved);
+  }
   // Balls, and planes whose normals are given.
   double operator()(const reference::Sphere&) const { return 0; }
   double operator()(const reference::Disk&) const { return 0; }
-  double operator()(const reference::Box&) const { return 0; }
   double operator()(const reference::Polyhedron&) const { return 0; }
   double operator()(const reference::PartialSphere&) const { return 0; }
   double operator()(const reference::OpenCylinder&) const { return 0; }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <stdexcept>
 
 #include "verify/random.h"
 
@@ -19,7 +20,10 @@ using glm::dvec3;
 using glm::vec3;
 
 constexpr std::uint32_t material_count = 20;
-constexpr int kind_count = 13;
+constexpr int kind_count = 0
+#define GEOMETRY(Type, name) +drawn_sorts<Type>
+#include "scene/geometries.def"
+    ;
 // Instances scale once more: everything together stays within 1e5 sizes of the origin.
 constexpr double most_sizes = 1e4;
 
@@ -74,73 +78,66 @@ class Maker {
     return out;
   }
 
-  Cap cap() { return random_.one_in(2) ? Cap::flat : random_.one_in(2) ? Cap::round : Cap::open; }
-  /// 1, or up to a ten thousandth.
-  double thin() { return random_.one_in(2) ? random_.uniform(0.1, 1) : random_.power(-4, 0); }
   vec3 point() { return vec3(random_.direction()); }
 
-  decltype(Shape::geometry) geometry(int kind) {
-    const double r = random_.uniform(0.2, 1), phi = random_.uniform(0.5, 6.2);
-    switch (kind) {
-      case 0:
-        return SphereShape{r};
-      case 1: {
-        CapsulesShape out;
-        for (int i = 0; i < 6; ++i) {
-          out.p0.push_back(point());
-          out.p1.push_back(random_.one_in(6) ? out.p0.back() : point());
-          out.radius0.push_back(static_cast<float>(thin()));
-          out.radius1.push_back(random_.one_in(2) ? out.radius0.back() : static_cast<float>(thin()));
-        }
-        return out;
-      }
-      case 2: {
-        TriangleMeshShape out{{point(), point(), point(), point()}, {{0, 1, 2}, {1, 2, 3}}, {}, {}};
-        if (random_.one_in(2)) out.positions[3] = out.positions[0] + static_cast<float>(thin()) * point();
-        return out;
-      }
-      case 3:
-        return DiskShape{random_.uniform(-1, 1), r, 0, full_turn};
-      case 4:
-        return DiskShape{random_.uniform(-1, 1), r, (1 - thin()) * r, phi};
-      case 5:
-        return CylinderShape{dvec3(point()), dvec3(0), thin(), {cap(), cap()}};
-      case 6:
-        return ConeShape{dvec3(point()), dvec3(0), {thin(), random_.one_in(3) ? 0 : thin()}, {cap(), cap()}};
-      case 7:
-        return BoxShape{-r * dvec3(1, 0.5, thin()), r * dvec3(thin(), 0.4, 0.6)};
-      case 8:
-        return PolyhedronShape{{dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
-                               {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, random_.uniform(0.5, 3)}}};
-      case 9: {
-        const double z = random_.uniform(-0.9, 0.5);
-        return PartialSphereShape{r, z * r, random_.uniform(z + 0.1, 1) * r, phi};
-      }
-      case 10:
-        return OpenCylinderShape{thin(), -r, 0.7 * r, phi};
-      case 11:
-        return BilinearMeshShape{{point(), point(), point(), point(), point(), point()}, {{0, 1, 2, 3}, {2, 3, 4, 5}}, {}, {}};
-      default:
-        return csg(random_.one_in(2) ? 1 : 2);
-    }
+  /// What a geometry's own file draws, from the numbers of this scene.
+  class OwnDraws : public Draws {
+   public:
+    explicit OwnDraws(Random& random) : random_(random) {}
+    double uniform(double low, double high) override { return random_.uniform(low, high); }
+    double power(double low, double high) override { return random_.power(low, high); }
+    std::size_t below(std::size_t n) override { return random_.below(n); }
+    dvec3 direction() override { return random_.direction(); }
+
+   private:
+    Random& random_;
+  };
+
+  template <class Type>
+  Geometry drawn_of(std::type_identity<Type> type, Draws& draws) {
+    return drawn(type, draws);
+  }
+  Geometry drawn_of(std::type_identity<CsgShape>, Draws&) { return csg(random_.one_in(2) ? 1 : 2); }
+
+  /// `kind`: all sorts of a geometry, one geometry after the other.
+  Geometry geometry(int kind) {
+    OwnDraws draws(random_);
+    draws.size = random_.uniform(0.2, 1);
+    draws.angle = random_.uniform(0.5, 6.2);
+    draws.sort = kind;
+#define GEOMETRY(Type, name)                                                              \
+  if (draws.sort < drawn_sorts<Type>) return drawn_of(std::type_identity<Type>{}, draws); \
+  draws.sort -= drawn_sorts<Type>;
+#include "scene/geometries.def"
+    throw std::logic_error("no such kind of geometry");
+  }
+
+  template <class Type>
+  Type drawn_one() {
+    OwnDraws draws(random_);
+    draws.size = random_.uniform(0.2, 1);
+    draws.angle = random_.uniform(0.5, 6.2);
+    return drawn(std::type_identity<Type>{}, draws);
   }
 
   CsgShape csg(int depth) {
     CsgShape out;
     out.operation = static_cast<CsgShape::Operation>(random_.below(3));
-    for (const int solid : {0, 7, 8, 5}) {
+    const auto solid = [&](auto make) {
       auto one = std::make_shared<Shape>();
-      if (solid == 7 && depth > 1)
-        one->geometry = csg(depth - 1);
-      else if (solid == 5)
-        one->geometry = CylinderShape{dvec3(point()), dvec3(0), random_.uniform(0.1, 0.6), {Cap::flat, Cap::round}};
-      else
-        one->geometry = geometry(solid);
+      one->geometry = make();
       one->world_from_object = glm::translate(dmat4(1), random_.uniform(0, 0.5) * random_.direction());
       if (random_.one_in(3)) one->world_from_object = glm::scale(one->world_from_object, dvec3(random_.uniform(0.4, 2), 1, 1));
       one->material = material();
       out.operands.push_back(one);
-    }
+    };
+    solid([&] { return drawn_one<SphereShape>(); });
+    solid([&]() -> Geometry {
+      if (depth > 1) return csg(depth - 1);
+      return drawn_one<BoxShape>();
+    });
+    solid([&] { return drawn_one<PolyhedronShape>(); });
+    solid([&] { return CylinderShape{dvec3(point()), dvec3(0), random_.uniform(0.1, 0.6), {Cap::flat, Cap::round}}; });
     return out;
   }
 

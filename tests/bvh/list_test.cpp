@@ -40,7 +40,7 @@ reference::Primitive witness_of(const FlatPrimitive& p) {
     case shape_tapered_capsule:
       return reference::Capsule{point(d), point(d + 3), double(d[6]), double(d[7])};
     case shape_box:
-      return reference::Box{point(d), point(d + 3)};
+      return reference::Box{{point(d), point(d + 3)}};
     case shape_triangle:
       return reference::Triangle{point(d), point(d + 3), point(d + 6)};
     default:

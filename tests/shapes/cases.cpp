@@ -13,6 +13,7 @@
 #include <glm/matrix.hpp>
 #include <ostream>
 
+#include "faced.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "reference/from_scene.h"
@@ -81,22 +82,53 @@ FlatPrimitive CaseMaker::basic(int shape, bool hard, const Frame& at) {
   }
 }
 
-FlatPrimitive CaseMaker::solid(int shape, bool hard, const Frame& at) {
+FlatPrimitive CaseMaker::solid(int shape, bool, const Frame& at) {
   auto p0 = floats(at.center - 0.5 * at.length * at.axis), p1 = floats(at.center + 0.5 * at.length * at.axis);
   const auto radius = static_cast<float>(at.r);
-  if (shape == shape_box) {
-    dvec3 half;
-    for (int k = 0; k < 3; ++k) half[k] = at.r * (hard ? std::pow(10.0, uniform(-3, 0)) : uniform(0.1, 1));
-    auto low = floats(at.center - half), high = floats(at.center + half);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(low[k] < high[k])) high[k] = std::nextafter(low[k], HUGE_VALF);
-    return make_box(low, high);
-  }
   if (p0 == p1) p1[0] += std::max(radius, 1e-6f * std::abs(p1[0]));  // lost in rounding: an axis has to be
   const auto cap = [&] { return below(2) == 0 ? CAPLET_CAP_FLAT : below(2) == 0 ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN; };
   if (shape == shape_cylinder) return make_cylinder(p0, p1, radius, cap(), cap());
   const auto r1 = static_cast<float>(at.r * (below(5) == 0 ? 0.0 : uniform(0, 1)));
   return below(2) == 0 ? make_cone(p0, p1, radius, r1, cap(), cap()) : make_cone(p0, p1, r1, radius, cap(), cap());
+}
+
+namespace {
+
+/// Fields for a place and size.
+class FrameFields : public Fields {
+ public:
+  FrameFields(CaseMaker& random, bool hard, const CaseMaker::Frame& at) : random_(random), hard_(hard), at_(at) {}
+  void corners(const char*, const char*, dvec3& p0, dvec3& p1) override {
+    for (int k = 0; k < 3; ++k) {
+      const double half = size();
+      p0[k] = static_cast<float>(at_.center[k] - half);
+      p1[k] = static_cast<float>(at_.center[k] + half);
+      if (!(p0[k] < p1[k])) p1[k] = std::nextafter(static_cast<float>(p0[k]), HUGE_VALF);
+    }
+  }
+  void positive(const char*, double& value) override { value = static_cast<float>(size()); }
+
+ private:
+  double size() { return at_.r * (hard_ ? std::pow(10.0, random_.uniform(-3, 0)) : random_.uniform(0.1, 1)); }
+  CaseMaker& random_;
+  bool hard_;
+  const CaseMaker::Frame& at_;
+};
+
+}  // namespace
+
+FlatPrimitive CaseMaker::faced(int shape, bool hard, const Frame& at) {
+  FlatPrimitive out;
+  const auto make = [&]<class Type>(std::type_identity<Type>) {
+    Type solid;
+    FrameFields each(*this, hard, at);
+    fields(solid, each);
+    std::vector<float> none;
+    out = flat_primitive(solid, glm::dmat4(1), none);
+  };
+  if (!for_faced(static_cast<std::uint32_t>(shape), make))
+    throw std::logic_error("no random cases for shape " + std::to_string(shape));
+  return out;
 }
 
 FlatPrimitive CaseMaker::open(int shape, bool hard, const Frame& at) {
@@ -215,7 +247,6 @@ FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
       return basic(shape, hard, at);
     case shape_cylinder:
     case shape_cone:
-    case shape_box:
       return solid(shape, hard, at);
     case shape_partial_sphere:
     case shape_open_cylinder:
@@ -223,7 +254,7 @@ FlatPrimitive CaseMaker::primitive(int shape, bool hard) {
     case shape_bilinear:
       return open(shape, hard, at);
     default:
-      throw std::logic_error("no random cases for shape " + std::to_string(shape));
+      return faced(shape, hard, at);
   }
 }
 
@@ -344,10 +375,14 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness
         for (int k = 0; k < i; ++k) diameter = std::max(diameter, glm::length(point(d + 3 * i) - point(d + 3 * k)));
       return 24 * eps * (from(point(d)) + diameter);
     }
-    default: {  // csg
+    case shape_csg: {
       const reference::Ball ball = reference::bounding_ball(witness);
       return operands_bound(std::get<reference::Csg>(witness), glm::dmat4(1), ball.center, ball.radius) +
              3 * eps * from(ball.center);
+    }
+    default: {
+      const reference::Ball ball = reference::bounding_ball(witness);
+      return 16 * eps * (from(ball.center) + 2 * ball.radius);
     }
   }
 }
@@ -382,14 +417,39 @@ dvec3 CaseMaker::point_of(const reference::Spool& s, dvec3* normal) {
   return center + s.ends[end].radius * between(0, 1) * outward;
 }
 
-dvec3 CaseMaker::point_of(const reference::Box& b, dvec3* normal) {
+dvec3 CaseMaker::box_point(const BoxShape& b, dvec3* normal) {
   dvec3 x;
-  for (int k = 0; k < 3; ++k) x[k] = between(b.min[k], b.max[k]);
+  for (int k = 0; k < 3; ++k) x[k] = between(b.p0[k], b.p1[k]);
   const int k = below(3);
   const bool high = below(2) == 0;
-  x[k] = high ? b.max[k] : b.min[k];
+  x[k] = high ? b.p1[k] : b.p0[k];
   *normal = dvec3(0);
   (*normal)[k] = high ? 1 : -1;
+  return x;
+}
+
+template <class Model>
+dvec3 CaseMaker::point_of(const reference::Solid<Model>& solid, dvec3* normal) {
+  if constexpr (std::is_same_v<Model, BoxShape>)  // corners, and edges to the last bit
+    if (below(2) == 0) return box_point(solid.shape, normal);
+  const reference::Ball ball = reference::bounding_ball(solid);
+  dvec3 inside = ball.center;
+  for (int i = 0; i < 100 && !(reference::value(solid, inside) < 0); ++i)
+    inside = ball.center + ball.radius * uniform(0, 1) * direction();
+  int surface = 0, other = 0;
+  const dvec3 a = ball.radius * direction(), b = ball.radius * direction();
+  dvec3 x = surface_beyond(solid.shape, inside, a, &surface);
+  surface_beyond(solid.shape, inside, b, &other);
+  if (below(2) == 0 && other != surface) {  // the edge, or corner, between
+    double low = 0, high = 1;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (low + high);
+      int at = surface;
+      x = surface_beyond(solid.shape, inside, a + middle * (b - a), &at);
+      (at == surface ? low : high) = middle;
+    }
+  }
+  *normal = normal_on(solid.shape, surface, x);
   return x;
 }
 
@@ -519,12 +579,8 @@ dvec3 CaseMaker::own_axis(const FlatPrimitive& p, const reference::Primitive& wi
       return point(d + 3) - point(d);
     case shape_disk:
       return point(d + 3);
-    case shape_box: {
-      dvec3 edge(0);
-      const int k = below(3);
-      edge[k] = double(d[3 + k]) - double(d[k]);
-      return edge;
-    }
+    case shape_box:
+      return {double(d[3]) - double(d[0]), 0, 0};
     case shape_polyhedron: {  // edges come as pairs of corners
       const auto& corners = std::get<reference::Polyhedron>(witness).corners;
       const auto i = static_cast<std::size_t>(below(static_cast<int>(corners.size()) / 2));

@@ -61,9 +61,12 @@ class CaseMaker {
   FlatPrimitive basic(int shape, bool hard, const Frame& at);
   FlatPrimitive solid(int shape, bool hard, const Frame& at);
   FlatPrimitive open(int shape, bool hard, const Frame& at);
+  FlatPrimitive faced(int shape, bool hard, const Frame& at);
   Shape csg_shape(int depth);
   glm::dvec3 point_of(const reference::Spool& spool, glm::dvec3* normal);
-  glm::dvec3 point_of(const reference::Box& box, glm::dvec3* normal);
+  glm::dvec3 box_point(const BoxShape& box, glm::dvec3* normal);
+  template <class Model>
+  glm::dvec3 point_of(const reference::Solid<Model>& solid, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Polyhedron& polyhedron, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::PartialSphere& sphere, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::OpenCylinder& cylinder, glm::dvec3* normal);

@@ -38,7 +38,7 @@ struct WitnessOf {
   Primitive operator()(const ConeShape& c) const {
     return reference::make_spool(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]));
   }
-  Primitive operator()(const BoxShape& b) const { return reference::Box{glm::min(b.p0, b.p1), glm::max(b.p0, b.p1)}; }
+  Primitive operator()(const BoxShape& b) const { return reference::Box{{glm::min(b.p0, b.p1), glm::max(b.p0, b.p1)}}; }
   Primitive operator()(const PolyhedronShape& p) const {
     std::vector<dvec3> normals;
     std::vector<double> offsets;

@@ -11,6 +11,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "faced.h"
 #include "shared/kinds.h"
 #include "support/scene_buffers.h"
 
@@ -141,8 +142,6 @@ reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>
       return reference::make_spool(point(d), point(d + 3), end(d[6], d[7]), end(d[6], d[8]));
     case shape_cone:
       return reference::make_spool(point(d), point(d + 3), end(d[6], d[8]), end(d[7], d[9]));
-    case shape_box:
-      return reference::Box{point(d), point(d + 3)};
     case shape_polyhedron: {
       const std::size_t begin = std::bit_cast<std::uint32_t>(d[0]), count = std::bit_cast<std::uint32_t>(leaves.at(begin + 3));
       std::vector<glm::dvec3> normals;
@@ -161,8 +160,12 @@ reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>
       return reference::PartialDisk{d[0], d[1], d[2], d[3]};
     case shape_bilinear:
       return reference::Bilinear{point(d), point(d + 3), point(d + 6), point(d + 9)};
-    default:
-      throw std::logic_error("no witness of this shape from its data");
+    default: {
+      reference::Primitive out;
+      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = faced_witness<Type>(d); }))
+        throw std::logic_error("no witness of this shape from its data");
+      return out;
+    }
   }
 }
 
@@ -179,8 +182,6 @@ int length_count(const FlatPrimitive& p) {
       return 8;
     case shape_triangle:
       return 9;
-    case shape_box:
-      return 6;
     case shape_partial_sphere:
     case shape_open_cylinder:
     case shape_partial_disk:
@@ -190,8 +191,12 @@ int length_count(const FlatPrimitive& p) {
     case shape_polyhedron:
     case shape_csg:
       return 0;
-    default:
-      throw std::logic_error("no count of lengths for this shape");
+    default: {
+      int out = 0;
+      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = count_fields<Type>().all; }))
+        throw std::logic_error("no count of lengths for this shape");
+      return out;
+    }
   }
 }
 
@@ -208,7 +213,6 @@ int coordinate_count(const FlatPrimitive& p) {
     case shape_tapered_capsule:
     case shape_cylinder:
     case shape_cone:
-    case shape_box:
       return 6;
     case shape_polyhedron:
     case shape_partial_sphere:
@@ -216,8 +220,12 @@ int coordinate_count(const FlatPrimitive& p) {
     case shape_partial_disk:
     case shape_csg:
       return 0;
-    default:
-      throw std::logic_error("no count of coordinates for this shape");
+    default: {
+      int out = 0;
+      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = count_fields<Type>().coordinates; }))
+        throw std::logic_error("no count of coordinates for this shape");
+      return out;
+    }
   }
 }
 

@@ -102,7 +102,7 @@ TEST(Uv, Disks) {
 
 // Seen from outside: u to the right, v up z, or along y.
 TEST(Uv, Boxes) {
-  const Box box{{0, 0, 0}, {1, 2, 4}};
+  const Box box{{{0, 0, 0}, {1, 2, 4}}};
   expect_uv(box, {0, 0.5, 1}, 0, {0.75, 0.25});
   expect_uv(box, {1, 0.5, 1}, 1, {0.25, 0.25});
   expect_uv(box, {0.25, 0, 1}, 2, {0.25, 0.25});

@@ -202,7 +202,7 @@ TEST(Witness, MixedEndsAreTheHullOfADiskAndABall) {
 }
 
 TEST(Witness, BoxesAndPolyhedra) {
-  const Box box{{-1, -2, -3}, {1, 2, 3}};
+  const Box box{{{-1, -2, -3}, {1, 2, 3}}};
   expect_surfaces(box, {{-5, 0.5, 0.5}, {2, 0, 0}}, {{2, 0, false}, {3, 1, true}});
   expect_surfaces(box, {{0.5, 5, 0.5}, {0, -1, 0}}, {{3, 3, false}, {7, 2, true}});
   expect_surfaces(box, {{0.5, 0.5, -5}, {0, 0.25, 1}}, {{2, 4, false}, {6, 3, true}});
@@ -276,7 +276,7 @@ TEST(Witness, DistanceFromFoldedPatches) {
 TEST(Witness, NormalsOfSurfaces) {
   const Spool cone = make_spool({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
   const Spool bullet = make_spool({1, 0, 0}, {5, 0, 0}, {1, false, false}, {2, true, false});
-  const Box box{{-1, -2, -3}, {1, 2, 3}};
+  const Box box{{{-1, -2, -3}, {1, 2, 3}}};
   const std::array normals = {dvec3(0, 0, 2), dvec3(3, 0, -1), dvec3(-1, 2, -1), dvec3(-1, -2, -1)};
   const std::array offsets = {1.0, 1.0, 1.0, 1.0};
   const Polyhedron wedge = make_polyhedron({1, 1, 1}, normals, offsets);
@@ -313,13 +313,13 @@ TEST(Witness, CsgByMembership) {
   expect_surfaces(lens, {{0, 0, -5}, {0, 0, 1}}, {{4, 1, false}, {6, 0, true}});
   expect_surfaces(lens, {{1.8, 0, -5}, {0, 0, 1}}, {});
   const Csg hollow = make_csg(Csg::Operation::set_difference,
-                              std::vector<CsgPart>{{Box{{-2, -2, -2}, {2, 2, 2}}, glm::dmat4(1)}, {lens, glm::dmat4(1)}});
+                              std::vector<CsgPart>{{Box{{{-2, -2, -2}, {2, 2, 2}}}, glm::dmat4(1)}, {lens, glm::dmat4(1)}});
   EXPECT_EQ(surface_count(hollow), 8);
   expect_surfaces(hollow, {{0, 0, -5}, {0, 0, 1}}, {{3, 4, false}, {4, 7, true}, {6, 6, false}, {7, 5, true}});
   EXPECT_LT(glm::length(normal_at(hollow, {0, 0, -1}, 1e-6) - dvec3(0, 0, 1)), 1e-6);
   // Touching capsules: no inner surface.
-  const Csg chain = make_csg(Csg::Operation::set_union, std::vector<CsgPart>{{Box{{0, 0, 0}, {1, 1, 1}}, glm::dmat4(1)},
-                                                                             {Box{{0, 0, 0}, {1, 1, 1}}, moved({1, 0, 0})}});
+  const Csg chain = make_csg(Csg::Operation::set_union, std::vector<CsgPart>{{Box{{{0, 0, 0}, {1, 1, 1}}}, glm::dmat4(1)},
+                                                                             {Box{{{0, 0, 0}, {1, 1, 1}}}, moved({1, 0, 0})}});
   expect_surfaces(chain, {{-1, 0.5, 0.5}, {1, 0, 0}}, {{1, 0, false}, {3, 7, true}});
 }
 
@@ -335,7 +335,7 @@ TEST(Witness, CsgCrossingsAreTheSignChangesOfTheValue) {
       const glm::dmat4 m = glm::scale(glm::rotate(glm::translate(glm::dmat4(1), 0.7 * random_vector(random)), 6 * uniform(random),
                                                   glm::normalize(random_vector(random))),
                                       dvec3(0.3 + uniform(random), 0.3 + uniform(random), 0.3 + uniform(random)));
-      const Primitive primitive = k == 0   ? Primitive(Box{{-1, -1, -1}, {1, 1, 1}})
+      const Primitive primitive = k == 0   ? Primitive(Box{{{-1, -1, -1}, {1, 1, 1}}})
                                   : k == 1 ? Primitive(Sphere{})
                                   : k == 2 ? Primitive(make_spool({0, 0, -1}, {0, 0, 1}, {1, false, false}, {0.5, false, false}))
                                            : Primitive(Capsule{{0, 0, -1}, {0, 0, 1}, 0.5, 0.3});

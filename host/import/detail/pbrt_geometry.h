@@ -22,12 +22,55 @@ float to_float(Parameters& parameters, std::string_view name, double value);
 std::vector<glm::vec3> vectors3(Parameters& parameters, const Parameter* values);
 /// One point that must be given, each coordinate at most largest_length.
 glm::dvec3 required_point(Parameters& parameters, std::string_view name);
+/// "float NAME": one value, positive and at most largest_length.
+double positive_length(Parameters& parameters, std::string_view name, double fallback);
 /// "float radius": one value, positive and at most largest_length.
 double positive_radius(Parameters& parameters, double fallback);
 /// "phimax" in radians, above 0 and at most a full turn (more is a full turn, as in pbrt).
 double phi_max(Parameters& parameters);
 /// A length of either sign, at most largest_length.
 double length(Parameters& parameters, std::string_view name, double fallback);
+
+/// Asks a statement for the fields of a shape: corners must be given.
+class ReadFields : public Fields {
+ public:
+  explicit ReadFields(Parameters& parameters);
+  void corners(const char* name0, const char* name1, glm::dvec3& p0, glm::dvec3& p1) override;
+  void positive(const char* name, double& value) override;
+  /// Whether nothing is missing.
+  bool complete() const { return complete_; }
+
+ private:
+  Parameters& parameters_;
+  bool complete_ = true;
+};
+
+/// What is wrong with a shape, at its statement or at the parameter of the field's name.
+class FieldCheck : public ShapeCheck {
+ public:
+  explicit FieldCheck(Parameters& parameters);
+  void error(const std::string& message) override;
+  void error(std::string_view field, const std::string& message) override;
+  std::size_t materials() const override { return 0; }
+  void operand(const Shape&) override {}
+  bool good() const { return good_; }
+
+ private:
+  Parameters& parameters_;
+  bool good_ = true;
+};
+
+/// A shape whose model names its fields. Where something is missing or wrong, which is reported, as it is by default.
+template <FieldedShape Type>
+Type read_fields(Parameters& parameters) {
+  Type shape;
+  ReadFields each(parameters);
+  fields(shape, each);
+  if (!each.complete()) return {};
+  FieldCheck report(parameters);
+  check(shape, report);
+  return report.good() ? shape : Type{};
+}
 
 /// Whole, or pbrt's part of one.
 Geometry make_sphere(Parameters& parameters);
@@ -36,7 +79,6 @@ CapsulesShape make_capsule(Parameters& parameters);
 /// With "p0" or "p1" ours, otherwise pbrt's open one.
 Geometry make_cylinder(Parameters& parameters);
 ConeShape make_cone(Parameters& parameters);
-BoxShape make_box(Parameters& parameters);
 PolyhedronShape make_polyhedron(Parameters& parameters);
 TriangleMeshShape make_triangle_mesh(Parameters& parameters);
 BilinearMeshShape make_bilinear_mesh(Parameters& parameters);

@@ -45,12 +45,11 @@ double bilinear_area(const float* data, const glm::dmat3& m);
 // - those of one primitive (all but capsules and meshes): that primitive under `m`, which it can hold; the id is left 0. Data of
 // no
 //   fixed size are appended to `leaves`.
-#define CAPLET_DECLARE(Type)                                        \
+#define GEOMETRY(Type, name)                                        \
   bool bakes_under(const Type& geometry, const glm::dmat4& m);      \
   glm::dmat3 turn_under(const Type& geometry, const glm::dmat4& m); \
   FlatPrimitive flat_primitive(const Type& geometry, const glm::dmat4& m, std::vector<float>& leaves);
-CAPLET_GEOMETRIES(CAPLET_DECLARE)
-#undef CAPLET_DECLARE
+#include "scene/geometries.def"
 
 /// Capsule i of `capsules` under the similarity `m` (null: none) of this scale: a sphere, capsule or tapered capsule.
 FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const glm::dmat4* m, double scale);

@@ -1,56 +1,134 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Private to this room: what the shapes' files tell primitive.cpp.
+// What the file of each shape tells primitive.cpp: shapes/NAME.cpp. A function that one lacks does not link.
 #pragma once
 
-#include "reference/primitive.h"
+#include "reference/shapes.h"
 
 namespace caplet::reference {
 
-double distance_to_segment(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b);
+// --- All of them ---
 
-// spool.cpp
-double value_of(const Spool& spool, const glm::dvec3& x);
-double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if all ends were closed
+#define PRIMITIVE(Type)                                                  \
+  double value_of(const Type& shape, const glm::dvec3& x);               \
+  Ball ball_of(const Type& shape);                                       \
+  glm::dvec2 uv_of(const Type& shape, const glm::dvec3& x, int surface); \
+  bool has_inside(const Type& shape);
+#define SOLID(Model)
+#include "reference/primitives.def"
+
+// A geometry's primitives, in order, in its object space; of those that are told by their surfaces from_scene.cpp knows.
+#define GEOMETRY(Type, name) std::vector<Primitive> witnesses_of(const Type& geometry);
+#include "scene/geometries.def"
+
+// --- Of more than one kind; of more than one surface; csg shapes ---
+
+std::size_t which_kind(const Capsule& capsule);
+std::size_t which_kind(const Spool& spool);
+
+int surfaces_of(const Spool& spool);
+int surfaces_of(const Polyhedron& polyhedron);
+int surfaces_of(const Csg& csg);
 SurfaceAt surface_of(const Spool& spool, const glm::dvec3& x);
-double distance_from(const Spool& spool, const glm::dvec3& x, int surface);
-glm::dvec3 normal_of(const Spool& spool, const glm::dvec3& x, int surface);
-std::vector<Curve> boundary_of(const Spool& spool);
-// Where the side of normal n (one of side_normals) touches an end: along and across the axis.
-glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
-glm::dvec3 any_perpendicular(const glm::dvec3& unit);
-
-// planes.cpp
-double value_of(const Box& box, const glm::dvec3& x);
-double value_of(const Polyhedron& polyhedron, const glm::dvec3& x);
-SurfaceAt surface_of(const Box& box, const glm::dvec3& x);
 SurfaceAt surface_of(const Polyhedron& polyhedron, const glm::dvec3& x);
-double distance_from(const Box& box, const glm::dvec3& x, int surface);
+SurfaceAt surface_of(const Csg& csg, const glm::dvec3& x);
+double distance_from(const Spool& spool, const glm::dvec3& x, int surface);
 double distance_from(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
-glm::dvec3 normal_of(const Box& box, int surface);
-glm::dvec3 normal_of(const Polyhedron& polyhedron, int surface);
+double distance_from(const Csg& csg, const glm::dvec3& x, int surface);
+glm::dvec3 normal_of(const Spool& spool, const glm::dvec3& x, int surface);
+glm::dvec3 normal_of(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
 
-// open.cpp
-double value_of(const PartialSphere& sphere, const glm::dvec3& x);
-double value_of(const OpenCylinder& cylinder, const glm::dvec3& x);
-double value_of(const PartialDisk& disk, const glm::dvec3& x);
-bool keeps_of(const PartialSphere& sphere, const glm::dvec3& x);
-bool keeps_of(const OpenCylinder& cylinder, const glm::dvec3& x);
-bool keeps_of(const PartialDisk& disk, const glm::dvec3& x);
+// --- Sheets: the normal, the solid that they bound a part of, whether that part, and where they end ---
+
+glm::dvec3 sheet_normal(const Triangle& triangle, const glm::dvec3& x);
+glm::dvec3 sheet_normal(const Disk& disk, const glm::dvec3& x);
+glm::dvec3 sheet_normal(const PartialDisk& disk, const glm::dvec3& x);
+glm::dvec3 sheet_normal(const Bilinear& patch, const glm::dvec3& x);
+Primitive carrier_from(const Spool& spool);
+Primitive carrier_from(const PartialSphere& sphere);
+Primitive carrier_from(const OpenCylinder& cylinder);
+bool keeps_of(const Spool& spool, const glm::dvec3& x, int surface);
+bool keeps_of(const PartialSphere& sphere, const glm::dvec3& x, int surface);
+bool keeps_of(const OpenCylinder& cylinder, const glm::dvec3& x, int surface);
+bool keeps_of(const PartialDisk& disk, const glm::dvec3& x, int surface);
+std::vector<Curve> boundary_of(const Spool& spool);
 std::vector<Curve> boundary_of(const PartialSphere& sphere);
 std::vector<Curve> boundary_of(const OpenCylinder& cylinder);
 std::vector<Curve> boundary_of(const PartialDisk& disk);
+std::vector<Curve> boundary_of(const Disk& disk);
+std::vector<Curve> boundary_of(const Triangle& triangle);
+std::vector<Curve> boundary_of(const Bilinear& patch);
+
+// --- Convex solids as the model tells them ---
+
+/// The greatest of the surfaces' values, which one, and how much less the others are: going d moves each by no more than d.
+struct Greatest {
+  double value = -HUGE_VAL, second = -HUGE_VAL;
+  int surface = 0;
+  void add(double distance, int number) {
+    if (distance > value) {
+      second = value;
+      value = distance;
+      surface = number;
+    } else {
+      second = std::max(second, distance);
+    }
+  }
+  SurfaceAt at() const { return {surface, 0.5 * (value - second)}; }
+};
+
+template <FacedSolid Model>
+int surfaces_of(const Solid<Model>& solid) {
+  return static_cast<int>(caplet::surfaces_of(solid.shape));
+}
+template <FacedSolid Model>
+Greatest greatest_of(const Solid<Model>& solid, const glm::dvec3& x) {
+  Greatest out;
+  for (int i = 0; i < surfaces_of(solid); ++i) out.add(outside(solid.shape, i, x), i);
+  return out;
+}
+template <FacedSolid Model>
+double value_of(const Solid<Model>& solid, const glm::dvec3& x) {
+  return greatest_of(solid, x).value;
+}
+template <FacedSolid Model>
+Ball ball_of(const Solid<Model>& solid) {
+  const Bounds box = bounds_under(solid.shape, glm::dmat4(1));
+  return {0.5 * (box.min + box.max), 0.5 * glm::length(box.max - box.min)};
+}
+template <FacedSolid Model>
+glm::dvec2 uv_of(const Solid<Model>& solid, const glm::dvec3& x, int surface) {
+  return uv_on(solid.shape, surface, x);
+}
+template <FacedSolid Model>
+bool has_inside(const Solid<Model>&) {
+  return true;
+}
+template <FacedSolid Model>
+SurfaceAt surface_of(const Solid<Model>& solid, const glm::dvec3& x) {
+  return greatest_of(solid, x).at();
+}
+template <FacedSolid Model>
+double distance_from(const Solid<Model>& solid, const glm::dvec3& x, int surface) {
+  return std::abs(outside(solid.shape, surface, x));
+}
+template <FacedSolid Model>
+glm::dvec3 normal_of(const Solid<Model>& solid, const glm::dvec3& x, int surface) {
+  return normal_on(solid.shape, surface, x);
+}
+// --- What they share ---
+
+double distance_to_segment(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b);
+glm::dvec3 any_perpendicular(const glm::dvec3& unit);
+inline Curve segment(const glm::dvec3& a, const glm::dvec3& b) { return {Curve::Kind::segment, a, b, glm::dvec3(0), 0, 0, 0}; }
+
+// spool.cpp
+double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if all ends were closed
+// Where the side of normal n (one of side_normals) touches an end: along and across the axis.
+glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
 
 // bilinear.cpp
-double value_of(const Bilinear& patch, const glm::dvec3& x);
 glm::dvec2 parameters_of(const Bilinear& patch, const glm::dvec3& x);  // of the point nearest to x
-glm::dvec3 normal_of(const Bilinear& patch, const glm::dvec3& x);
-
-// csg.cpp
-double value_of(const Csg& csg, const glm::dvec3& x);
-SurfaceAt surface_of(const Csg& csg, const glm::dvec3& x);
-double distance_from(const Csg& csg, const glm::dvec3& x, int surface);
-Ball ball_of(const Csg& csg);
 
 }  // namespace caplet::reference

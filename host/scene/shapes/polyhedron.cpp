@@ -2,13 +2,13 @@
 // Copyright Caplet authors
 //
 // Half-spaces -> faces: a box that holds everything is cut by one plane after the other.
+#include "scene/shapes/polyhedron.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
-
-#include "scene/scene.h"
 
 namespace caplet {
 
@@ -177,6 +177,53 @@ std::vector<dvec3> polyhedron_corners(const PolyhedronShape& polyhedron, std::si
     for (const dvec3& x : face)
       if (std::ranges::none_of(corners, [&](const dvec3& y) { return same_point(x, y, tolerance); })) corners.push_back(x);
   return corners;
+}
+
+Bounds bounds_under(const PolyhedronShape& polyhedron, const glm::dmat4& m) {
+  Bounds bounds;
+  for (const dvec3& corner : polyhedron_corners(polyhedron)) bounds.extend(transformed(m, corner));
+  return bounds;
+}
+
+void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
+  const std::size_t planes = polyhedron.points.size();
+  if (polyhedron.normals.size() != planes) return report.error("the polyhedron has another number of normals than of points");
+  if (planes > max_polyhedron_planes)
+    return report.error("the polyhedron has " + std::to_string(planes) + " planes, more than " +
+                        std::to_string(max_polyhedron_planes));
+  double reach = 0;  // greatest distance of a point from the first
+  for (std::size_t i = 0; i < planes; ++i) {
+    const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
+    if (!is_finite(polyhedron.points[i]) || !is_finite(polyhedron.normals[i])) return report.error(plane() + "is not finite");
+    if (!(glm::length(polyhedron.normals[i]) > 0)) return report.error(plane() + "has no normal: it is zero");
+    reach = std::max(reach, glm::length(polyhedron.points[i] - polyhedron.points[0]));
+  }
+  std::size_t bad = 0;
+  if (!polyhedron_corners(polyhedron, &bad).empty()) return;
+  // Cut by a far box, an unbounded polyhedron has corners; one without an inside still has none.
+  PolyhedronShape boxed = polyhedron;
+  for (int side = 0; side < 6; ++side) {
+    dvec3 n(0);
+    n[side / 2] = side % 2 ? 1 : -1;
+    boxed.points.push_back(polyhedron.points[0] + (reach > 0 ? 1e3 * reach : 1) * n);
+    boxed.normals.push_back(n);
+  }
+  const bool unbounded = !polyhedron_corners(boxed).empty();
+  report.error(std::string("the polyhedron ") + (unbounded ? "has no bounds" : "has no inside") + ": look at plane " +
+               std::to_string(bad) + " (counted from 0)");
+}
+
+Beyond beyond(const PolyhedronShape& polyhedron, const dvec3& p) {
+  double most = -INFINITY;
+  for (std::size_t i = 0; i < polyhedron.points.size(); ++i)
+    most = std::max(most, glm::dot(glm::normalize(polyhedron.normals[i]), p - polyhedron.points[i]));
+  return Beyond::exactly(most);
+}
+
+PolyhedronShape drawn(std::type_identity<PolyhedronShape>, Draws& draws) {
+  const double r = draws.size;
+  return PolyhedronShape{{dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
+                         {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, draws.uniform(0.5, 3)}}};
 }
 
 }  // namespace caplet

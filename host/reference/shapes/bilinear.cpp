@@ -9,14 +9,15 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "reference/detail/angles.h"
 #include "reference/detail/parts.h"
 
 namespace caplet::reference {
 
-namespace {
-
 using glm::dvec2;
 using glm::dvec3;
+
+namespace {
 
 struct Nearest {
   double distance = HUGE_VAL;
@@ -116,11 +117,34 @@ dvec2 parameters_of(const Bilinear& b, const dvec3& x) {
   return uv;
 }
 
-dvec3 normal_of(const Bilinear& b, const dvec3& x) {
+dvec3 sheet_normal(const Bilinear& b, const dvec3& x) {
   const dvec2 uv = nearest_of(b, x).uv;
   const dvec3 du = (1 - uv.y) * (b.p10 - b.p00) + uv.y * (b.p11 - b.p01);
   const dvec3 dv = (1 - uv.x) * (b.p01 - b.p00) + uv.x * (b.p11 - b.p10);
   return glm::normalize(glm::cross(du, dv));
+}
+
+bool has_inside(const Bilinear&) { return false; }
+
+Ball ball_of(const Bilinear& b) {
+  const dvec3 center = 0.25 * (b.p00 + b.p10 + b.p01 + b.p11);
+  double radius = 0;
+  for (const dvec3* corner : {&b.p00, &b.p10, &b.p01, &b.p11}) radius = std::max(radius, glm::length(*corner - center));
+  return {center, radius};
+}
+
+std::vector<Curve> boundary_of(const Bilinear& b) {
+  return {segment(b.p00, b.p10), segment(b.p10, b.p11), segment(b.p11, b.p01), segment(b.p01, b.p00)};
+}
+
+dvec2 uv_of(const Bilinear& b, const dvec3& x, int) { return parameters_of(b, x); }
+
+std::vector<Primitive> witnesses_of(const BilinearMeshShape& mesh) {
+  std::vector<Primitive> out;
+  for (const auto& p : mesh.patches)
+    out.push_back(Bilinear{dvec3(mesh.positions[p[0]]), dvec3(mesh.positions[p[1]]), dvec3(mesh.positions[p[2]]),
+                           dvec3(mesh.positions[p[3]])});
+  return out;
 }
 
 }  // namespace caplet::reference

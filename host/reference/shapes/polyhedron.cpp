@@ -1,43 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-//
-// Solids between planes.
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
+#include "reference/detail/angles.h"
 #include "reference/detail/parts.h"
 
 namespace caplet::reference {
 
-namespace {
-
+using glm::dvec2;
 using glm::dvec3;
 
-// The greatest of the planes' distances, which plane, and how much less the others are: going d moves each by no more than d.
-struct Greatest {
-  double value = -HUGE_VAL, second = -HUGE_VAL;
-  int plane = 0;
-  void add(double distance, int number) {
-    if (distance > value) {
-      second = value;
-      value = distance;
-      plane = number;
-    } else {
-      second = std::max(second, distance);
-    }
-  }
-};
+bool has_inside(const Polyhedron&) { return true; }
+int surfaces_of(const Polyhedron& p) { return static_cast<int>(p.normals.size()); }
+Ball ball_of(const Polyhedron& p) { return {p.ball_center, p.ball_radius}; }
 
-Greatest greatest_of(const Box& b, const dvec3& x) {
-  Greatest out;
-  for (int k = 0; k < 3; ++k) {
-    out.add(b.min[k] - x[k], 2 * k);
-    out.add(x[k] - b.max[k], 2 * k + 1);
-  }
-  return out;
-}
+namespace {
 
 Greatest greatest_of(const Polyhedron& p, const dvec3& x) {
   Greatest out;
@@ -48,33 +28,26 @@ Greatest greatest_of(const Polyhedron& p, const dvec3& x) {
 
 }  // namespace
 
-double value_of(const Box& b, const dvec3& x) { return greatest_of(b, x).value; }
 double value_of(const Polyhedron& p, const dvec3& x) { return greatest_of(p, x).value; }
-
-SurfaceAt surface_of(const Box& b, const dvec3& x) {
-  const Greatest g = greatest_of(b, x);
-  return {g.plane, 0.5 * (g.value - g.second)};
-}
-SurfaceAt surface_of(const Polyhedron& p, const dvec3& x) {
-  const Greatest g = greatest_of(p, x);
-  return {g.plane, 0.5 * (g.value - g.second)};
-}
-
-double distance_from(const Box& b, const dvec3& x, int surface) {
-  const int axis = surface / 2;
-  return std::abs(x[axis] - (surface % 2 == 0 ? b.min[axis] : b.max[axis]));
-}
+SurfaceAt surface_of(const Polyhedron& p, const dvec3& x) { return greatest_of(p, x).at(); }
 double distance_from(const Polyhedron& p, const dvec3& x, int surface) {
   const auto i = static_cast<std::size_t>(surface);
   return std::abs(glm::dot(p.normals[i], x - p.center) - p.offsets[i]);
 }
+dvec3 normal_of(const Polyhedron& p, const dvec3&, int surface) { return p.normals[static_cast<std::size_t>(surface)]; }
 
-dvec3 normal_of(const Box&, int surface) {
-  dvec3 out{0};
-  out[surface / 2] = surface % 2 == 0 ? -1 : 1;
-  return out;
+dvec2 uv_of(const Polyhedron& p, const dvec3& x, int surface) {
+  dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+  for (const dvec3& corner : p.corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  const dvec3 center = 0.5 * (low + high), n = p.normals[static_cast<std::size_t>(surface)], east = beginning(n);
+  double radius = 0;
+  for (const dvec3& corner : p.corners) radius = std::max(radius, glm::length(corner - center));
+  const dvec3 w = x - center;
+  return {share(glm::dot(w, east) + radius, 2 * radius), share(glm::dot(w, glm::cross(n, east)) + radius, 2 * radius)};
 }
-dvec3 normal_of(const Polyhedron& p, int surface) { return p.normals[static_cast<std::size_t>(surface)]; }
 
 Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, std::span<const double> offsets) {
   Polyhedron out;
@@ -117,6 +90,14 @@ Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, 
   for (const dvec3& corner : out.corners) out.ball_radius = std::max(out.ball_radius, glm::length(corner - out.ball_center));
   out.ball_radius *= 1 + 1e-6;
   return out;
+}
+
+std::vector<Primitive> witnesses_of(const PolyhedronShape& p) {
+  dvec3 center{0};
+  for (const dvec3& point : p.points) center += point / double(p.points.size());
+  std::vector<double> offsets;
+  for (std::size_t i = 0; i < p.points.size(); ++i) offsets.push_back(glm::dot(p.normals[i], p.points[i] - center));
+  return {make_polyhedron(center, p.normals, offsets)};
 }
 
 }  // namespace caplet::reference

@@ -9,12 +9,16 @@
 #include <glm/matrix.hpp>
 
 #include "reference/detail/parts.h"
+#include "reference/detail/uv.h"
+#include "reference/from_scene.h"
+#include "reference/primitive.h"
 
 namespace caplet::reference {
 
-namespace {
-
+using glm::dvec2;
 using glm::dvec3;
+
+namespace {
 
 dvec3 apply(const glm::dmat4& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
 
@@ -42,10 +46,6 @@ double operand_value(const CsgOperand& operand, const dvec3& x) {
 
 bool takes_least(const Csg& csg) { return csg.operation == Csg::Operation::set_union; }
 double sign_of(const Csg& csg, std::size_t i) { return csg.operation == Csg::Operation::set_difference && i > 0 ? -1 : 1; }
-
-}  // namespace
-
-namespace {
 
 Ball ball_around(Csg::Operation operation, const std::vector<CsgOperand>& operands) {
   std::vector<Ball> balls;
@@ -122,5 +122,29 @@ double distance_from(const Csg& csg, const dvec3& x, int surface) {
 }
 
 Ball ball_of(const Csg& csg) { return {csg.body->ball_center, csg.body->ball_radius}; }
+
+bool has_inside(const Csg&) { return true; }
+int surfaces_of(const Csg& csg) {
+  const CsgOperand& last = csg.body->operands.back();
+  return last.surface_begin + surface_count(last.primitive);
+}
+
+dvec2 uv_of(const Csg& csg, const dvec3& x, int surface) {
+  for (const CsgOperand& operand : csg.body->operands) {
+    const int own = surface - operand.surface_begin;
+    if (own >= 0 && own < surface_count(operand.primitive))
+      return uv_at(operand.primitive, dvec3(operand.operand_from_csg * glm::dvec4(x, 1)), own);
+  }
+  return {0, 0};
+}
+
+std::vector<Primitive> witnesses_of(const CsgShape& csg) {
+  std::vector<CsgPart> parts;
+  for (const auto& operand : csg.operands) parts.push_back({primitives_of(*operand).at(0), operand->world_from_object});
+  const auto operation = csg.operation == CsgShape::Operation::set_union          ? Csg::Operation::set_union
+                         : csg.operation == CsgShape::Operation::set_intersection ? Csg::Operation::set_intersection
+                                                                                  : Csg::Operation::set_difference;
+  return {make_csg(operation, parts)};
+}
 
 }  // namespace caplet::reference

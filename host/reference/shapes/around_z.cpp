@@ -7,14 +7,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "reference/detail/angles.h"
 #include "reference/detail/parts.h"
 
 namespace caplet::reference {
 
-namespace {
-
 using glm::dvec2;
 using glm::dvec3;
+
+namespace {
 
 double angle_of(const dvec3& x) {
   const double phi = std::atan2(x.y, x.x);
@@ -25,7 +26,6 @@ dvec3 at_angle(double phi) { return {std::cos(phi), std::sin(phi), 0}; }
 
 const dvec3 up{0, 0, 1}, east{1, 0, 0}, north{0, 1, 0};
 
-Curve segment(const dvec3& a, const dvec3& b) { return {Curve::Kind::segment, a, b, dvec3(0), 0, 0, 0}; }
 Curve circle(double radius, double height, double phi_max) {
   return {Curve::Kind::arc, height * up, east, north, radius, 0, std::min(phi_max, full_turn)};
 }
@@ -51,20 +51,14 @@ bool whole(double phi_max) { return phi_max >= full_turn; }
 
 }  // namespace
 
-dvec3 Curve::at(double s) const {
-  if (kind == Kind::segment) return p + s * (q - p);
-  const double a = from + s * (to - from);
-  return p + radius * (std::cos(a) * q + std::sin(a) * r);
-}
-
-bool keeps_of(const PartialSphere& s, const dvec3& x) {
+bool keeps_of(const PartialSphere& s, const dvec3& x, int) {
   return (s.z_min <= -s.radius || x.z >= s.z_min) && (s.z_max >= s.radius || x.z <= s.z_max) &&
          (whole(s.phi_max) || angle_of(x) <= s.phi_max);
 }
-bool keeps_of(const OpenCylinder& c, const dvec3& x) {
+bool keeps_of(const OpenCylinder& c, const dvec3& x, int) {
   return x.z >= c.z_min && x.z <= c.z_max && (whole(c.phi_max) || angle_of(x) <= c.phi_max);
 }
-bool keeps_of(const PartialDisk& d, const dvec3& x) {
+bool keeps_of(const PartialDisk& d, const dvec3& x, int) {
   const double r = std::hypot(x.x, x.y);
   return r <= d.radius && r >= d.inner_radius && (whole(d.phi_max) || angle_of(x) <= d.phi_max);
 }
@@ -100,14 +94,51 @@ double value_of(const PartialSphere& s, const dvec3& x) {
   const double size = glm::length(x);
   const dvec3 nearest = size > 0 ? x * (s.radius / size) : at_angle(0) * s.radius;
   const double to_rims = distance_to(boundary_of(s), x);
-  return keeps_of(s, nearest) ? std::min(to_rims, std::abs(size - s.radius)) : to_rims;
+  return keeps_of(s, nearest, 0) ? std::min(to_rims, std::abs(size - s.radius)) : to_rims;
 }
 double value_of(const OpenCylinder& c, const dvec3& x) {
   const double to_rims = distance_to(boundary_of(c), x);
-  return keeps_of(c, x) ? std::min(to_rims, std::abs(std::hypot(x.x, x.y) - c.radius)) : to_rims;
+  return keeps_of(c, x, 0) ? std::min(to_rims, std::abs(std::hypot(x.x, x.y) - c.radius)) : to_rims;
 }
 double value_of(const PartialDisk& d, const dvec3& x) {
-  return keeps_of(d, x) ? std::abs(x.z - d.height) : distance_to(boundary_of(d), x);
+  return keeps_of(d, x, 0) ? std::abs(x.z - d.height) : distance_to(boundary_of(d), x);
 }
+
+bool has_inside(const PartialSphere&) { return false; }
+bool has_inside(const OpenCylinder&) { return false; }
+bool has_inside(const PartialDisk&) { return false; }
+
+Ball ball_of(const PartialSphere& s) { return {dvec3(0), s.radius}; }
+Ball ball_of(const OpenCylinder& c) {
+  return {dvec3(0, 0, 0.5 * (c.z_min + c.z_max)), std::hypot(c.radius, 0.5 * (c.z_max - c.z_min))};
+}
+Ball ball_of(const PartialDisk& d) { return {dvec3(0, 0, d.height), d.radius}; }
+
+dvec3 sheet_normal(const PartialDisk&, const dvec3&) { return {0, 0, 1}; }
+
+Primitive carrier_from(const PartialSphere& s) { return Sphere{dvec3(0), s.radius}; }
+Primitive carrier_from(const OpenCylinder& c) {
+  // Longer, so that its caps are never in question.
+  const double more = c.radius + 0.5 * (c.z_max - c.z_min);
+  return make_spool({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false}, {c.radius, false, false});
+}
+
+dvec2 uv_of(const PartialSphere& s, const dvec3& x, int) {
+  const auto latitude = [](double z, double across) { return std::atan2(z, across); };
+  const auto at_height = [&](double z) { return std::asin(std::clamp(z / s.radius, -1.0, 1.0)); };
+  const double low = at_height(s.z_min), high = at_height(s.z_max);
+  return {share(angle_within(x, s.phi_max), s.phi_max), share(latitude(x.z, std::hypot(x.x, x.y)) - low, high - low)};
+}
+dvec2 uv_of(const OpenCylinder& c, const dvec3& x, int) {
+  return {share(angle_within(x, c.phi_max), c.phi_max), share(x.z - c.z_min, c.z_max - c.z_min)};
+}
+dvec2 uv_of(const PartialDisk& d, const dvec3& x, int) {
+  return {share(angle_within(x, d.phi_max), d.phi_max), share(d.radius - std::hypot(x.x, x.y), d.radius - d.inner_radius)};
+}
+
+std::vector<Primitive> witnesses_of(const PartialSphereShape& s) {
+  return {PartialSphere{s.radius, s.z_min, s.z_max, s.phi_max}};
+}
+std::vector<Primitive> witnesses_of(const OpenCylinderShape& c) { return {OpenCylinder{c.radius, c.z_min, c.z_max, c.phi_max}}; }
 
 }  // namespace caplet::reference

@@ -9,14 +9,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "reference/detail/angles.h"
 #include "reference/detail/parts.h"
 
 namespace caplet::reference {
 
-namespace {
-
 using glm::dvec2;
 using glm::dvec3;
+
+namespace {
 
 // Support of an end whose centre lies `along` the axis.
 double support(const Spool::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
@@ -71,10 +72,6 @@ dvec2 side_contact(const Spool& s, std::size_t end, const dvec2& n) {
   return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
 }
 
-dvec3 any_perpendicular(const dvec3& n) {
-  return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
-}
-
 Spool make_spool(const dvec3& p0, const dvec3& p1, const Spool::End& end0, const Spool::End& end1) {
   Spool s;
   s.p0 = p0;
@@ -87,7 +84,6 @@ Spool make_spool(const dvec3& p0, const dvec3& p1, const Spool::End& end0, const
   const auto normal = [](double angle) { return dvec2(std::cos(angle), std::max(0.0, std::sin(angle))); };
   const auto difference = [&](double angle) { return support(end0, 0, normal(angle)) - support(end1, s.length, normal(angle)); };
   const double d0 = end0.round ? 0 : end0.radius, d1 = end1.round ? 0 : end1.radius;
-  constexpr double pi = full_turn / 2;
   double extreme = std::atan2(d1 - d0, s.length);
   if (extreme < 0) extreme += pi;
   const double stations[3] = {0, extreme, pi};
@@ -200,6 +196,57 @@ std::vector<Curve> boundary_of(const Spool& s) {
       out.push_back({Curve::Kind::arc, s.p0 + rim.x * s.axis, u, v, rim.y, 0, full_turn});
     }
   return out;
+}
+
+bool has_inside(const Spool& s) { return !s.ends[0].open && !s.ends[1].open; }
+std::size_t which_kind(const Spool& s) { return s.ends[0].radius == s.ends[1].radius ? 0 : 1; }
+int surfaces_of(const Spool&) { return 3; }
+
+Ball ball_of(const Spool& s) { return {0.5 * (s.p0 + s.p1), 0.5 * s.length + std::max(s.ends[0].radius, s.ends[1].radius)}; }
+
+Primitive carrier_from(const Spool& s) {
+  Spool closed = s;
+  closed.ends[0].open = closed.ends[1].open = false;
+  return closed;
+}
+bool keeps_of(const Spool& s, const dvec3&, int surface) {
+  return surface == 0 || !s.ends[static_cast<std::size_t>(surface - 1)].open;
+}
+
+dvec2 uv_of(const Spool& s, const dvec3& x, int surface) {
+  const OnSpool at = on_spool(s, x);
+  if (surface == 0) {
+    Position best{0, HUGE_VAL};
+    for (int i = 0; i < s.side_count; ++i) {
+      const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
+      const Position position = between(at.p, side_contact(s, 0, n), side_contact(s, 1, n));
+      if (position.away < best.away) best = position;
+    }
+    return {at.u, best.share};
+  }
+  const auto end = static_cast<std::size_t>(surface - 1);
+  const dvec2 w = at.p - dvec2(end == 0 ? 0 : s.length, 0);
+  if (!s.ends[end].round) {
+    const double part = share(w.y, s.ends[end].radius);
+    return {at.u, end == 0 ? part : 1 - part};
+  }
+  // From the pole to the circle that the side touches, or from there to the pole; whole spheres from pole to pole.
+  if (s.side_count != 1) return {at.u, share(angle_from_pole(w), pi)};
+  const double rim = angle_from_pole(s.side_normals[0]);
+  return {at.u, end == 0 ? share(angle_from_pole(w), rim) : share(angle_from_pole(w) - rim, pi - rim)};
+}
+
+namespace {
+
+Spool::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
+
+}  // namespace
+
+std::vector<Primitive> witnesses_of(const CylinderShape& c) {
+  return {make_spool(c.p0, c.p1, end_of(c.radius, c.caps[0]), end_of(c.radius, c.caps[1]))};
+}
+std::vector<Primitive> witnesses_of(const ConeShape& c) {
+  return {make_spool(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]))};
 }
 
 }  // namespace caplet::reference

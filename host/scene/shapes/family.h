@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What the file of each geometry says, shapes/NAME.h, and what helps to say it. For every row of geometries.def there are
+//
+//   std::size_t count_of(const Type&)                       primitives in it
+//   std::size_t surfaces_of(const Type&)                    material slots
+//   bool closed(const Type&)                                whether it has an inside: csg can combine it
+//   Bounds bounds_under(const Type&, const dmat4& m)        exact, of its image
+//   void check(const Type&, ShapeCheck&)                    what of it cannot be rendered
+//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` where nothing is closed
+//   Type drawn(std::type_identity<Type>, Draws&)            one at random, for hard scenes; csg has it where its operands are
+//                                                           drawn, verify/torture.cpp
+//
+// found by their type: one that is missing does not compile. Lengths and points are in the shape's own space.
+//
+// A convex solid may be told by its surfaces, each of which bounds it alone by a convex function (FacedSolid). Then it needs no
+// `beyond`, and its witness and the rays that try devices follow from what its file says:
+//
+//   double outside(const Type&, int surface, const dvec3& p)    growing by no more than the way gone; the solid is where all are
+//                                                               at most 0
+//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   unit, outward, at a point of the surface
+//   dvec2 uv_on(const Type&, int surface, const dvec3& p)       docs/shapes.md
+//   double tilt_of(const Type&, double moved)                   radians by which its surfaces turn when its points move by
+//   `moved`
+//
+// A geometry that scene files give by a few numbers may name them (FieldedShape), and is then read without a reader of its own:
+//
+//   void fields(Type&, auto& each)                          each.corners("p0", "p1", box.p0, box.p1), ...: see Fields
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "scene/bounds.h"
+
+namespace caplet {
+
+struct Shape;
+
+inline constexpr double full_turn = 6.283185307179586;
+/// The greatest coordinate or size in a scene: squares of 1e18, and sums of some, are within a 32-bit float (3.4e38).
+inline constexpr double largest_length = 1e18;
+
+/// How far a point is outside of a solid: a lower bound of the distance, and a number that is at most 0 only within.
+struct Beyond {
+  double least, most;
+  static Beyond exactly(double distance) { return {distance, distance}; }
+};
+inline constexpr Beyond unknown{-INFINITY, INFINITY};
+
+template <class Vector>
+bool is_finite(const Vector& v) {
+  for (glm::length_t i = 0; i < v.length(); ++i)
+    if (!std::isfinite(v[i])) return false;
+  return true;
+}
+
+/// Where a geometry says what is wrong with it.
+class ShapeCheck {
+ public:
+  virtual ~ShapeCheck() = default;
+  virtual void error(const std::string& message) = 0;
+  /// Of a field or parameter: `message` goes on from its name.
+  virtual void error(std::string_view field, const std::string& message) = 0;
+  /// How many materials there are to name.
+  virtual std::size_t materials() const = 0;
+  /// Checks a part as a shape of its own.
+  virtual void operand(const Shape& shape) = 0;
+
+  /// Also as a 32-bit float.
+  void positive(double value, const char* what) {
+    if (!(static_cast<float>(value) > 0 && std::isfinite(value))) error(std::string(what) + " must be positive and finite");
+  }
+};
+
+/// What random geometries are drawn with: of sizes of about 1, thin ones down to a ten thousandth.
+class Draws {
+ public:
+  virtual ~Draws() = default;
+  virtual double uniform(double low, double high) = 0;
+  virtual double power(double low, double high) = 0;  // 10 to a uniform power
+  virtual std::size_t below(std::size_t n) = 0;
+  virtual glm::dvec3 direction() = 0;
+
+  bool one_in(std::size_t n) { return below(n) == 0; }
+  /// 1, or up to a ten thousandth.
+  double thin() { return one_in(2) ? uniform(0.1, 1) : power(-4, 0); }
+  glm::vec3 point() { return glm::vec3(direction()); }
+
+  double size = 1, angle = 1;  // drawn for every geometry: 0.2 to 1, and 0.5 to 6.2 radians
+  int sort = 0;                // below drawn_sorts
+};
+/// How many sorts of a geometry are drawn.
+template <class Type>
+inline constexpr int drawn_sorts = 1;
+
+template <class Type>
+concept FacedSolid = requires(const Type& solid, int surface, const glm::dvec3& p) {
+  { outside(solid, surface, p) } -> std::same_as<double>;
+};
+
+/// What `fields` is called with.
+struct Fields {
+  virtual ~Fields() = default;
+  /// Two opposite corners of a box, in any order; in order they come back.
+  virtual void corners(const char* name0, const char* name1, glm::dvec3& p0, glm::dvec3& p1) = 0;
+  /// A positive length; `value` as it comes is what it is where it is not given.
+  virtual void positive(const char* name, double& value) = 0;
+};
+template <class Type>
+concept FieldedShape = requires(Type& shape, Fields& each) {
+  fields(shape, each);
+};
+
+/// The greatest `outside` of all surfaces.
+template <FacedSolid Type>
+Beyond beyond(const Type& solid, const glm::dvec3& p) {
+  double most = -INFINITY;
+  for (std::size_t i = 0; i < surfaces_of(solid); ++i) most = std::max(most, outside(solid, static_cast<int>(i), p));
+  return Beyond::exactly(most);
+}
+
+// --- For bounds ---
+
+inline glm::dvec3 transformed(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1)); }
+
+/// Half the extents of the unit ball's image under `a`: the lengths of its rows.
+inline glm::dvec3 row_lengths(const glm::dmat3& a) {
+  const glm::dmat3 rows = glm::transpose(a);
+  return {glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])};
+}
+
+inline void extend_box(Bounds& bounds, const glm::dvec3& center, const glm::dvec3& half) {
+  bounds.extend(center - half);
+  bounds.extend(center + half);
+}
+
+/// Bounds from the greatest value of a.p over the points p of a shape, for each row a of the matrix and its opposite.
+template <class Greatest>
+Bounds bounds_along_rows(const glm::dmat4& m, Greatest greatest) {
+  Bounds bounds;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 row(m[0][k], m[1][k], m[2][k]);
+    bounds.min[k] = m[3][k] - greatest(-row);
+    bounds.max[k] = m[3][k] + greatest(row);
+  }
+  return bounds;
+}
+
+/// The greatest value of a.x cos(phi) + a.y sin(phi) for 0 <= phi <= phi_max.
+inline double greatest_across(const glm::dvec3& a, double phi_max) {
+  const double summit = std::atan2(a.y, a.x);
+  if (phi_max >= full_turn || (summit < 0 ? summit + full_turn : summit) <= phi_max) return std::hypot(a.x, a.y);
+  return std::max(a.x, a.x * std::cos(phi_max) + a.y * std::sin(phi_max));
+}
+
+}  // namespace caplet
