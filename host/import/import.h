@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads scene files of every known format into the model. A format is one file here, one row in registry.cpp and one page in
+// Reads scene files of every known format into the model. A format is one file here, one row in importers.def and one page in
 // docs/formats.
 #pragma once
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-//
-// One row a format.
 #include "import/detail/importers.h"
 #include "import/import.h"
 
@@ -9,9 +7,9 @@ namespace caplet {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> rows = {
-      {"pbrt-v4", {".pbrt", ".pbrt.gz"}, &import_pbrt},
-      {"swc", {".swc"}, &import_swc},
-      {"capsules", {".capsules"}, &import_capsules_file},
+#define IMPORTER(function, name, ...) {name, {__VA_ARGS__}, &function},
+#include "import/importers.def"
+#undef IMPORTER
   };
   return rows;
 }

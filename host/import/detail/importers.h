@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The importers behind registry.cpp, one a format. Each returns a scene that is complete but not yet validated, and throws
-// InputError with the file's places.
+// The importers of importers.def.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +11,8 @@
 
 namespace caplet {
 
-/// pbrt-v4 scene text, plain or gzipped (docs/formats/pbrt.md).
-Scene import_pbrt(const std::filesystem::path& path, const ImageReader& images);
-/// SWC neuron morphologies (docs/formats/swc.md).
-Scene import_swc(const std::filesystem::path& path, const ImageReader& images);
-/// A bare .capsules file (docs/formats/capsules.md).
-Scene import_capsules_file(const std::filesystem::path& path, const ImageReader& images);
+#define IMPORTER(function, name, ...) Scene function(const std::filesystem::path& path, const ImageReader& images);
+#include "import/importers.def"
+#undef IMPORTER
 
 }  // namespace caplet
