@@ -147,7 +147,7 @@ class Flattener {
     if (!operand.starts_with('"') || close == std::string_view::npos)
       throw std::logic_error(fmt::format("{}:{}: malformed #include {}", label, line, operand));
     const std::string path(operand.substr(1, close - 1));
-    constexpr std::string_view present = "present/", list_end = ".def";
+    constexpr std::string_view present = "rows/", list_end = ".def";
     if (path.starts_with(present) && path.ends_with(list_end)) {
       const std::string list = path.substr(present.size(), path.size() - present.size() - list_end.size());
       mark(1, "kernels/shared/" + list + ".def");

@@ -97,7 +97,7 @@ std::string stage_source(Stage stage, const RowMasks& rows) {
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
   return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}", device.encoding() == Encoding::wide ? 8 : 1,
                       scene.leaf_kind_bits),
-          {{"shapes", shapes_on_trial(scene.shapes)}}};
+          {{"shapes", shapes_on_trial(scene.shapes)}, {"materials", scene.material_kinds()}, {"lights", scene.light_kinds()}}};
 }
 
 Kernels::Kernels(const Device& device, StageOptions options)

@@ -34,6 +34,8 @@ std::size_t buffer_count(Stage stage);
 struct StageOptions {
   std::string compiler;  // its options: how traversal is shaped (Device::encoding)
   RowMasks rows;         // the kinds of shapes, materials and lights that there are
+
+  bool operator==(const StageOptions&) const = default;
 };
 StageOptions stage_options(const FlatScene& scene, const Device& device);
 

@@ -16,7 +16,7 @@ static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global cons
 #define COMPOUND(name, traits) COMPOUND_CASE_##name
 #define COMPOUND_CASE_csg SHAPE(csg, 0)
 #define COMPOUND_CASE_instance
-#include "present/shapes.def"
+#include "rows/shapes.def"
 #undef SHAPE
     default: break;
   }

@@ -18,7 +18,7 @@ static inline Span shape_span(uint shape, const ShapeRay* ray, __global const fl
   switch (shape) {
 #define COMPOUND(name, traits)
 #define SPAN_IS_ASKED(traits) 1
-#include "present/shapes.def"
+#include "rows/shapes.def"
 #undef SPAN_IS_ASKED
     default: break;
   }
@@ -30,7 +30,7 @@ static inline Span solid_span(uint shape, const ShapeRay* ray, __global const fl
   switch (shape) {
 #define COMPOUND(name, traits)
 #define SPAN_IS_ASKED(traits) (((traits)&trait_solid) != 0)
-#include "present/shapes.def"
+#include "rows/shapes.def"
 #undef SPAN_IS_ASKED
     default: break;
   }
@@ -43,7 +43,7 @@ static inline int shape_is_solid(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \
   case shape_##name: return ((traits)&trait_solid) != 0;
-#include "present/shapes.def"
+#include "rows/shapes.def"
 #undef SHAPE
     default: return 0;
   }

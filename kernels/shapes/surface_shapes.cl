@@ -14,7 +14,7 @@ static inline LocalSurface surface_shape(uint shape, const SurfaceQuery* q) {
 #define SHAPE(name, traits) \
   case shape_##name: return surface_##name(q);
 #define COMPOUND(name, traits)
-#include "present/shapes.def"
+#include "rows/shapes.def"
 #undef SHAPE
     default: break;
   }

@@ -96,17 +96,16 @@ TEST(Flatten, PutsInTheFilesOfTheRowsOfAList) {
 }
 
 TEST(Flatten, PutsInTheRowsThatThereAre) {
-  EXPECT_EQ(flattened("#include \"present/pets.def\"\nend\n", list_of_three, {{"pets", 2}}),
+  EXPECT_EQ(flattened("#include \"rows/pets.def\"\nend\n", list_of_three, {{"pets", 2}}),
             "#line 1 \"text\"\n#line 1 \"kernels/shared/pets.def\"\n\n#ifndef FIELD\n#endif\n\n\n\nPET(dog, 2)  // "
             "barks\nFIELD(dog, y)\n\n#undef "
             "FIELD\n#line 2 \"text\"\nend\n");
-  const std::string all = flattened("#include \"present/pets.def\"\n", list_of_three, {{"others", 0}});
+  const std::string all = flattened("#include \"rows/pets.def\"\n", list_of_three, {{"others", 0}});
   for (const char* row : {"PET(cat, 1)\nFIELD(cat, x)\nPET_END(cat)", "PET(dog, 2)", "COMPOUND(herd)"})
     EXPECT_THAT(all, HasSubstr(row));
   std::string many;
   for (int i = 0; i < 65; ++i) many += "PET(p" + std::to_string(i) + ")\n";
-  EXPECT_THAT(failure("#include \"present/pets.def\"\n", {{"shared/pets.def", many}}),
-              HasSubstr("pets.def has more than 64 rows"));
+  EXPECT_THAT(failure("#include \"rows/pets.def\"\n", {{"shared/pets.def", many}}), HasSubstr("pets.def has more than 64 rows"));
 }
 
 TEST(Flatten, DefinesTheMasksOfListsThatTheTextSpeaksOf) {

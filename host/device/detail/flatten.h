@@ -24,7 +24,7 @@ using FileReader = std::function<std::optional<std::string>(const std::string& p
 ///   "shapes/{shapes}.cl"   for every row of shared/shapes.def the file with its name in place of {shapes}: shapes/capsule.cl.
 ///   Rows that
 ///                          begin with COMPOUND have none
-///   "present/shapes.def"   shared/shapes.def itself without the other rows
+///   "rows/shapes.def"   shared/shapes.def itself without the other rows
 /// A row is a line that begins with a name in capitals and a bracket; FIELD and names that end in _END continue it. For each list
 /// of `rows` of which the text speaks (CAPLET_SHAPES), its mask is defined above everything else.
 ///
