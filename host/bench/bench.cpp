@@ -73,8 +73,8 @@ struct Bench {
 };
 
 /// As a renderer builds its kernels (stage_options).
-std::string kernel_options(std::uint64_t shapes, int kind_bits) {
-  return fmt::format("-DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}", shapes, kind_bits);
+DeviceTracer tracer_for(const Device& device, int width, std::uint64_t shapes, int kind_bits) {
+  return DeviceTracer(device, width, fmt::format("-DCAPLET_LEAF_KIND_BITS={}", kind_bits), {{"shapes", shapes}});
 }
 
 int width_for(const Device& device, const Options& options) {
@@ -86,7 +86,7 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   const FlatScene scene = lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
   std::optional<Peer> peer;
   if (!same.empty() && Peer::is_there()) peer.emplace(same);
-  DeviceTracer tracer(device, width_for(device, options), kernel_options(scene.shapes, scene.leaf_kind_bits));
+  DeviceTracer tracer = tracer_for(device, width_for(device, options), scene.shapes, scene.leaf_kind_bits);
   tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
   Bench bench{line, tracer, peer ? &*peer : nullptr, scene.leaves, options.seconds, true};
   const auto camera = camera_rays(options.size);
@@ -114,7 +114,7 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
       fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}", static_cast<double>(nodes.size() * sizeof(float)) / n,
                   static_cast<double>(leaves.size() * sizeof(float)) / n));
 
-  DeviceTracer tracer(device, width_for(device, options), kernel_options(shapes, leaf_kind_bits(shapes)));
+  DeviceTracer tracer = tracer_for(device, width_for(device, options), shapes, leaf_kind_bits(shapes));
   tracer.upload(nodes, leaves, {}, tree.root);
   Bench bench{line, tracer, peer ? &*peer : nullptr, leaves, options.seconds};
   const auto camera = camera_rays(options.size);

@@ -25,9 +25,9 @@ __kernel void any_hit(ARGUMENTS, __global int* restrict out) {
 
 }  // namespace
 
-DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options)
+DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options, const RowMasks& rows)
     : device_(device),
-      program_(Program::from_source(device, "trace_test", flatten_kernels(kernels),
+      program_(Program::from_source(device, "trace_test", flatten_kernels(kernels, rows),
                                     fmt::format("-DCAPLET_REAL_WIDTH={} {}", width, options))),
       closest_(program_.kernel("closest")),
       any_(program_.kernel("any_hit")) {}

@@ -15,8 +15,8 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
-  /// width: CAPLET_REAL_WIDTH, 8 or 1. Without further options for all shapes.
-  DeviceTracer(const Device& device, int width, const std::string& options = "");
+  /// width: CAPLET_REAL_WIDTH, 8 or 1. For the shapes of `rows`.
+  DeviceTracer(const Device& device, int width, const std::string& options = "", const RowMasks& rows = {});
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
   /// Runs over the rays set before; blocks.

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "device/row_masks.h"
 
 namespace caplet {
 
@@ -146,9 +147,9 @@ class Buffer : public RawBuffer {
 /// std::logic_error for unknown names.
 std::string kernel_source(std::string_view name);
 
-/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/). Throws std::logic_error
-/// for a file that does not exist.
-std::string flatten_kernels(const std::string& text);
+/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/), for a program that has these rows
+/// of the lists: it holds the text of no others. Throws std::logic_error for a file that does not exist.
+std::string flatten_kernels(const std::string& text, const RowMasks& rows = {});
 
 enum class BinaryCache {
   automatic,  // not on PoCL, which caches by itself and would compile every kernel twice to hand out a binary

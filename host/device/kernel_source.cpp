@@ -40,7 +40,9 @@ FileReader kernel_reader() {
 
 }  // namespace
 
-std::string flatten_kernels(const std::string& text) { return flatten(text, "text", kernel_reader()); }
+std::string flatten_kernels(const std::string& text, const RowMasks& rows) {
+  return flatten(text, "text", kernel_reader(), rows);
+}
 
 std::string kernel_source(std::string_view name) {
   const std::string path = name.find('/') == std::string_view::npos ? fmt::format("stages/{}.cl", name) : std::string(name);

@@ -71,32 +71,38 @@ glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_ligh
   return r;
 }
 
-InfiniteLight make_infinite(Parameters& parameters, const glm::dmat4& world_from_light, const ImageReader& images) {
-  InfiniteLight light;
-  parameters.refuse("portal");
-  const bool has_radiance = parameters.has("L");
-  light.radiance = white(parameters, "L");
-  if (const std::string file = parameters.text("filename", ""); !file.empty()) {
-    if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
-    light.image = read_environment(parameters, file, images);
-    light.world_from_light = rotation_of(parameters, world_from_light);
-  }
-  return light;
-}
+/// Reads what scene/lights.def visits.
+struct LightReader {
+  Parameters& parameters;
+  const glm::dmat4& world_from_light;
+  const ImageReader& images;
 
-SpotLight make_spot(Parameters& parameters, const glm::dmat4& world_from_light) {
-  SpotLight light;
-  light.intensity = white(parameters, "I");
-  const glm::dvec3 from = parameters.point("from", glm::dvec3(0)), to = parameters.point("to", glm::dvec3(0, 0, 1));
-  light.position = glm::dvec3(world_from_light * glm::dvec4(from, 1));
-  light.direction = direction(parameters, from, to, world_from_light);
-  const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
-  if (!(cone > 0 && cone <= 180)) parameters.error("coneangle", "must be above 0 and at most 180 degrees");
-  if (!(delta >= 0 && delta <= cone)) parameters.error("conedeltaangle", "must lie between 0 and \"coneangle\"");
-  light.total_angle = cone * glm::pi<double>() / 180;
-  light.falloff_start_angle = (cone - delta) * glm::pi<double>() / 180;
-  return light;
-}
+  void emission(const char* name, Spectrum& value) { value = white(parameters, name); }
+  void position(const char* name, glm::dvec3& value) {
+    value = glm::dvec3(world_from_light * glm::dvec4(parameters.point(name, glm::dvec3(0)), 1));
+  }
+  void direction(const char* from, const char* to, glm::dvec3& value) {
+    value = pbrt::direction(parameters, parameters.point(from, glm::dvec3(0)), parameters.point(to, glm::dvec3(0, 0, 1)),
+                            world_from_light);
+  }
+  void cone(double& total_angle, double& falloff_start_angle) {
+    const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
+    if (!(cone > 0 && cone <= 180)) parameters.error("coneangle", "must be above 0 and at most 180 degrees");
+    if (!(delta >= 0 && delta <= cone)) parameters.error("conedeltaangle", "must lie between 0 and \"coneangle\"");
+    total_angle = cone * glm::pi<double>() / 180;
+    falloff_start_angle = (cone - delta) * glm::pi<double>() / 180;
+  }
+  void sky(InfiniteLight& light) {
+    parameters.refuse("portal");
+    const bool has_radiance = parameters.has("L");
+    light.radiance = white(parameters, "L");
+    if (const std::string file = parameters.text("filename", ""); !file.empty()) {
+      if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
+      light.image = read_environment(parameters, file, images);
+      light.world_from_light = rotation_of(parameters, world_from_light);
+    }
+  }
+};
 
 }  // namespace
 
@@ -105,19 +111,15 @@ std::optional<Light> make_light(const std::string& type, Parameters& parameters,
   Light light;
   light.where = parameters.where();
   light.scale = scale_of(parameters);
-  if (type == "point" || type == "spot") light.power = positive_or_none(parameters, "power");
-  if (type == "distant" || type == "infinite") light.illuminance = positive_or_none(parameters, "illuminance");
-  if (type == "point") {
-    const glm::dvec3 from = parameters.point("from", glm::dvec3(0));
-    light.model = PointLight{white(parameters, "I"), glm::dvec3(world_from_light * glm::dvec4(from, 1))};
-  } else if (type == "spot") {
-    light.model = make_spot(parameters, world_from_light);
-  } else if (type == "distant") {
-    const glm::dvec3 from = parameters.point("from", glm::dvec3(0)), to = parameters.point("to", glm::dvec3(0, 0, 1));
-    light.model = DistantLight{white(parameters, "L"), direction(parameters, from, to, world_from_light)};
-  } else {
-    light.model = make_infinite(parameters, world_from_light, images);
+#define LIGHT_MODEL(name, Type)                                                                                \
+  if (type == #name) {                                                                                         \
+    if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power");                   \
+    if (Type::unit == LightUnit::illuminance) light.illuminance = positive_or_none(parameters, "illuminance"); \
+    Type model;                                                                                                \
+    Type::fields(model, LightReader{parameters, world_from_light, images});                                    \
+    light.model = std::move(model);                                                                            \
   }
+#include "scene/lights.def"
   parameters.finish();
   return light;
 }

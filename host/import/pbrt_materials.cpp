@@ -78,43 +78,50 @@ double alpha_from_roughness(Parameters& parameters, const char* name, double rou
   return remap ? std::sqrt(roughness) : roughness;
 }
 
-void read_roughness(Parameters& parameters, const TextureTable& textures, double& alpha_u, double& alpha_v) {
-  const double both = parameters.number_or_texture("roughness", 0, textures);
-  const bool remap = parameters.boolean("remaproughness", true);
-  alpha_u = alpha_from_roughness(parameters, "uroughness", parameters.number_or_texture("uroughness", both, textures), remap);
-  alpha_v = alpha_from_roughness(parameters, "vroughness", parameters.number_or_texture("vroughness", both, textures), remap);
-}
+/// Reads what scene/materials.def visits.
+struct MaterialReader {
+  Parameters& parameters;
+  const TextureTable& textures;
 
-ConductorMaterial make_conductor(Parameters& parameters, const TextureTable& textures) {
-  ConductorMaterial metal;
-  const bool has_indices = parameters.has("eta") || parameters.has("k");
-  if (parameters.has("reflectance")) {
-    if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
-    metal.reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
-  } else {
-    const auto indices = [&](const char* name, const char* fallback) {
-      if (const auto given = parameters.spectrum(name, SpectrumUse::unbounded, &textures)) return *given;
-      return named_spectrum(fallback).value_or(ConstantSpectrum{1});
-    };
-    metal.eta = indices("eta", "metal-Cu-eta");
-    metal.k = indices("k", "metal-Cu-k");
+  void albedo(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::albedo, value); }
+  void unbounded(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::unbounded, value); }
+  void index(const char* name, Spectrum& value) {
+    const Parameter* given = parameters.values(name, {"float", "spectrum", "rgb", "blackbody"});
+    if (given && given->type == "float")
+      value = ConstantSpectrum{parameters.number(name, std::get<ConstantSpectrum>(value).value)};
+    else if (given)
+      value = parameters.spectrum(name, SpectrumUse::unbounded).value_or(value);
+    if (const auto* constant = std::get_if<ConstantSpectrum>(&value); constant && constant->value <= 0)
+      parameters.error(name, "must be positive");
   }
-  read_roughness(parameters, textures, metal.alpha_u, metal.alpha_v);
-  return metal;
-}
+  void number(const char* name, double& value, double low, double high) {
+    value = parameters.number_or_texture(name, value, textures);
+    if (!(value >= low && value <= high))
+      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
+  }
+  void roughness(double& alpha_u, double& alpha_v) {
+    const double both = parameters.number_or_texture("roughness", 0, textures);
+    const bool remap = parameters.boolean("remaproughness", true);
+    alpha_u = alpha_from_roughness(parameters, "uroughness", parameters.number_or_texture("uroughness", both, textures), remap);
+    alpha_v = alpha_from_roughness(parameters, "vroughness", parameters.number_or_texture("vroughness", both, textures), remap);
+  }
+  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
+    const bool has_indices = parameters.has("eta") || parameters.has("k");
+    if (parameters.has("reflectance")) {
+      if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
+      reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
+    } else {
+      eta = named_spectrum("metal-Cu-eta").value_or(ConstantSpectrum{1});
+      k = named_spectrum("metal-Cu-k").value_or(ConstantSpectrum{1});
+      unbounded("eta", eta);
+      unbounded("k", k);
+    }
+  }
 
-DielectricMaterial make_dielectric(Parameters& parameters, const TextureTable& textures) {
-  DielectricMaterial glass;
-  const Parameter* eta = parameters.values("eta", {"float", "spectrum", "rgb", "blackbody"});
-  if (eta && eta->type == "float")
-    glass.eta = ConstantSpectrum{parameters.number("eta", 1.5)};
-  else if (eta)
-    glass.eta = parameters.spectrum("eta", SpectrumUse::unbounded).value_or(ConstantSpectrum{1.5});
-  if (const auto* constant = std::get_if<ConstantSpectrum>(&glass.eta); constant && constant->value <= 0)
-    parameters.error("eta", "must be positive");
-  read_roughness(parameters, textures, glass.alpha_u, glass.alpha_v);
-  return glass;
-}
+  void spectrum(const char* name, SpectrumUse use, Spectrum& value) {
+    if (auto given = parameters.spectrum(name, use, &textures)) value = *std::move(given);
+  }
+};
 
 }  // namespace
 
@@ -174,16 +181,13 @@ Material make_material(const std::string& type, Parameters& parameters, const Te
   material.where = parameters.where();
   parameters.refuse("displacement");
   parameters.refuse("normalmap");
-  if (type == "diffuse") {
-    DiffuseMaterial diffuse;
-    if (const auto reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures))
-      diffuse.reflectance = *reflectance;
-    material.model = diffuse;
-  } else if (type == "conductor") {
-    material.model = make_conductor(parameters, textures);
-  } else {
-    material.model = make_dielectric(parameters, textures);
+#define MATERIAL_MODEL(name, Type)                             \
+  if (type == #name) {                                         \
+    Type model;                                                \
+    Type::fields(model, MaterialReader{parameters, textures}); \
+    material.model = std::move(model);                         \
   }
+#include "scene/materials.def"
   parameters.finish();
   return material;
 }

@@ -3,11 +3,12 @@
 #include "import/detail/pbrt_names.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/spelling.h"
 #include "import/detail/pbrt_lexer.h"
 #include "import/detail/pbrt_v3.h"
-#include "scene/shape.h"
+#include "scene/scene.h"
 
 namespace caplet::pbrt {
 
@@ -26,6 +27,13 @@ std::vector<std::string> shape_types() {
   return types;
 }
 
+/// Sorted; of what is refused, what has come to be rendered is left out.
+NameTable table_of(std::string directive, std::vector<std::string> accepted, std::vector<std::string> refused) {
+  std::ranges::sort(accepted);
+  std::erase_if(refused, [&](const std::string& name) { return std::ranges::binary_search(accepted, name); });
+  return {std::move(directive), std::move(accepted), std::move(refused)};
+}
+
 }  // namespace
 
 const std::vector<NameTable>& name_tables() {
@@ -39,12 +47,20 @@ const std::vector<NameTable>& name_tables() {
       {"Integrator",
        {"bdpt", "mlt", "path", "simplepath", "simplevolpath", "volpath"},
        {"ambientocclusion", "function", "lightpath", "randomwalk", "sppm"}},
-      {"LightSource", {"distant", "infinite", "point", "spot"}, {"goniometric", "projection"}},
+      table_of("LightSource",
+               {
+#define LIGHT_MODEL(name, Type) #name,
+#include "scene/lights.def"
+               },
+               {"goniometric", "projection"}),
       {"MakeNamedMedium", {}, {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}},
-      {"Material",
-       {"conductor", "dielectric", "diffuse"},
-       {"coatedconductor", "coateddiffuse", "diffusetransmission", "hair", "interface", "measured", "mix", "subsurface",
-        "thindielectric"}},
+      table_of("Material",
+               {
+#define MATERIAL_MODEL(name, Type) #name,
+#include "scene/materials.def"
+               },
+               {"coatedconductor", "coateddiffuse", "diffusetransmission", "hair", "interface", "measured", "mix", "subsurface",
+                "thindielectric"}),
       {"Option",
        {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale", "forcediffuse",
         "pixelstats", "rendercoordsys", "seed", "wavefront"},

@@ -15,7 +15,18 @@ std::uint64_t bytes_of(const T& record) {
   return sizeof(record);
 }
 
+template <class Record>
+std::uint64_t kinds_of(const std::vector<Record>& records) {
+  std::uint64_t kinds = 0;
+  for (const Record& record : records) kinds |= std::uint64_t{1} << record.kind;
+  return kinds;
+}
+
 }  // namespace
+
+std::uint64_t FlatScene::material_kinds() const { return kinds_of(materials); }
+
+std::uint64_t FlatScene::light_kinds() const { return kinds_of(lights); }
 
 std::uint64_t FlatScene::geometry_bytes() const {
   return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "lower/detail/environment.h"
+#include "lower/detail/family_data.h"
 #include "lower/detail/light_table.h"
 
 namespace caplet {
@@ -16,6 +17,15 @@ namespace caplet {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+
+template <class Model>
+constexpr std::uint32_t kind_of = light_count;
+#define LIGHT_MODEL(name, Type) \
+  template <>                   \
+  constexpr std::uint32_t kind_of<Type> = light_##name;
+// An InfiniteLight is one of two.
+enum { light_infinite = light_count };
+#include "scene/lights.def"
 
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
@@ -42,35 +52,24 @@ class LightLowering {
   // Every function fills `record` and returns the luminous power that reaches the scene. pbrt's "power" and "illuminance" replace
   // the magnitude that the spectrum (normalised to luminance 1; rgb as written) has by itself.
 
-  double lower(const PointLight& light, LightRecord& record) {
-    emit(record, light_point, light.intensity, replaced(light_->power, 4 * pi));
-    put(light.position);
-    return 4 * pi * luminance(light.intensity, record);
-  }
-
-  double lower(const SpotLight& light, LightRecord& record) {
-    const double total = std::cos(light.total_angle);
-    const double start = std::cos(std::min(light.falloff_start_angle, light.total_angle));
-    // The mean of the smooth edge is a half.
-    const double cone = 2 * pi * ((1 - start) + (start - total) / 2);
-    emit(record, light_spot, light.intensity, replaced(light_->power, cone));
-    put(light.position);
-    put(light.direction);
-    put(total);
-    put(start);
-    return cone * luminance(light.intensity, record);
-  }
-
-  double lower(const DistantLight& light, LightRecord& record) {
-    emit(record, light_distant, light.irradiance, replaced(light_->illuminance, 1));
-    put(-light.direction);
-    return pi * radius_ * radius_ * luminance(light.irradiance, record);
+  template <class Model>
+  double lower(const Model& light, LightRecord& record) {
+    record.kind = kind_of<Model>;
+    Emission emission{*this, record,
+                      Model::unit == LightUnit::power ? replaced(light_->power, light.per_unit())
+                                                      : replaced(light_->illuminance, light.per_unit())};
+    Model::fields(light, emission);
+    FamilyData data = data_of(record);
+    light.data([&](const char* field, const auto& value) { data.put(field, value); });
+    data.finish();
+    return light.power(radius_) * emission.luminance;
   }
 
   double lower(const InfiniteLight& light, LightRecord& record) {
     if (!light.image) {
       const double power = replaced(light_->power, 4 * pi * pi * radius_ * radius_);
-      emit(record, light_constant, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
+      record.kind = light_constant;
+      emit(record, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
       brightest_ = std::max(brightest_, luminance(light.radiance, record));
       return 0;  // found by BSDF sampling
     }
@@ -81,8 +80,7 @@ class LightLowering {
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
     record.scale =
         static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) put(light.world_from_light[r][c]);  // the transpose is the inverse
+    data_of(record).put_rows("light_from_world", light.world_from_light);  // the transpose is the inverse
     return of.luminance * pi * radius_ * radius_ * record.scale;
   }
 
@@ -92,17 +90,32 @@ class LightLowering {
     return of_unit > 0 ? *wanted / of_unit : 0;
   }
 
-  void emit(LightRecord& record, int kind, const Spectrum& spectrum, double factor) {
-    record.kind = static_cast<uint>(kind);
+  /// Of what scene/lights.def visits, the spectrum.
+  struct Emission {
+    LightLowering& lowering;
+    LightRecord& record;
+    double factor;
+    double luminance = 0;
+
+    void emission(const char*, const Spectrum& spectrum) {
+      lowering.emit(record, spectrum, factor);
+      luminance = lowering.luminance(spectrum, record);
+    }
+    void position(const char*, const glm::dvec3&) {}
+    void direction(const char*, const char*, const glm::dvec3&) {}
+    void cone(double, double) {}
+  };
+
+  void emit(LightRecord& record, const Spectrum& spectrum, double factor) {
     record.spectrum = spectra_.add_illuminant(spectrum);
     record.scale = static_cast<float>(light_->scale * factor);
   }
   double luminance(const Spectrum& spectrum, const LightRecord& record) const {
     return spectra_.illuminant_luminance(spectrum) * record.scale;
   }
-  void put(double value) { out_.light_data.push_back(static_cast<float>(value)); }
-  void put(const glm::dvec3& v) {
-    for (int k = 0; k < 3; ++k) put(v[k]);
+  FamilyData data_of(const LightRecord& record) {
+    out_.light_data.resize(record.data + light_floats[record.kind]);
+    return {light_fields[record.kind], &out_.light_data[record.data]};
   }
 
   SpectrumTable& spectra_;
@@ -136,9 +149,12 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     record.data = CAPLET_NONE;
     if (emitter.by_ball) {
       record.data = narrow<uint>(out.light_data.size());
-      for (const double value : emitter.ball) out.light_data.push_back(static_cast<float>(value));
+      out.light_data.resize(record.data + area_floats);
+      FamilyData data(light_fields[light_area], &out.light_data[record.data]);
+      data.put("ball_center", glm::dvec3(emitter.ball[0], emitter.ball[1], emitter.ball[2]));
+      data.put("ball_radius", emitter.ball[3]);
       // Rounded up: nothing of the shape may lie outside.
-      out.light_data.back() *= 1 + 0x1p-18f;
+      out.light_data[record.data + area_at_ball_radius] *= 1 + 0x1p-18f;
     }
     out.lights.push_back(record);
     brightest = std::max(brightest, emitter.luminance);

@@ -10,53 +10,17 @@
 #include "lower/detail/filter.h"
 #include "lower/detail/geometry.h"
 #include "lower/detail/lights.h"
+#include "lower/detail/materials.h"
 #include "lower/spectrum.h"
 
 namespace caplet {
-
-namespace {
-
-class MaterialLowering {
- public:
-  explicit MaterialLowering(SpectrumTable& spectra) : spectra_(spectra) {}
-
-  MaterialRecord operator()(const DiffuseMaterial& material) const {
-    MaterialRecord record{};
-    record.kind = material_diffuse;
-    record.reflectance = spectra_.add_reflectance(material.reflectance);
-    return record;
-  }
-  MaterialRecord operator()(const ConductorMaterial& material) const {
-    MaterialRecord record = rough(material_conductor, material.alpha_u, material.alpha_v);
-    record.eta = spectra_.add_unbounded(material.reflectance ? ConstantSpectrum{1} : material.eta);
-    record.k = material.reflectance ? spectra_.add_extinction(*material.reflectance) : spectra_.add_unbounded(material.k);
-    return record;
-  }
-  MaterialRecord operator()(const DielectricMaterial& material) const {
-    MaterialRecord record = rough(material_dielectric, material.alpha_u, material.alpha_v);
-    record.eta = spectra_.add_unbounded(material.eta);
-    if (!is_constant(material.eta)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
-    return record;
-  }
-
- private:
-  static MaterialRecord rough(int kind, double alpha_u, double alpha_v) {
-    MaterialRecord record{};
-    record.kind = static_cast<uint>(kind);
-    record.alpha_u = static_cast<float>(alpha_u);
-    record.alpha_v = static_cast<float>(alpha_v);
-    return record;
-  }
-  SpectrumTable& spectra_;
-};
-
-}  // namespace
 
 FlatScene lower(const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   FlatScene out;
   SpectrumTable spectra(out, scene.film.space);
-  for (const Material& material : scene.materials) out.materials.push_back(std::visit(MaterialLowering(spectra), material.model));
+  for (const Material& material : scene.materials)
+    out.materials.push_back(lower_material(material, narrow<uint>(out.materials.size()), spectra, out));
   const std::vector<Emitter> emitters = lower_geometry(scene, spectra, out);
   lower_lights(scene, emitters, spectra, out);
   out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

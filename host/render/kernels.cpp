@@ -86,19 +86,21 @@ std::size_t buffer_count(Stage stage) {
   return counts[static_cast<std::size_t>(stage)];
 }
 
-std::string stage_source(Stage stage) {
+std::string stage_source(Stage stage, const RowMasks& rows) {
   return flatten_kernels(
       fmt::format("#define STAGE_NAME {0}\n#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
                   "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
-                  name_of(stage), stage_groups[static_cast<std::size_t>(stage)]));
+                  name_of(stage), stage_groups[static_cast<std::size_t>(stage)]),
+      rows);
 }
 
-std::string stage_options(const FlatScene& scene, const Device& device) {
-  return fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_SHAPES=0x{:x}UL -DCAPLET_LEAF_KIND_BITS={}",
-                     device.encoding() == Encoding::wide ? 8 : 1, shapes_on_trial(scene.shapes), scene.leaf_kind_bits);
+StageOptions stage_options(const FlatScene& scene, const Device& device) {
+  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}", device.encoding() == Encoding::wide ? 8 : 1,
+                      scene.leaf_kind_bits),
+          {{"shapes", shapes_on_trial(scene.shapes)}, {"materials", scene.material_kinds()}, {"lights", scene.light_kinds()}}};
 }
 
-Kernels::Kernels(const Device& device, std::string options)
+Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device), options_(std::move(options)), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {}
 
 void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
@@ -106,7 +108,7 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
     const std::string name = name_of(stage);
-    Program program = Program::from_source(device_, name, stage_source(stage), options_);
+    Program program = Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
     program.prepare(name, local_size_of(stage), stage == Stage::sort_prefix ? 1 : most);
     compile_seconds_ += program.build_seconds();
     compile_seconds_by_stage_.emplace_back(name, program.build_seconds());

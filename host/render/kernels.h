@@ -30,16 +30,22 @@ std::span<const Stage> render_stages();
 /// Number of buffers that the stage's kernel takes.
 std::size_t buffer_count(Stage stage);
 
-/// The OpenCL C of a stage, without `#include`s.
-std::string stage_source(Stage stage);
+/// What stages are built for.
+struct StageOptions {
+  std::string compiler;  // its options: how traversal is shaped (Device::encoding)
+  RowMasks rows;         // the kinds of shapes, materials and lights that there are
 
-/// Compiler options of all stages: how traversal is shaped (Device::encoding), and which shapes it must know.
-std::string stage_options(const FlatScene& scene, const Device& device);
+  bool operator==(const StageOptions&) const = default;
+};
+StageOptions stage_options(const FlatScene& scene, const Device& device);
+
+/// The OpenCL C of a stage, without `#include`s.
+std::string stage_source(Stage stage, const RowMasks& rows = {});
 
 class Kernels {
  public:
   /// `options`: see stage_options.
-  Kernels(const Device& device, std::string options);
+  Kernels(const Device& device, StageOptions options);
 
   /// Compiles those that are not compiled yet, for launches of at most `most` work-items. Throws RunError.
   void compile(std::span<const Stage> stages, std::size_t most);
@@ -61,7 +67,7 @@ class Kernels {
     double seconds = 0;  // of its launches
   };
   Device device_;
-  std::string options_;
+  StageOptions options_;
   std::array<std::optional<Compiled>, static_cast<std::size_t>(Stage::count)> compiled_;
   bool timed_ = false;
   std::size_t local_size_ = 1;

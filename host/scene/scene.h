@@ -17,70 +17,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/light.h"
+#include "scene/material.h"
 #include "scene/shape.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
-
-// --- Materials ---
-
-struct DiffuseMaterial {
-  Spectrum reflectance = ConstantSpectrum{0.5};
-};
-/// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly smooth.
-struct ConductorMaterial {
-  Spectrum eta, k;
-  std::optional<Spectrum> reflectance;  // at normal incidence, 0..1; replaces eta and k
-  double alpha_u = 0, alpha_v = 0;
-};
-struct DielectricMaterial {
-  Spectrum eta = ConstantSpectrum{1.5};
-  double alpha_u = 0, alpha_v = 0;
-};
-
-struct Material {
-  std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial> model;
-  std::string name;
-  SourceLocation where;
-};
-
-// --- Lights other than emissive shapes ---
-
-struct PointLight {
-  Spectrum intensity = ConstantSpectrum{1};
-  glm::dvec3 position{0};  // world
-};
-struct SpotLight {
-  Spectrum intensity = ConstantSpectrum{1};
-  glm::dvec3 position{0};
-  glm::dvec3 direction{0, 0, 1};                    // unit, world, along the axis
-  double total_angle = 0.5235987755982988;          // half angle of the cone
-  double falloff_start_angle = 0.4363323129985824;  // where the smooth falloff starts (smoothstep in cos, as pbrt-v4)
-};
-struct DistantLight {
-  Spectrum irradiance = ConstantSpectrum{1};  // pbrt's L: radiance times the delta direction
-  glm::dvec3 direction{0, 0, -1};             // unit, world, the way the light travels
-};
-/// An infinite light. Image pixels are linear RGB in `space`, row-major from the top, 3 floats each.
-struct EnvironmentImage {
-  int width = 0, height = 0;
-  std::vector<float> rgb;
-  ColorSpace space = ColorSpace::srgb;
-  bool equal_area = false;  // square equal-area octahedral (pbrt-v4); otherwise latitude-longitude, 2:1, z up
-};
-struct InfiniteLight {
-  Spectrum radiance = ConstantSpectrum{1};  // without an image
-  std::shared_ptr<const EnvironmentImage> image;
-  glm::dmat3 world_from_light{1};  // rotation, possibly mirroring
-};
-
-struct Light {
-  std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> model;
-  double scale = 1;
-  std::optional<double> power;        // pbrt's "power"
-  std::optional<double> illuminance;  // pbrt's "illuminance" (distant, infinite)
-  SourceLocation where;
-};
 
 // --- Objects and instances ---
 

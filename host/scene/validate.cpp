@@ -30,7 +30,7 @@ class Validator {
   void run() {
     const SourceLocation file{scene_.source};
     for (const Material& material : scene_.materials)
-      std::visit([&](const auto& m) { check(m, material.where); }, material.model);
+      std::visit([&](const auto& m) { m.fields(m, Fields{*this, material.where}); }, material.model);
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
       for (const Shape& one : object.shapes) shape(one);
@@ -71,7 +71,7 @@ class Validator {
       error(where, "the inverse of the transform has entries beyond 1e18, where 32-bit floats end");
   }
 
-  void spectrum(const Spectrum& s, const SourceLocation& where, const char* what) {
+  void spectrum(const Spectrum& s, const SourceLocation& where, const std::string& what) {
     bool good = true;
     if (const auto* constant = std::get_if<ConstantSpectrum>(&s)) good = std::isfinite(constant->value) && constant->value >= 0;
     if (const auto* rgb = std::get_if<RgbSpectrum>(&s))
@@ -83,23 +83,49 @@ class Validator {
         good = std::isfinite(sampled->values[i]) && sampled->values[i] >= 0 && std::isfinite(sampled->wavelengths[i]) &&
                (i == 0 || sampled->wavelengths[i] > sampled->wavelengths[i - 1]);
     }
-    if (!good) error(where, std::string(what) + " is not a spectrum of finite values from 0 up");
+    if (!good) error(where, what + " is not a spectrum of finite values from 0 up");
   }
 
-  void roughness(double u, double v, const SourceLocation& where) {
-    if (!(u >= 0 && v >= 0 && std::isfinite(u) && std::isfinite(v))) error(where, "the roughness must be finite and from 0 up");
-  }
-  void check(const DiffuseMaterial& m, const SourceLocation& where) { spectrum(m.reflectance, where, "the reflectance"); }
-  void check(const ConductorMaterial& m, const SourceLocation& where) {
-    spectrum(m.eta, where, "eta");
-    spectrum(m.k, where, "k");
-    if (m.reflectance) spectrum(*m.reflectance, where, "the reflectance");
-    roughness(m.alpha_u, m.alpha_v, where);
-  }
-  void check(const DielectricMaterial& m, const SourceLocation& where) {
-    spectrum(m.eta, where, "eta");
-    roughness(m.alpha_u, m.alpha_v, where);
-  }
+  /// Of the calls of materials.def and lights.def.
+  struct Fields {
+    Validator& validator;
+    const SourceLocation& where;
+
+    void albedo(const char* name, const Spectrum& s) { validator.spectrum(s, where, "the " + std::string(name)); }
+    void unbounded(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
+    void index(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
+    void number(const char* name, double value, double low, double high) {
+      if (!(value >= low && value <= high))
+        validator.error(where, std::string(name) + " must lie between " + std::to_string(low) + " and " + std::to_string(high));
+    }
+    void roughness(double u, double v) {
+      if (!(u >= 0 && v >= 0 && std::isfinite(u) && std::isfinite(v)))
+        validator.error(where, "the roughness must be finite and from 0 up");
+    }
+    void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
+      unbounded("eta", eta);
+      unbounded("k", k);
+      if (reflectance) albedo("reflectance", *reflectance);
+    }
+
+    void emission(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
+    void position(const char*, const glm::dvec3& p) {
+      if (!finite(p)) validator.error(where, "the light's position is not finite");
+    }
+    void direction(const char*, const char*, const glm::dvec3& d) {
+      if (!finite(d)) validator.error(where, "the light's direction is not finite");
+    }
+    void cone(double, double) {}
+    void sky(const InfiniteLight& l) {
+      emission("L", l.radiance);
+      if (!l.image) return;
+      if (l.image->width <= 0 || l.image->height <= 0 ||
+          l.image->rgb.size() != 3 * static_cast<std::size_t>(l.image->width) * static_cast<std::size_t>(l.image->height))
+        return validator.error(where, "the light's image has the wrong size");
+      for (const float value : l.image->rgb)
+        if (!std::isfinite(value)) return validator.error(where, "the light's image has pixels that are not finite");
+    }
+  };
 
   /// What a geometry finds, at the place of its shape.
   class Report : public ShapeCheck {
@@ -185,28 +211,7 @@ class Validator {
 
   void light(const Light& l) {
     if (!(l.scale >= 0 && std::isfinite(l.scale))) error(l.where, "the light's scale must be finite and from 0 up");
-    if (const auto* point = std::get_if<PointLight>(&l.model)) {
-      spectrum(point->intensity, l.where, "the intensity");
-      if (!finite(point->position)) error(l.where, "the light's position is not finite");
-    } else if (const auto* spot = std::get_if<SpotLight>(&l.model)) {
-      spectrum(spot->intensity, l.where, "the intensity");
-      if (!finite(spot->position) || !finite(spot->direction)) error(l.where, "the light's position or direction is not finite");
-    } else if (const auto* distant = std::get_if<DistantLight>(&l.model)) {
-      spectrum(distant->irradiance, l.where, "L");
-      if (!finite(distant->direction)) error(l.where, "the light's direction is not finite");
-    } else {
-      infinite(std::get<InfiniteLight>(l.model), l.where);
-    }
-  }
-
-  void infinite(const InfiniteLight& l, const SourceLocation& where) {
-    spectrum(l.radiance, where, "L");
-    if (!l.image) return;
-    if (l.image->width <= 0 || l.image->height <= 0 ||
-        l.image->rgb.size() != 3 * static_cast<std::size_t>(l.image->width) * static_cast<std::size_t>(l.image->height))
-      return error(where, "the light's image has the wrong size");
-    for (float value : l.image->rgb)
-      if (!std::isfinite(value)) return error(where, "the light's image has pixels that are not finite");
+    std::visit([&](const auto& model) { model.fields(model, Fields{*this, l.where}); }, l.model);
   }
 
   void camera(const SourceLocation& file) {

@@ -5,14 +5,25 @@
 #ifndef CAPLET_BSDF_TYPES_CL
 #define CAPLET_BSDF_TYPES_CL
 
+#include "groups.cl"
+#include "math/spectrum.cl"
 #include "math/vector.cl"
-#include "shared/kinds.h"
+#include "shared/families.h"
+
+enum {
+  // Whether some material of the program's may be dispersive.
+  any_dispersive_material = 0
+#define MATERIAL(name, traits) || ((traits)&trait_dispersive) != 0
+#include "rows/materials.def"
+#undef MATERIAL
+};
 
 // Relative index so near 1 that an interface bends nothing: it is then smooth whatever its roughness, as the half vector of
 // refraction wo + eta wi vanishes.
 #define CAPLET_ETA_MATCHED 1e-4f
 
-// A BSDF at four wavelengths. eta is relative to the outside (whose index is 1); k belongs to conductors alone.
+// A BSDF at four wavelengths: what <name>_make takes from a material's data. A field is one material's or several's; eta is relative to
+// the outside (whose index is 1).
 typedef struct {
   uint kind, flags;
   float4 reflectance, eta, k;
@@ -29,5 +40,24 @@ typedef struct {
   int specular, transmitted;
   float eta_scale;
 } BsdfSample;
+
+// Roughness as GGX takes it (kinds.h).
+static inline void bsdf_roughness(Bsdf* b, float alpha_u, float alpha_v) {
+  b->alpha_u = alpha_u;
+  b->alpha_v = alpha_v;
+  if (!(alpha_u < CAPLET_ALPHA_SMOOTH && alpha_v < CAPLET_ALPHA_SMOOTH)) {
+    b->alpha_u = fmax(alpha_u, CAPLET_ALPHA_MIN);
+    b->alpha_v = fmax(alpha_v, CAPLET_ALPHA_MIN);
+  }
+}
+static inline int bsdf_is_smooth(const Bsdf* b) { return b->alpha_u < CAPLET_ALPHA_SMOOTH && b->alpha_v < CAPLET_ALPHA_SMOOTH; }
+
+// Refraction depends on the wavelength: see the head of bsdf.cl.
+static inline int bsdf_is_dispersive(const Bsdf* b) { return any_dispersive_material && (b->flags & CAPLET_MATERIAL_DISPERSIVE) != 0; }
+
+// What a scalar value of a dispersive material is at the four wavelengths.
+static inline float4 bsdf_all_wavelengths(const Bsdf* b, float4 value) {
+  return bsdf_is_dispersive(b) ? (float4)(value.x, 0.0f, 0.0f, 0.0f) : value;
+}
 
 #endif

@@ -9,8 +9,17 @@
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
 
-static inline float4 conductor_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
-  *pdf = 0.0f;
+static inline void conductor_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
+  bsdf_roughness(b, conductor_alpha_u(data), conductor_alpha_v(data));
+  // Beyond 1e4 the reflectance is 1 to 4e-4, and fourth powers stay finite.
+  b->eta = clamp(spectrum_eval(spectra, conductor_eta(data), lambda), 0.0f, 1e4f);
+  b->k = clamp(spectrum_eval(spectra, conductor_k(data), lambda), 0.0f, 1e4f);
+}
+
+static inline int conductor_is_specular(const Bsdf* b) { return bsdf_is_smooth(b); }
+
+static inline float4 conductor_eval(const Bsdf* b, int inside, float3 wo, float3 wi, float* pdf) {
+  (void)inside;
   if (!(wi.z > 0.0f)) return (float4)(0.0f);
   const float3 m = normalize(wo + wi);
   const float cos_m = dot(wo, m);
@@ -19,7 +28,8 @@ static inline float4 conductor_eval(const Bsdf* b, float3 wo, float3 wi, float* 
   return fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wi, b->alpha_u, b->alpha_v));
 }
 
-static inline int conductor_sample(const Bsdf* b, int smooth, float3 wo, float2 u, BsdfSample* s) {
+static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+  (void)inside, (void)u_component;
   s->specular = smooth;
   s->transmitted = 0;
   s->eta_scale = 1.0f;
@@ -37,5 +47,7 @@ static inline int conductor_sample(const Bsdf* b, int smooth, float3 wo, float2 
   s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(s->wi, b->alpha_u, b->alpha_v);
   return s->pdf > 0.0f;
 }
+
+static inline float4 conductor_albedo(const Bsdf* b, float3 wo) { return fresnel_conductor(fabs(wo.z), b->eta, b->k); }
 
 #endif

@@ -2,8 +2,7 @@
 // Copyright Caplet authors
 //
 // Glass and its like: GGX reflection and refraction (Walter et al. 2007), or a clear interface. wo.z > 0 (bsdf.cl mirrors the
-// frame); `eta` is the index beyond the interface over that of wo's side. Radiance is transported: refraction scales it by 1 /
-// eta^2.
+// frame). Radiance is transported: refraction scales it by 1 / eta^2.
 #ifndef CAPLET_BSDF_DIELECTRIC_CL
 #define CAPLET_BSDF_DIELECTRIC_CL
 
@@ -11,8 +10,17 @@
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
 
-static inline float dielectric_eval(const Bsdf* b, float eta, float3 wo, float3 wi, float* pdf) {
-  *pdf = 0.0f;
+static inline void dielectric_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
+  bsdf_roughness(b, dielectric_alpha_u(data), dielectric_alpha_v(data));
+  b->eta = clamp(spectrum_eval(spectra, dielectric_eta(data), lambda), 1e-2f, 1e2f);
+}
+
+static inline int dielectric_is_specular(const Bsdf* b) { return fabs(b->eta.x - 1.0f) < CAPLET_ETA_MATCHED || bsdf_is_smooth(b); }
+
+// The index beyond the interface over that of wo's side.
+static inline float dielectric_relative_eta(const Bsdf* b, int inside) { return inside ? 1.0f / b->eta.x : b->eta.x; }
+
+static inline float dielectric_value(const Bsdf* b, float eta, float3 wo, float3 wi, float* pdf) {
   const int reflected = wi.z > 0.0f;
   float3 m = reflected ? wo + wi : wo + eta * wi;
   if (wi.z == 0.0f || !(dot(m, m) > 0.0f)) return 0.0f;
@@ -33,7 +41,12 @@ static inline float dielectric_eval(const Bsdf* b, float eta, float3 wo, float3 
   return *pdf * masking / (eta * eta);
 }
 
-static inline int dielectric_sample(const Bsdf* b, int smooth, float eta, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline float4 dielectric_eval(const Bsdf* b, int inside, float3 wo, float3 wi, float* pdf) {
+  return bsdf_all_wavelengths(b, (float4)(dielectric_value(b, dielectric_relative_eta(b, inside), wo, wi, pdf)));
+}
+
+static inline int dielectric_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+  const float eta = dielectric_relative_eta(b, inside);
   const float3 m = smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
   const float cos_o = dot(wo, m);
   if (!(cos_o > 0.0f)) return 0;
@@ -62,6 +75,11 @@ static inline int dielectric_sample(const Bsdf* b, int smooth, float eta, float3
   }
   s->weight = (float4)(weight);
   return s->pdf > 0.0f && !isinf(s->pdf);
+}
+
+static inline float4 dielectric_albedo(const Bsdf* b, float3 wo) {
+  (void)b, (void)wo;
+  return (float4)(1.0f);
 }
 
 #endif

@@ -7,18 +7,34 @@
 
 #include "bsdf/bsdf_types.cl"
 
-static inline float4 diffuse_eval(const Bsdf* b, float3 wi, float* pdf) {
+static inline void diffuse_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
+  b->reflectance = spectrum_eval(spectra, diffuse_reflectance(data), lambda);
+}
+
+static inline int diffuse_is_specular(const Bsdf* b) {
+  (void)b;
+  return 0;
+}
+
+static inline float4 diffuse_eval(const Bsdf* b, int inside, float3 wo, float3 wi, float* pdf) {
+  (void)inside, (void)wo;
   *pdf = wi.z > 0.0f ? wi.z * CAPLET_INV_PI : 0.0f;
   return b->reflectance * *pdf;
 }
 
-static inline int diffuse_sample(const Bsdf* b, float2 u, BsdfSample* s) {
+static inline int diffuse_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+  (void)inside, (void)smooth, (void)wo, (void)u_component;
   s->wi = sample_cosine_hemisphere(u);
   s->pdf = s->wi.z * CAPLET_INV_PI;
   s->weight = b->reflectance;
   s->specular = s->transmitted = 0;
   s->eta_scale = 1.0f;
   return s->wi.z > 0.0f;
+}
+
+static inline float4 diffuse_albedo(const Bsdf* b, float3 wo) {
+  (void)wo;
+  return b->reflectance;
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "groups.cl"
 #include "lights/ball.cl"
 #include "lights/cylinder.cl"
+#include "lights/light_types.cl"
 #include "lights/round_cone.cl"
 #include "lights/sphere.cl"
 #include "lights/triangle.cl"
@@ -222,6 +223,23 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
     if (placed) per_area /= area_scale(scene->tree.instances + light->instance, object_n);
   }
   return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
+}
+
+static inline int area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+  AreaSample point;
+  if (!area_sample(scene, light, p, u, &point)) return 0;
+  const float3 away = point.p - p;
+  s->wi = unit_or(away, (float3)(0.0f));
+  if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
+  s->target = offset_origin(point.p, point.n, point.error, -s->wi);
+  if (!(norm1(s->target) < INFINITY)) return 0;  // the light's error bound is beyond floats
+  s->pdf = point.pdf;
+  s->radiance = light_spectrum(&scene->spectra, light, lambda, 1.0f);
+  return 1;
+}
+
+static inline float area_light_pdf(const Scene* scene, __global const LightRecord* light, float3 p, const Surface* hit, float3 wi) {
+  return area_pdf(scene, light, p, hit->p, hit->ng, wi);
 }
 
 #endif

@@ -5,12 +5,16 @@
 #ifndef CAPLET_LIGHTS_DISTANT_CL
 #define CAPLET_LIGHTS_DISTANT_CL
 
-#include "math/vector.cl"
+#include "lights/light_types.cl"
 
-// `data`: unit direction to the light. Returns what the irradiance is multiplied with.
-static inline float distant_sample(__global const float* data, float3* wi) {
-  *wi = load3(data);
-  return 1.0f;
+static inline int distant_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u,
+                                       LightSample* s) {
+  (void)u;
+  s->wi = load3(distant_direction(light_data_of(&scene->lights, light)));
+  s->target = p + s->wi;
+  s->pdf = 1.0f;
+  s->radiance = light_spectrum(&scene->spectra, light, lambda, 1.0f);
+  return 1;
 }
 
 #endif

@@ -2,30 +2,31 @@
 // Copyright Caplet authors
 //
 // All lights: choice of one by the alias table (Walker 1977, Vose 1991), sampling of it, and the densities that multiple
-// importance sampling needs. The only switch over kinds of light.
+// importance sampling needs. The only switches over kinds of light.
+//
+// A light of lights.def is a file of this folder by its name, with
+//   int NAME_light_sample(scene, light, p, lambda, u, s)      as light_sample: fills wi, target, radiance and pdf (of wi alone; delta
+//                                                             lights: 1). Not asked of what glows
+//   float NAME_light_pdf(scene, light, p, hit, wi)            surface: density that it has for wi, which meets the light at `hit`
+//   float4 NAME_light_radiance(spectra, lights, light, wi, lambda, pdf)   sky, glow: from direction wi, and the density for it (sky)
 #ifndef CAPLET_LIGHTS_LIGHTS_CL
 #define CAPLET_LIGHTS_LIGHTS_CL
 
-#include "groups.cl"
-#include "lights/area.cl"
-#include "lights/distant.cl"
-#include "lights/infinite.cl"
-#include "lights/point.cl"
-#include "lights/spot.cl"
-#include "math/spectrum.cl"
-#include "math/vector.cl"
-#include "shapes/surface.cl"
+#include "lights/light_types.cl"
+#include "lights/{lights}.cl"
 
-// wi: unit, to the light. target: end of the shadow ray of a finite light, off the light's own surface. radiance: that arrives
-// along wi unoccluded (delta lights: irradiance over cos). pdf: of wi by solid angle times the chance of the light; for delta
-// lights that chance alone. index: of the light.
-typedef struct {
-  float3 wi, target;
-  int infinite, delta;
-  uint index;
-  float4 radiance;
-  float pdf;
-} LightSample;
+enum {
+  // Whether some light of the program's may be a surface.
+  any_surface_light = 0
+#define LIGHT_MAY_BE_surface || 1
+#define LIGHT_MAY_BE_delta
+#define LIGHT_MAY_BE_far_delta
+#define LIGHT_MAY_BE_sky
+#define LIGHT_MAY_BE_glow
+#define LIGHT(name, way) LIGHT_MAY_BE_##way
+#include "rows/lights.def"
+#undef LIGHT
+};
 
 // A light with its chance of being chosen by the random number u. In whole numbers: row u n >> 32 of n, and the rest of u n
 // within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/detail/light_table.h).
@@ -38,6 +39,18 @@ static inline uint light_select(const Lights* lights, uint u, float* probability
   return chosen;
 }
 
+#define SAMPLE_LIGHT_OF(name, is_infinite, is_delta)                                             \
+  case light_##name:                                                                             \
+    s->infinite = is_infinite;                                                                   \
+    s->delta = is_delta;                                                                         \
+    if (!name##_light_sample(scene, light, p, lambda, u, s)) return 0; \
+    break;
+#define SAMPLE_LIGHT_surface(name) SAMPLE_LIGHT_OF(name, 0, 0)
+#define SAMPLE_LIGHT_delta(name) SAMPLE_LIGHT_OF(name, 0, 1)
+#define SAMPLE_LIGHT_far_delta(name) SAMPLE_LIGHT_OF(name, 1, 1)
+#define SAMPLE_LIGHT_sky(name) SAMPLE_LIGHT_OF(name, 1, 0)
+#define SAMPLE_LIGHT_glow(name)
+
 // One light sample as seen from p (world). u_select: 32 random bits; u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
 static inline int light_sample(const Scene* scene, float3 p, float4 lambda, uint u_select, float2 u, LightSample* s) {
   const Lights* lights = &scene->lights;
@@ -46,49 +59,14 @@ static inline int light_sample(const Scene* scene, float3 p, float4 lambda, uint
   s->index = light_select(lights, u_select, &chance);
   __global const LightRecord* light = lights->lights + s->index;
   if (!(chance > 0.0f)) return 0;
-  s->infinite = 0;
-  s->delta = 1;
-  s->pdf = chance;
-  float weight = 1.0f;
-  const uint data = light->data;
   switch (light->kind) {
-    case light_area: {
-      AreaSample point;
-      if (!area_sample(scene, light, p, u, &point)) return 0;
-      const float3 away = point.p - p;
-      s->wi = unit_or(away, (float3)(0.0f));
-      if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
-      s->target = offset_origin(point.p, point.n, point.error, -s->wi);
-      if (!(norm1(s->target) < INFINITY)) return 0;  // the light's error bound is beyond floats
-      s->delta = 0;
-      s->pdf = chance * point.pdf;
-      break;
-    }
-    case light_point:
-      weight = point_sample(lights->light_data + data, p, &s->wi);
-      s->target = load3(lights->light_data + data);
-      break;
-    case light_spot:
-      weight = spot_sample(lights->light_data + data, p, &s->wi);
-      s->target = load3(lights->light_data + data);
-      break;
-    case light_distant:
-      weight = distant_sample(lights->light_data + data, &s->wi);
-      s->target = p + s->wi;
-      s->infinite = 1;
-      break;
-    case light_image:
-      s->pdf = chance * image_sample(&scene->spectra, lights, light, lambda, u, &s->wi, &s->radiance);
-      s->target = p + s->wi;
-      s->infinite = 1;
-      s->delta = 0;
-      return s->pdf > 0.0f;
-    default:
-      return 0;
+#define LIGHT(name, way) SAMPLE_LIGHT_##way(name)
+#include "rows/lights.def"
+#undef LIGHT
+    default: return 0;
   }
-  if (!(weight > 0.0f)) return 0;
-  s->radiance = spectrum_eval(&scene->spectra, light->spectrum, lambda) * (light->scale * weight);
-  return 1;
+  s->pdf *= chance;
+  return s->pdf > 0.0f;
 }
 
 // Radiance of area light `light` at a point with normal ng (Surface.ng) towards wo; 0 from the dark side.
@@ -98,11 +76,53 @@ static inline float4 light_emitted(const Spectra* spectra, const Lights* lights,
   return spectrum_eval(spectra, record->spectrum, lambda) * record->scale;
 }
 
-// Density (solid angle times chance of the light) that light_sample(p) has for the unit direction wi, which meets area light
-// `light` at `hit`.
+// Density (solid angle times chance of the light) that light_sample(p) has for the unit direction wi, which meets light `light` at
+// `hit`.
 static inline float light_area_pdf(const Scene* scene, uint light, float3 p, const Surface* hit, float3 wi) {
   if (scene->lights.lighting->sampled_light_count == 0u) return 0.0f;
-  return scene->lights.light_alias[light].probability * area_pdf(scene, scene->lights.lights + light, p, hit->p, hit->ng, wi);
+  __global const LightRecord* record = scene->lights.lights + light;
+  const float chance = scene->lights.light_alias[light].probability;
+  switch (record->kind) {
+#define LIGHT_PDF_surface(name) \
+  case light_##name: return chance * name##_light_pdf(scene, record, p, hit, wi);
+#define LIGHT_PDF_delta(name)
+#define LIGHT_PDF_far_delta(name)
+#define LIGHT_PDF_sky(name)
+#define LIGHT_PDF_glow(name)
+#define LIGHT(name, way) LIGHT_PDF_##way(name)
+#include "rows/lights.def"
+#undef LIGHT
+    default: return 0.0f;
+  }
+}
+
+// Sum over infinite lights of radiance times MIS weight, for a ray of direction wi (unit) that left the scene. bsdf_pdf:
+// solid-angle density that the ray was made with; `specular`: no light sample could have made it (also camera rays).
+static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
+  float4 sum = (float4)(0.0f);
+  for (uint i = lights->lighting->infinite_begin; i < lights->lighting->light_count; ++i) {
+    __global const LightRecord* light = lights->lights + i;
+    float pdf = 0.0f;
+    switch (light->kind) {
+#define LIGHT_MET_surface(name)
+#define LIGHT_MET_delta(name)
+#define LIGHT_MET_far_delta(name)
+#define LIGHT_MET_sky(name)                                                                                \
+  case light_##name: {                                                                                     \
+    const float4 radiance = name##_light_radiance(spectra, lights, light, wi, lambda, &pdf);               \
+    pdf *= lights->lighting->sampled_light_count > 0u ? lights->light_alias[i].probability : 0.0f;         \
+    sum += radiance * (specular ? 1.0f : power_heuristic(bsdf_pdf, pdf));                                  \
+    break;                                                                                                 \
+  }
+#define LIGHT_MET_glow(name) \
+  case light_##name: sum += name##_light_radiance(spectra, lights, light, wi, lambda, &pdf); break;
+#define LIGHT(name, way) LIGHT_MET_##way(name)
+#include "rows/lights.def"
+#undef LIGHT
+      default: break;
+    }
+  }
+  return sum;
 }
 
 #endif

@@ -5,16 +5,26 @@
 #ifndef CAPLET_LIGHTS_POINT_CL
 #define CAPLET_LIGHTS_POINT_CL
 
-#include "math/vector.cl"
+#include "lights/light_types.cl"
 
-// `data`: position. Direction and squared distance to it; returns what the intensity is multiplied with (1 / distance squared),
-// 0 at the light itself, and so near to it that the square of the distance is no normal number.
-static inline float point_sample(__global const float* data, float3 p, float3* wi) {
-  const float3 away = load3(data) - p;
+// Direction to a point; returns what the intensity there is multiplied with (1 / distance squared), 0 at the point itself, and so
+// near to it that the square of the distance is no normal number.
+static inline float point_weight(float3 position, float3 p, float3* wi) {
+  const float3 away = position - p;
   const float distance_squared = dot(away, away);
   if (!(distance_squared >= FLT_MIN)) return 0.0f;
   *wi = away / sqrt(distance_squared);
   return 1.0f / distance_squared;
+}
+
+static inline int point_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+  (void)u;
+  s->target = load3(point_position(light_data_of(&scene->lights, light)));
+  s->pdf = 1.0f;
+  const float weight = point_weight(s->target, p, &s->wi);
+  if (!(weight > 0.0f)) return 0;
+  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
+  return 1;
 }
 
 #endif

@@ -15,10 +15,17 @@ static inline float spot_falloff(float cosine, float cos_total, float cos_fallof
   return t * t * (3.0f - 2.0f * t);
 }
 
-// `data`: position, axis, cos_total, cos_falloff_start. As point_sample.
-static inline float spot_sample(__global const float* data, float3 p, float3* wi) {
-  const float weight = point_sample(data, p, wi);
-  return weight > 0.0f ? weight * spot_falloff(-dot(*wi, load3(data + 3)), data[6], data[7]) : 0.0f;
+static inline int spot_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+  (void)u;
+  __global const float* data = light_data_of(&scene->lights, light);
+  s->target = load3(spot_position(data));
+  s->pdf = 1.0f;
+  float weight = point_weight(s->target, p, &s->wi);
+  if (!(weight > 0.0f)) return 0;
+  weight *= spot_falloff(-dot(s->wi, load3(spot_axis(data))), spot_cos_total(data), spot_cos_falloff_start(data));
+  if (!(weight > 0.0f)) return 0;
+  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
+  return 1;
 }
 
 #endif

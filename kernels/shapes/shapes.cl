@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All shapes and the switch over them, which holds the cases of CAPLET_SHAPES alone (shared/shapes.h): what a scene does not have costs
-// its traversal nothing.
+// The shapes that there are and the switch over them: what a scene does not have costs its traversal nothing.
 #ifndef CAPLET_SHAPES_SHAPES_CL
 #define CAPLET_SHAPES_SHAPES_CL
 
@@ -12,13 +11,12 @@
 // Lanes of the leaf block that the ray hits, where, and which side of which surface it sees.
 static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
   switch (shape) {
-#define SHAPE(name, traits)                                                            \
-  case shape_##name:                                                                   \
-    if (CAPLET_HAS_SHAPE(shape_##name)) return name##_hit(ray, block, lane, t, side); \
-    break;
-#define COMPOUND(name, traits)
-#include "shared/shapes.def"
-    SHAPE(csg, 0)
+#define SHAPE(name, traits) \
+  case shape_##name: return name##_hit(ray, block, lane, t, side);
+#define COMPOUND(name, traits) COMPOUND_CASE_##name
+#define COMPOUND_CASE_csg SHAPE(csg, 0)
+#define COMPOUND_CASE_instance
+#include "rows/shapes.def"
 #undef SHAPE
     default: break;
   }

@@ -1,35 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The spans of all shapes but csg, and the switches over them.
+// The spans of the shapes that there are, csg aside, and the switches over them.
 #ifndef CAPLET_SHAPES_SPANS_CL
 #define CAPLET_SHAPES_SPANS_CL
 
-#include "shapes/bilinear.cl"
-#include "shapes/box.cl"
-#include "shapes/capsule.cl"
-#include "shapes/cone.cl"
-#include "shapes/cylinder.cl"
-#include "shapes/disk.cl"
-#include "shapes/open_cylinder.cl"
-#include "shapes/partial_disk.cl"
-#include "shapes/partial_sphere.cl"
-#include "shapes/polyhedron.cl"
-#include "shapes/sphere.cl"
-#include "shapes/tapered_capsule.cl"
-#include "shapes/triangle.cl"
+#include "shapes/lanes.cl"
+#include "shapes/{shapes}.cl"
 
-#define COMPOUND(name, traits)
-#define SHAPE(name, traits)                                                           \
-  case shape_##name:                                                                  \
-    if (SPAN_IS_ASKED(shape_##name, traits)) return name##_span(ray, block, lane); \
+#define SHAPE(name, traits)                                                 \
+  case shape_##name:                                                        \
+    if (SPAN_IS_ASKED(traits)) return name##_span(ray, block, lane); \
     break;
 
 // The crossings of the lanes of a block with the ray's line; not for csg shapes, which have any number of them.
 static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
   switch (shape) {
-#define SPAN_IS_ASKED(kind, traits) CAPLET_HAS_SHAPE(kind)
-#include "shared/shapes.def"
+#define COMPOUND(name, traits)
+#define SPAN_IS_ASKED(traits) 1
+#include "rows/shapes.def"
 #undef SPAN_IS_ASKED
     default: break;
   }
@@ -40,8 +29,8 @@ static inline Span shape_span(uint shape, const ShapeRay* ray, __global const fl
 static inline Span solid_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
   switch (shape) {
 #define COMPOUND(name, traits)
-#define SPAN_IS_ASKED(kind, traits) (CAPLET_HAS_SHAPE(kind) && ((traits)&trait_solid) != 0)
-#include "shared/shapes.def"
+#define SPAN_IS_ASKED(traits) (((traits)&trait_solid) != 0)
+#include "rows/shapes.def"
 #undef SPAN_IS_ASKED
     default: break;
   }
@@ -54,7 +43,7 @@ static inline int shape_is_solid(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \
   case shape_##name: return ((traits)&trait_solid) != 0;
-#include "shared/shapes.def"
+#include "rows/shapes.def"
 #undef SHAPE
     default: return 0;
   }

@@ -42,13 +42,14 @@
 #define GROUP_MATERIALS             \
   GROUP_BEGIN(Materials, materials) \
   BUFFER(materials, MaterialRecord, IN) \
+  BUFFER(material_data, float, IN)  /* materials.def */ \
   GROUP_END(Materials)
 
 #define GROUP_LIGHTS                                                                                            \
   GROUP_BEGIN(Lights, lights)                                                                                   \
   BUFFER(lighting, LightingRecord, ONE)                                                                          \
   BUFFER(lights, LightRecord, IN)                                                                               \
-  BUFFER(light_data, float, IN)                                                                                 \
+  BUFFER(light_data, float, IN) /* lights.def */                                                                \
   BUFFER(light_alias, AliasRecord, IN)                                                                          \
   BUFFER(environment_texels, float, IN) /* 4 a texel: sigmoid c0 c1 c2, scale (times the illuminant) */         \
   BUFFER(environment_cdf, float, IN)    /* rows: marginal (height + 1), then height times (width + 1) conditional */ \

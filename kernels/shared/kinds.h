@@ -30,14 +30,19 @@ enum {
 };
 
 enum {
-#define MATERIAL(name) material_##name,
+#define MATERIAL(name, traits) material_##name,
 #include "shared/materials.def"
 #undef MATERIAL
   material_count
 };
 
+// Traits of materials (materials.def).
 enum {
-#define LIGHT(name) light_##name,
+  trait_dispersive = 1  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
+};
+
+enum {
+#define LIGHT(name, way) light_##name,
 #include "shared/lights.def"
 #undef LIGHT
   light_count

@@ -98,7 +98,7 @@ static void stage_item(const Stage* g, uint item) {
 
   const Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
   const float3 wo = -direction;
-  if (s.light != CAPLET_NONE) {
+  if (any_surface_light && s.light != CAPLET_NONE) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;

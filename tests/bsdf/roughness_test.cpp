@@ -18,10 +18,10 @@ const char* const kernel_text = R"CL(
 #include "bsdf/bsdf.cl"
 
 // Of the first material at normal incidence: density straight back, and whether it is a mirror.
-__kernel void straight_back(__global const MaterialRecord* materials, __global const SpectrumRecord* spectra,
-                            __global const float* spectrum_tables, __global float* out, uint count) {
+__kernel void straight_back(__global const MaterialRecord* materials, __global const float* material_data,
+                            __global const SpectrumRecord* spectra, __global const float* spectrum_tables, __global float* out, uint count) {
   if (get_global_id(0) >= count) return;
-  const Materials all = {materials};
+  const Materials all = {materials, material_data};
   const Spectra values = {spectra, spectrum_tables};
   const Bsdf b = bsdf_make(&all, &values, 0, (float4)(550.0f));
   const float3 up = (float3)(0.0f, 0.0f, 1.0f);
@@ -52,13 +52,15 @@ Straight straight_back(double alpha_u, double alpha_v) {
   static const Program program = Program::from_source(device, "roughness", flatten_kernels(kernel_text), "");
   const Buffer<MaterialRecord> materials(device, std::span<const MaterialRecord>(flat.materials));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));
-  const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)), out(device, 2);
+  const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)),
+      data(device, std::span<const float>(flat.material_data)), out(device, 2);
   cl::Kernel kernel = program.kernel("straight_back");
   kernel.setArg(0, materials.handle());
-  kernel.setArg(1, spectra.handle());
-  kernel.setArg(2, tables.handle());
-  kernel.setArg(3, out.handle());
-  kernel.setArg(4, cl_uint{1});
+  kernel.setArg(1, data.handle());
+  kernel.setArg(2, spectra.handle());
+  kernel.setArg(3, tables.handle());
+  kernel.setArg(4, out.handle());
+  kernel.setArg(5, cl_uint{1});
   launch(device, kernel, 1, 1);
   const std::vector<float> values = out.read();
   return {values[0], values[1] != 0};

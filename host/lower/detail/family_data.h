@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The floats of one material or light, by the names of their fields in materials.def and lights.def.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string_view>
+
+#include "shared/families.h"
+
+namespace caplet {
+
+/// Writes fields to `to`, which has room for all of them. Every field is to be put once: `finish` throws std::logic_error where
+/// one was not, and `put` where there is no such field or it is of another size.
+class FamilyData {
+ public:
+  FamilyData(std::span<const FamilyField> fields, float* to) : fields_(fields), to_(to) {}
+  void put(std::string_view name, double value);
+  void put(std::string_view name, const glm::dvec3& v);
+  void put_index(std::string_view name, std::uint32_t index);          // a spectrum
+  void put_rows(std::string_view name, const glm::dmat3& transposed);  // a turn, whose rows are the columns of `transposed`
+  void finish() const;
+
+ private:
+  float* field(std::string_view name, std::uint32_t floats);
+  std::span<const FamilyField> fields_;
+  float* to_;
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace caplet

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <optional>
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly smooth.
+struct ConductorMaterial {
+  Spectrum eta, k;
+  std::optional<Spectrum> reflectance;  // at normal incidence, 0..1; replaces eta and k
+  double alpha_u = 0, alpha_v = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.metal(self.eta, self.k, self.reflectance);
+    visit.roughness(self.alpha_u, self.alpha_v);
+  }
+};
+
+}  // namespace caplet

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// Roughness as of ConductorMaterial.
+struct DielectricMaterial {
+  Spectrum eta = ConstantSpectrum{1.5};
+  double alpha_u = 0, alpha_v = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.index("eta", self.eta);
+    visit.roughness(self.alpha_u, self.alpha_v);
+  }
+};
+
+}  // namespace caplet

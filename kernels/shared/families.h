@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Where the data of materials and lights lie in material_data and light_data, and what their lists say of them. Valid as OpenCL C 1.2
+// and as C++.
+#ifndef CAPLET_SHARED_FAMILIES_H
+#define CAPLET_SHARED_FAMILIES_H
+
+#include "shared/kinds.h"
+
+#ifdef __cplusplus
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <string_view>
+namespace caplet {
+#endif
+
+#define CAPLET_FLOATS_OF_scalar 1
+#define CAPLET_FLOATS_OF_vector 3
+#define CAPLET_FLOATS_OF_turn 9
+#define CAPLET_FLOATS_OF_spectrum 1
+
+// spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each.
+enum {
+#define MATERIAL(name, traits) name##_before_floats = -1,
+#define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
+#define MATERIAL_END(name) name##_floats,
+#include "shared/materials.def"
+#undef MATERIAL
+#define LIGHT(name, way) name##_before_floats = -1,
+#define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
+#define LIGHT_END(name) name##_floats,
+#include "shared/lights.def"
+#undef LIGHT
+  family_floats_end
+};
+
+// spot_axis(data): vectors and turns as a pointer to their first float.
+#ifdef __cplusplus
+#define CAPLET_DATA const float*
+#define CAPLET_ACCESSOR(type) constexpr type
+#define CAPLET_BITS(value) std::bit_cast<std::uint32_t>(value)
+#define CAPLET_UINT std::uint32_t
+#else
+#define CAPLET_DATA __global const float*
+#define CAPLET_ACCESSOR(type) static inline type
+#define CAPLET_BITS(value) as_uint(value)
+#define CAPLET_UINT uint
+#endif
+#define CAPLET_FIELD_scalar(function, at) \
+  CAPLET_ACCESSOR(float) function(CAPLET_DATA data) { return data[at]; }
+#define CAPLET_FIELD_vector(function, at) \
+  CAPLET_ACCESSOR(CAPLET_DATA) function(CAPLET_DATA data) { return data + (at); }
+#define CAPLET_FIELD_turn(function, at) CAPLET_FIELD_vector(function, at)
+#define CAPLET_FIELD_spectrum(function, at) \
+  CAPLET_ACCESSOR(CAPLET_UINT) function(CAPLET_DATA data) { return CAPLET_BITS(data[at]); }
+#define MATERIAL(name, traits)
+#define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
+#include "shared/materials.def"
+#undef MATERIAL
+#define LIGHT(name, way)
+#define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
+#include "shared/lights.def"
+#undef LIGHT
+#undef CAPLET_DATA
+#undef CAPLET_ACCESSOR
+#undef CAPLET_BITS
+#undef CAPLET_UINT
+#undef CAPLET_FIELD_scalar
+#undef CAPLET_FIELD_vector
+#undef CAPLET_FIELD_turn
+#undef CAPLET_FIELD_spectrum
+
+#ifdef __cplusplus
+
+/// A field of a material or light.
+struct FamilyField {
+  std::string_view name;
+  std::uint32_t at, floats;
+};
+
+#define MATERIAL(name, traits) inline constexpr FamilyField name##_field_list[] = {
+#define LIGHT(name, way) inline constexpr FamilyField name##_field_list[] = {
+#define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
+#define MATERIAL_END(name) {}};
+#define LIGHT_END(name) {}};
+#include "shared/materials.def"
+#define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
+#include "shared/lights.def"
+#undef MATERIAL
+#undef LIGHT
+
+/// A kind's fields; without the last of each list, which is empty.
+inline constexpr std::span<const FamilyField> material_fields[] = {
+#define MATERIAL(name, traits) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
+#include "shared/materials.def"
+#undef MATERIAL
+};
+inline constexpr std::span<const FamilyField> light_fields[] = {
+#define LIGHT(name, way) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
+#include "shared/lights.def"
+#undef LIGHT
+};
+inline constexpr std::uint32_t material_floats[] = {
+#define MATERIAL(name, traits) name##_floats,
+#include "shared/materials.def"
+#undef MATERIAL
+};
+inline constexpr std::uint32_t light_floats[] = {
+#define LIGHT(name, way) name##_floats,
+#include "shared/lights.def"
+#undef LIGHT
+};
+inline constexpr std::uint32_t material_traits[] = {
+#define MATERIAL(name, traits) traits,
+#include "shared/materials.def"
+#undef MATERIAL
+};
+static_assert(material_count <= 64 && light_count <= 64, "masks have 64 bits");
+
+}  // namespace caplet
+#endif
+#endif
