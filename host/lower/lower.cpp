@@ -8,9 +8,7 @@
 #include "base/check.h"
 #include "lower/camera.h"
 #include "lower/detail/filter.h"
-#include "lower/detail/geometry.h"
-#include "lower/detail/lights.h"
-#include "lower/spectrum.h"
+#include "lower/detail/lowering.h"
 
 namespace caplet {
 
@@ -52,16 +50,19 @@ class MaterialLowering {
 
 }  // namespace
 
-FlatScene lower(const Scene& scene) {
-  const auto start = std::chrono::steady_clock::now();
-  FlatScene out;
-  SpectrumTable spectra(out, scene.film.space);
-  for (const Material& material : scene.materials) out.materials.push_back(std::visit(MaterialLowering(spectra), material.model));
-  const std::vector<Emitter> emitters = lower_geometry(scene, spectra, out);
-  lower_lights(scene, emitters, spectra, out);
-  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return out;
+MaterialRecord lower_material(const Material& material, SpectrumTable& spectra) {
+  return std::visit(MaterialLowering(spectra), material.model);
 }
+
+Lowering::Lowering(const Scene& scene) : spectra(flat, scene.film.space) {
+  const auto start = std::chrono::steady_clock::now();
+  for (const Material& material : scene.materials) flat.materials.push_back(lower_material(material, spectra));
+  geometry = lower_geometry(scene, spectra, flat);
+  lower_lights(scene, geometry.emitters, spectra, environment, flat);
+  flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+FlatScene lower(const Scene& scene) { return std::move(Lowering(scene).flat); }
 
 FlatView lower_view(const Scene& scene) {
   FlatView out;
