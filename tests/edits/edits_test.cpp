@@ -303,7 +303,7 @@ class OneEdit : public testing::Test {
       if (const Shape& shape = edited.live.scene().shapes[i]; shape.emission)
         (std::holds_alternative<CapsulesShape>(shape.geometry) ? lit_capsule : lit_tube).shape = i;
   }
-  /// Made in place, and of a picture that shows it.
+  /// Made in place.
   void expect_in_place(const SceneEdit& edit, const std::string& what) {
     edited.edit(edit);
     EXPECT_EQ(edited.live.lowerings(), 1u) << what;
@@ -330,7 +330,7 @@ TEST_F(OneEdit, ALight) {
   Light light = edited.live.scene().lights[1];
   light.scale = 4;
   expect_in_place(LightEdit{1, light}, "light");
-  expect_in_place(TransformEdit{lit_tube, glm::translate(dmat4(1), dvec3(0, 0, 1.5))}, "an emissive tube");
+  expect_in_place(TransformEdit{lit_capsule, glm::translate(dmat4(1), dvec3(0, 0, 1.5))}, "an emissive capsule is moved");
 }
 
 TEST_F(OneEdit, ATransform) {

@@ -58,8 +58,11 @@ struct ShapeExtent {
   Lengths begin, end;
 };
 
-/// Shapes of the world or of one object.
+/// Shapes of the world or of one object. Parts stay where they are when this is moved; a copy would refer to the first's.
 struct LoweredShapes {
+  LoweredShapes() = default;
+  LoweredShapes(LoweredShapes&&) = default;
+  LoweredShapes& operator=(LoweredShapes&&) = default;
   std::deque<Part> parts;  // the first holds what is baked into the common space; then one for each transform that cannot be
   std::vector<ShapeExtent> extents;  // by shape
 };
