@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "base/spelling.h"
+#include "film/develop.h"
 #include "library/detail/inside.h"
 
 namespace caplet::v0 {
@@ -29,32 +31,63 @@ Film& Film::operator=(const Film&) = default;
 Film& Film::operator=(Film&&) noexcept = default;
 Film::~Film() = default;
 
-int Film::width() const { return data_->image.data_width; }
-int Film::height() const { return data_->image.data_height; }
-int Film::x() const { return data_->image.x; }
-int Film::y() const { return data_->image.y; }
-int Film::samples_per_pixel() const { return data_->samples_per_pixel; }
+const Film::Data& Film::developed() const {
+  std::call_once(data_->once, [&] {
+    caplet::Scene settings;
+    settings.film = data_->settings;
+    LayeredImage image = develop(data_->film, settings, data_->film.layout().layers);
+    image.metadata = data_->notes;
+    data_->image = std::move(image);
+  });
+  return *data_;
+}
+
+int Film::width() const { return data_->film.layout().window.width; }
+int Film::height() const { return data_->film.layout().window.height; }
+int Film::x() const { return data_->film.layout().window.x; }
+int Film::y() const { return data_->film.layout().window.y; }
+int Film::samples_per_pixel() const { return static_cast<int>(data_->film.samples(0)); }
+
+std::vector<SampleRange> Film::samples() const {
+  std::vector<SampleRange> out;
+  for (const FilmPart& part : data_->film.parts()) out.push_back({part.sample_begin, part.sample_count});
+  std::ranges::sort(out, {}, &SampleRange::first);
+  return out;
+}
+
+void Film::add(const Film& other) {
+  caplet::Film sum = data_->film;
+  sum.add(other.data_->film);
+  *this = Inside::film(std::move(sum), data_->settings, data_->notes, data_->render_seconds + other.data_->render_seconds);
+}
+
+void Film::save(const std::filesystem::path& file) const { data_->film.save(file); }
+
+Film Film::load(const std::filesystem::path& file, const Scene& scene) {
+  const caplet::Scene& model = *Inside::model(scene);
+  return Inside::film(caplet::Film::load(file), model.film, {{"caplet.scene", model.source}}, 0);
+}
 
 std::vector<std::string> Film::channels() const {
   std::vector<std::string> out;
-  for (const Channel& channel : data_->image.channels) out.push_back(channel.name);
+  for (const Channel& channel : developed().image.channels) out.push_back(channel.name);
   return out;
 }
 
 std::vector<float> Film::values(const std::string& channel) const {
-  const Channel& found = channel_of(data_->image, channel);
+  const Channel& found = channel_of(developed().image, channel);
   if (found.floats.empty()) throw InputError(fmt::format("channel '{}' holds ids", channel));
   return found.floats;
 }
 
 std::vector<std::uint32_t> Film::ids(const std::string& channel) const {
-  const Channel& found = channel_of(data_->image, channel);
+  const Channel& found = channel_of(developed().image, channel);
   if (found.uints.empty()) throw InputError(fmt::format("channel '{}' holds no ids", channel));
   return found.uints;
 }
 
 void Film::write_exr(const std::filesystem::path& file) const {
-  const LayeredImage& image = data_->image;
+  const LayeredImage& image = developed().image;
   const std::uint64_t bytes = std::uint64_t{4} * image.channels.size() * static_cast<std::uint64_t>(image.data_width) *
                               static_cast<std::uint64_t>(image.data_height);
   caplet::write_exr(file, image, compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
@@ -63,7 +96,7 @@ void Film::write_exr(const std::filesystem::path& file) const {
 void Film::write_preview(const std::filesystem::path& file) const {
   check_preview_format(file, "preview");
   check_preview_size(file, width(), height(), "preview");
-  caplet::write_preview(file, data_->image);
+  caplet::write_preview(file, developed().image);
 }
 
 }  // namespace caplet::v0

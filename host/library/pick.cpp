@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "library/detail/inside.h"
+#include "library/detail/questions.h"
 #include "lower/camera.h"
 #include "lower/identity.h"
 #include "lower/lower.h"
@@ -54,52 +55,58 @@ std::optional<Hit> to_nearest(const PickRecord& pick, const caplet::Scene& scene
 
 }  // namespace
 
+std::optional<Hit> Questions::pixel(int x, int y) const {
+  check_pixel({x, y}, scene.film);
+  try_device(device, {.shapes = shapes, .nearest = true});
+  const RayRecord ray = ray_of_pixel(scene, x, y);
+  return to_nearest(query.closest(std::span(&ray, 1)).front(), scene);
+}
+
+std::vector<std::optional<Hit>> Questions::nearest(std::span<const Ray> rays) const {
+  try_device(device, {.shapes = shapes, .nearest = true});
+  std::vector<std::optional<Hit>> out;
+  if (rays.empty()) return out;
+  out.reserve(rays.size());
+  for (const PickRecord& pick : query.closest(to_records(rays))) out.push_back(to_nearest(pick, scene));
+  return out;
+}
+
+std::vector<std::vector<Hit>> Questions::all(std::span<const Ray> rays, std::size_t most) const {
+  if (most < 1 || most > max_query_capacity)
+    throw InputError(fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
+  try_device(device, {.shapes = shapes, .lists = true});
+  std::vector<std::vector<Hit>> out(rays.size());
+  if (rays.empty()) return out;
+  const HitLists lists = query.all(to_records(rays), most);
+  if (!lists.overflowed.empty())
+    throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0], most, lists.overflowed.size()));
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) out[i].push_back(to_hit(lists.crossings[k], scene));
+  return out;
+}
+
 struct Picker::Data {
-  Data(std::shared_ptr<const caplet::Scene> model, const caplet::Device& on)
-      : scene(std::move(model)), flat(lower(*scene)), device(on), query(flat, on) {}
+  Data(std::shared_ptr<const caplet::Scene> model, const FlatScene& flat, const caplet::Device& on)
+      : scene(std::move(model)), shapes(flat.shapes), device(on), query(flat, on) {}
+  Questions questions() { return {query, *scene, shapes, device}; }
 
   std::shared_ptr<const caplet::Scene> scene;
-  FlatScene flat;
+  std::uint64_t shapes;
   caplet::Device device;
   Query query;
 };
 
 Picker::Picker(const Scene& scene, const Device& device)
-    : data_(std::make_unique<Data>(Inside::model(scene), Inside::device(device))) {}
+    : data_(std::make_unique<Data>(Inside::model(scene), lower(*Inside::model(scene)), Inside::device(device))) {}
 Picker::Picker(Picker&&) noexcept = default;
 Picker& Picker::operator=(Picker&&) noexcept = default;
 Picker::~Picker() = default;
 
-std::optional<Hit> Picker::pixel(int x, int y) {
-  check_pixel({x, y}, data_->scene->film);
-  try_device(data_->device, {.shapes = data_->flat.shapes, .nearest = true});
-  const RayRecord ray = ray_of_pixel(*data_->scene, x, y);
-  return to_nearest(data_->query.closest(std::span(&ray, 1)).front(), *data_->scene);
-}
-
+std::optional<Hit> Picker::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Picker::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
-
-std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) {
-  try_device(data_->device, {.shapes = data_->flat.shapes, .nearest = true});
-  std::vector<std::optional<Hit>> out;
-  if (rays.empty()) return out;
-  out.reserve(rays.size());
-  for (const PickRecord& pick : data_->query.closest(to_records(rays))) out.push_back(to_nearest(pick, *data_->scene));
-  return out;
-}
-
+std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) { return data_->questions().nearest(rays); }
 std::vector<std::vector<Hit>> Picker::all(std::span<const Ray> rays, std::size_t most) {
-  if (most < 1 || most > max_query_capacity)
-    throw InputError(fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
-  try_device(data_->device, {.shapes = data_->flat.shapes, .lists = true});
-  std::vector<std::vector<Hit>> out(rays.size());
-  if (rays.empty()) return out;
-  const HitLists lists = data_->query.all(to_records(rays), most);
-  if (!lists.overflowed.empty())
-    throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0], most, lists.overflowed.size()));
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) out[i].push_back(to_hit(lists.crossings[k], *data_->scene));
-  return out;
+  return data_->questions().all(rays, most);
 }
 
 }  // namespace caplet::v0

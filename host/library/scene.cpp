@@ -4,6 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "base/spelling.h"
 #include "library/detail/inside.h"
 #include "present/film_window.h"
 
@@ -13,12 +19,88 @@ namespace {
 
 constexpr int most_samples = 1 << 24, most_events = 1 << 16;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
+// A session that is further behind takes the scene as a whole.
+constexpr std::size_t most_logged = 1 << 16;
+
+caplet::Spectrum to_model(const Spectrum& spectrum) {
+  if (const auto* value = std::get_if<double>(&spectrum)) return ConstantSpectrum{*value};
+  if (const auto* rgb = std::get_if<Rgb>(&spectrum)) return RgbSpectrum{{rgb->r, rgb->g, rgb->b}, ColorSpace::srgb};
+  const std::string& name = std::get<std::string>(spectrum);
+  if (const auto found = named_spectrum(name)) return *found;
+  throw InputError(
+      fmt::format("there is no spectrum '{}'; the nearest is '{}'", name, nearest_name(name, named_spectrum_names())));
+}
+
+struct MaterialToModel {
+  using Model = decltype(caplet::Material::model);
+  Model operator()(const Diffuse& m) const { return DiffuseMaterial{to_model(m.reflectance)}; }
+  Model operator()(const Conductor& m) const {
+    ConductorMaterial out;
+    out.eta = to_model(m.eta);
+    out.k = to_model(m.k);
+    if (m.reflectance) out.reflectance = to_model(*m.reflectance);
+    out.alpha_u = m.roughness_u;
+    out.alpha_v = m.roughness_v;
+    return out;
+  }
+  Model operator()(const Dielectric& m) const { return DielectricMaterial{to_model(m.eta), m.roughness_u, m.roughness_v}; }
+};
+
+glm::dmat4 to_model(const Transform& rows) {
+  glm::dmat4 out(1);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) out[c][r] = rows[static_cast<std::size_t>(4 * r + c)];
+  return out;
+}
+
+Transform to_public(const glm::dmat4& m) {
+  Transform rows;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows[static_cast<std::size_t>(4 * r + c)] = m[c][r];
+  return rows;
+}
+
+/// Shapes of the world are numbered first, then those of each object.
+ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape) {
+  std::size_t left = shape;
+  if (left < scene.shapes.size()) return {{}, shape};
+  left -= scene.shapes.size();
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    const std::size_t count = scene.objects[object].shapes.size();
+    if (left < count) return {static_cast<std::uint32_t>(object), static_cast<std::uint32_t>(left)};
+    left -= count;
+  }
+  throw InputError(fmt::format("there is no shape {}, counted from 0", shape));
+}
+
+template <class T>
+const T& at(const std::vector<T>& values, std::size_t number, const char* what) {
+  if (number < values.size()) return values[number];
+  throw InputError(fmt::format("there is no {} {}, of {} counted from 0", what, number, values.size()));
+}
+
+glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+std::uint64_t next_serial() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
+void Scene::Data::edit(const SceneEdit& edit) {
+  apply_edit(model, edit);
+  if (edits.size() == most_logged) {
+    edits.clear();
+    origin = next_serial();
+  } else {
+    edits.push_back({next_serial(), edit});
+  }
+}
 
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
   if (value < least || value > most) throw InputError(fmt::format("{}: {} is not within {} to {}", what, value, least, most));
 }
-
-}  // namespace
 
 Scene::Scene(std::shared_ptr<Data> data) : data_(std::move(data)) {}
 Scene::Scene(const Scene&) = default;
@@ -41,7 +123,7 @@ std::map<std::string, std::uint64_t> Scene::primitives() const { return count_pr
 
 std::vector<std::string> Scene::materials() const {
   std::vector<std::string> out;
-  for (const Material& material : data_->model.materials) out.push_back(material.name);
+  for (const caplet::Material& material : data_->model.materials) out.push_back(material.name);
   return out;
 }
 
@@ -70,5 +152,101 @@ void Scene::set_max_depth(int events) {
 
 std::uint32_t Scene::seed() const { return data_->model.sampler.seed; }
 void Scene::set_seed(std::uint32_t seed) { changed().model.sampler.seed = seed; }
+
+std::vector<std::string> Scene::shapes() const {
+  std::vector<std::string> out;
+  for (const Shape& shape : data_->model.shapes) out.push_back(shape.name);
+  for (const Object& object : data_->model.objects)
+    for (const Shape& shape : object.shapes) out.push_back(shape.name);
+  return out;
+}
+
+std::uint32_t Scene::shape(const std::string& name) const {
+  const std::vector<std::string> names = shapes();
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    throw InputError(fmt::format("there is no shape '{}'; the nearest is '{}'", name, nearest_name(name, names)));
+  if (std::find(found + 1, names.end(), name) != names.end())
+    throw InputError(fmt::format("several shapes are named '{}'", name));
+  return static_cast<std::uint32_t>(found - names.begin());
+}
+
+std::size_t Scene::capsules(std::uint32_t shape) const {
+  const auto* capsules = std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
+  return capsules ? capsules->p0.size() : 0;
+}
+
+Capsule Scene::capsule(std::uint32_t shape, std::size_t capsule) const {
+  const caplet::Capsule found = capsule_at(data_->model, place_of(data_->model, shape), capsule);
+  return {{found.p0.x, found.p0.y, found.p0.z}, {found.p1.x, found.p1.y, found.p1.z}, found.radius0, found.radius1};
+}
+
+void Scene::set_capsule(std::uint32_t shape, std::size_t capsule, const Capsule& to) {
+  const auto vector = [](const std::array<float, 3>& v) { return glm::vec3(v[0], v[1], v[2]); };
+  const caplet::Capsule model{vector(to.p0), vector(to.p1), to.radius0, to.radius1};
+  changed().edit(CapsuleEdit{place_of(data_->model, shape), capsule, model});
+}
+
+Transform Scene::transform(std::uint32_t shape) const {
+  return to_public(shape_at(data_->model, place_of(data_->model, shape)).world_from_object);
+}
+void Scene::set_transform(std::uint32_t shape, const Transform& to) {
+  changed().edit(TransformEdit{place_of(data_->model, shape), to_model(to)});
+}
+
+std::size_t Scene::instances() const { return data_->model.instances.size(); }
+Transform Scene::instance(std::uint32_t instance) const {
+  return to_public(at(data_->model.instances, instance, "instance").world_from_object);
+}
+void Scene::set_instance(std::uint32_t instance, const Transform& to) { changed().edit(InstanceEdit{instance, to_model(to)}); }
+
+void Scene::set_material(std::uint32_t material, const Material& to) {
+  changed().edit(MaterialEdit{material, std::visit(MaterialToModel{}, to)});
+}
+
+std::size_t Scene::lights() const { return data_->model.lights.size(); }
+double Scene::light_scale(std::uint32_t light) const { return at(data_->model.lights, light, "light").scale; }
+
+void Scene::set_light(std::uint32_t light, const Spectrum& color, double scale) {
+  Light to = at(data_->model.lights, light, "light");
+  to.scale = scale;
+  const caplet::Spectrum spectrum = to_model(color);
+  if (auto* point = std::get_if<PointLight>(&to.model)) point->intensity = spectrum;
+  if (auto* spot = std::get_if<SpotLight>(&to.model)) spot->intensity = spectrum;
+  if (auto* distant = std::get_if<DistantLight>(&to.model)) distant->irradiance = spectrum;
+  if (auto* infinite = std::get_if<InfiniteLight>(&to.model)) infinite->radiance = spectrum;
+  changed().edit(LightEdit{light, to});
+}
+
+void Scene::set_emission(std::uint32_t shape, const Spectrum& radiance, double scale) {
+  const ShapeAt place = place_of(data_->model, shape);
+  const Shape& found = shape_at(data_->model, place);
+  if (!found.emission) throw InputError(found.where, "the shape is no light");
+  AreaEmission to = *found.emission;
+  to.radiance = to_model(radiance);
+  to.scale = scale;
+  changed().edit(EmissionEdit{place, to});
+}
+
+void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up) {
+  const glm::dvec3 forward = glm::normalize(to_vector(target) - to_vector(eye));
+  const glm::dvec3 sideways = glm::cross(glm::normalize(to_vector(up)), forward);
+  if (!(glm::length(sideways) > 1e-6))
+    throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");
+  const glm::dvec3 right = glm::normalize(sideways);
+  ViewEdit view = view_of(data_->model);
+  view.camera.world_from_camera = glm::dmat4(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0),
+                                             glm::dvec4(forward, 0), glm::dvec4(to_vector(eye), 1));
+  apply_edit(changed().model, view);
+  changed().model.automatic_camera = false;
+}
+
+double Scene::fov() const { return glm::degrees(data_->model.camera.fov); }
+void Scene::set_fov(double degrees) {
+  ViewEdit view = view_of(data_->model);
+  view.camera.fov = glm::radians(degrees);
+  apply_edit(changed().model, view);
+  changed().model.automatic_camera = false;
+}
 
 }  // namespace caplet::v0

@@ -49,23 +49,11 @@ ExactBox exact_box(const FlatPrimitive& p) {
   return kept_box(p);
 }
 
-/// The box of every point the shape kernels may report for rays from nearby: their error is at most 16 eps (size + coordinates),
-/// eps = 2^-24, so 2^-20 of that is added, and the result rounded outward. The part that grows with the distance of a ray's
-/// origin is the slab test's (kernels/trace/trace.cl).
 bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
-  const ExactBox box = exact_box(p);
-  double reach = 0;
-  for (std::size_t k = 0; k < 3; k++)
-    reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k]), 2 * (box.max[k] - box.min[k])});
-  const double pad = reach * 0x1p-20;
+  const ReferenceBox box = reference_box(p);
   bvh::Reference r{};
-  const double largest = double(std::numeric_limits<float>::max());
-  for (std::size_t k = 0; k < 3; k++) {
-    r.min[k] = std::nextafter(static_cast<float>(std::clamp(box.min[k] - pad, -largest, largest)), -inf);
-    r.max[k] = std::nextafter(static_cast<float>(std::clamp(box.max[k] + pad, -largest, largest)), inf);
-    r.min[k] = std::max(r.min[k], -std::numeric_limits<float>::max());
-    r.max[k] = std::min(r.max[k], std::numeric_limits<float>::max());
-  }
+  std::copy_n(box.min, 3, r.min);
+  std::copy_n(box.max, 3, r.max);
   r.primitive = index;
   r.group = p.shape;
   return r;
@@ -91,6 +79,25 @@ void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits) {
     throw InputError(fmt::format("the scene needs {} rows of primitives, the layout holds {}: about {} million capsules", rows,
                                  most, most / 8 * 6 / 1000000));
   if (nodes > max_nodes) throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
+}
+
+// The kernels' error is at most 16 eps (size + coordinates) for rays from nearby, eps = 2^-24, so 2^-20 of that is added. The
+// part that grows with the distance of a ray's origin is the slab test's (kernels/trace/trace.cl).
+ReferenceBox reference_box(const FlatPrimitive& p) {
+  const ExactBox box = exact_box(p);
+  double reach = 0;
+  for (std::size_t k = 0; k < 3; k++)
+    reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k]), 2 * (box.max[k] - box.min[k])});
+  const double pad = reach * 0x1p-20;
+  ReferenceBox r{};
+  const double largest = double(std::numeric_limits<float>::max());
+  for (std::size_t k = 0; k < 3; k++) {
+    r.min[k] = std::nextafter(static_cast<float>(std::clamp(box.min[k] - pad, -largest, largest)), -inf);
+    r.max[k] = std::nextafter(static_cast<float>(std::clamp(box.max[k] + pad, -largest, largest)), inf);
+    r.min[k] = std::max(r.min[k], -std::numeric_limits<float>::max());
+    r.max[k] = std::min(r.max[k], std::numeric_limits<float>::max());
+  }
+  return r;
 }
 
 void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {

@@ -24,6 +24,12 @@ struct EncodedTree {
 /// The exact box of a primitive in its tree's space: min, then max.
 void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
 
+/// What the tree's boxes are the unions of: the box of every point that the shape kernels may report, rounded outward.
+struct ReferenceBox {
+  float min[3], max[3];
+};
+ReferenceBox reference_box(const FlatPrimitive& p);
+
 /// Rows of leaf blocks that so many primitives of each kind (shapes.def) take at the very least.
 std::uint64_t least_rows(std::span<const std::uint64_t> counts);
 /// Bits that leaf references need for these kinds (bit k: shape kind k), the program option CAPLET_LEAF_KIND_BITS: 4, and more

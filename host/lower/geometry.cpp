@@ -6,18 +6,14 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_access.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <map>
-#include <numbers>
 #include <span>
 
 #include "base/check.h"
-#include "lower/detail/area.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
-#include "lower/encode.h"
 
 namespace caplet {
 
@@ -25,21 +21,6 @@ namespace {
 
 using Matrix = glm::dmat4;
 using glm::dvec3;
-
-/// What one tree holds: primitives in its space, and where emissive ones come from.
-struct Part {
-  Matrix placed{1};  // object_from_part
-  uint flags = 0;    // of its instances
-  std::vector<FlatPrimitive> primitives;
-  std::vector<const Shape*> shapes;  // those that gave primitives
-  struct Emissive {
-    std::size_t first, count;  // a range of `primitives`
-    const Shape* shape;
-  };
-  std::vector<Emissive> emissive;
-  std::size_t emitter_count = 0;
-  EncodedTree tree;
-};
 
 std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) { return mesh.triangles; }
 std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) { return mesh.patches; }
@@ -69,120 +50,62 @@ Mesh with_uvs(Mesh mesh) {
   return out;
 }
 
-void write_matrix(float* rows, const Matrix& m) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
+/// A mirroring transform turns normals that follow the winding, but not those of disks and solids.
+bool turns_normals(const Shape& shape, const Matrix& m) {
+  const bool wound =
+      std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
+  return shape.reverse_orientation != (wound && glm::determinant(glm::dmat3(m)) < 0);
+}
+
+/// InstanceRecord.flags that hide what a one-sided shape does not show. Open shapes are seen from where their normal points.
+uint unseen_sides(const Shape& shape, const Matrix& m) {
+  if (!shape.one_sided) return 0;
+  return !is_closed(shape) && turns_normals(shape, m) ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
 }
 
 class GeometryLowering {
  public:
   GeometryLowering(const Scene& scene, SpectrumTable& spectra, FlatScene& out) : scene_(scene), spectra_(spectra), out_(out) {}
 
-  std::vector<Emitter> run() {
+  LoweredGeometry run() {
     check_counts();
-    std::vector<Part> world = lower_shapes(scene_.shapes, 0);
-    std::vector<std::vector<Part>> objects;
-    auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
-    for (const Object& object : scene_.objects) objects.push_back(lower_shapes(object.shapes, object_number));
+    LoweredGeometry lowered;
+    lowered.world = lower_shapes(scene_.shapes, 0);
+    const auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
+    for (const Object& object : scene_.objects) lowered.objects.push_back(lower_shapes(object.shapes, object_number));
 
-    find_shapes(world, objects);
+    find_shapes(lowered);
+    std::deque<Part>& world = lowered.world.parts;
     Part& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
       encode(world[i]);
-      place(world[i], world[i].placed, CAPLET_NONE, top);
+      place(world[i], world[i].placed, CAPLET_NONE, top, lowered.placed);
     }
-    for (std::vector<Part>& parts : objects)
-      for (Part& part : parts)
+    for (LoweredShapes& object : lowered.objects)
+      for (Part& part : object.parts)
         if (!part.primitives.empty()) encode(part);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Instance& instance = scene_.instances[i];
-      for (const Part& part : objects[instance.object])
+      for (const Part& part : lowered.objects[instance.object].parts)
         if (!part.primitives.empty())
-          place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(object_number + i), top);
+          place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(i), top, lowered.placed);
     }
     if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
-    std::vector<Emitter> emitters = emitters_of(top, CAPLET_NONE, Matrix(1));
-    for (const Placed& placed : placed_) {
+    add_emitters(top, CAPLET_NONE, Matrix(1), lowered.emitters);
+    for (const Placed& placed : lowered.placed) {
       if (placed.part->emitter_count == 0) continue;
-      out_.instances[placed.instance].light_base = narrow<uint>(emitters.size());
-      const std::vector<Emitter> more = emitters_of(*placed.part, placed.instance, placed.world_from_part);
-      emitters.insert(emitters.end(), more.begin(), more.end());
+      out_.instances[placed.instance].light_base = narrow<uint>(lowered.emitters.size());
+      add_emitters(*placed.part, placed.instance, placed.world_from_part, lowered.emitters);
     }
     out_.world.root = top.tree.root;
-    set_bounds(top.tree);
+    set_world_bounds(top.tree, out_.world);
     out_.primitive_count = 0;
     for (const auto& [kind, count] : count_primitives(scene_)) out_.primitive_count += count;
     out_.bvh_depth = std::max(out_.bvh_depth, top.tree.depth);
     out_.bvh_sah = top.tree.sah;
-    return emitters;
-  }
-
- private:
-  struct Placed {
-    const Part* part;
-    uint instance;
-    Matrix world_from_part;
-  };
-
-  /// Counted before memory is taken for them: only capsules and meshes can have too many primitives.
-  void check_counts() const {
-    std::array<std::uint64_t, shape_count> counts{};
-    const auto add = [&](const Shape& shape) {
-      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) counts[shape_sphere] += capsules->p0.size();
-      if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) counts[shape_triangle] += mesh->triangles.size();
-      if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) counts[shape_bilinear] += mesh->patches.size();
-    };
-    for (const Shape& shape : scene_.shapes) add(shape);
-    for (const Object& object : scene_.objects)
-      for (const Shape& shape : object.shapes) add(shape);
-    check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
-  }
-
-  /// FlatScene::shapes: every kind that is to be encoded, and those within csg shapes.
-  void find_shapes(const std::vector<Part>& world, const std::vector<std::vector<Part>>& objects) {
-    out_.shapes = 0;
-    const auto add = [&](const std::vector<Part>& parts) {
-      for (const Part& part : parts)
-        for (const FlatPrimitive& p : part.primitives) {
-          out_.shapes |= shape_bit(p.shape);
-          if (p.shape == shape_csg) out_.shapes |= csg_operand_shapes(p, out_.leaves);
-        }
-    };
-    add(world);
-    for (const std::vector<Part>& parts : objects) add(parts);
-    if (world.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
-    kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
-  }
-
-  /// One part for what is baked into the shapes' common space, then one for each transform that cannot be.
-  std::vector<Part> lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
-    std::vector<Part> parts(1);
-    std::map<std::pair<std::array<double, 16>, uint>, std::size_t> by_space;
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const Shape& shape = shapes[i];
-      if (std::holds_alternative<CsgShape>(shape.geometry) && bounds_of(shape).empty()) continue;
-      Part* part = &parts[0];
-      Matrix baked = shape.world_from_object;
-      const uint unseen = unseen_sides(shape);
-      const bool stays = !bakes(shape);
-      if (stays || unseen != 0) {
-        const Matrix placed = stays ? shape.world_from_object : Matrix(1);
-        std::array<double, 16> key;
-        for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = placed[k / 4][k % 4];
-        const auto [found, fresh] = by_space.emplace(std::pair(key, unseen), parts.size());
-        if (fresh) {
-          parts.emplace_back();
-          parts.back().placed = placed;
-          parts.back().flags = unseen;
-        }
-        part = &parts[found->second];
-        if (stays) baked = Matrix(1);
-      }
-      lower_shape(shape, baked, object_begin + narrow<std::uint32_t>(&shape - shapes.data()), *part);
-    }
-    return parts;
+    return lowered;
   }
 
   void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Part& part) {
@@ -205,24 +128,78 @@ class GeometryLowering {
     std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
     const std::size_t count = part.primitives.size() - first;
     if (shape.emission && count > 0) {
-      part.emissive.push_back({first, count, &shape});
+      part.emissive.push_back({first, count, &shape, part.emitter_count});
       part.emitter_count += count;
     }
     part.shapes.push_back(&shape);
   }
 
-  /// InstanceRecord.flags that hide what a one-sided shape does not show. Open shapes are seen from where their normal points.
-  static uint unseen_sides(const Shape& shape) {
-    if (!shape.one_sided) return 0;
-    return !is_closed(shape) && turns_normals(shape, shape.world_from_object) ? CAPLET_INSTANCE_NO_ENTERING
-                                                                              : CAPLET_INSTANCE_NO_LEAVING;
+ private:
+  /// Counted before memory is taken for them: only capsules and meshes can have too many primitives.
+  void check_counts() const {
+    std::array<std::uint64_t, shape_count> counts{};
+    const auto add = [&](const Shape& shape) {
+      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) counts[shape_sphere] += capsules->p0.size();
+      if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) counts[shape_triangle] += mesh->triangles.size();
+      if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) counts[shape_bilinear] += mesh->patches.size();
+    };
+    for (const Shape& shape : scene_.shapes) add(shape);
+    for (const Object& object : scene_.objects)
+      for (const Shape& shape : object.shapes) add(shape);
+    check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
   }
 
-  /// A mirroring transform turns normals that follow the winding, but not those of disks and solids.
-  static bool turns_normals(const Shape& shape, const Matrix& m) {
-    const bool wound =
-        std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
-    return shape.reverse_orientation != (wound && glm::determinant(glm::dmat3(m)) < 0);
+  /// FlatScene::shapes: every kind that is to be encoded, and those within csg shapes.
+  void find_shapes(const LoweredGeometry& lowered) {
+    out_.shapes = 0;
+    const auto add = [&](const LoweredShapes& shapes) {
+      for (const Part& part : shapes.parts)
+        for (const FlatPrimitive& p : part.primitives) {
+          out_.shapes |= shape_bit(p.shape);
+          if (p.shape == shape_csg) out_.shapes |= csg_operand_shapes(p, out_.leaves);
+        }
+    };
+    add(lowered.world);
+    for (const LoweredShapes& object : lowered.objects) add(object);
+    if (lowered.world.parts.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
+  }
+
+  Lengths lengths() const {
+    return {out_.geometries.size(),   out_.primitive_geometry.size(), out_.surface_materials.size(),
+            out_.mesh_indices.size(), out_.mesh_normals.size(),       out_.mesh_uvs.size(),
+            out_.leaves.size()};
+  }
+
+  LoweredShapes lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
+    LoweredShapes lowered;
+    lowered.parts.emplace_back();
+    lowered.extents.resize(shapes.size());
+    std::map<std::pair<std::array<double, 16>, uint>, Part*> by_space;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Shape& shape = shapes[i];
+      if (std::holds_alternative<CsgShape>(shape.geometry) && bounds_of(shape).empty()) continue;
+      Part* part = &lowered.parts[0];
+      const PartKey own = part_key(shape, shape.world_from_object);
+      if (!own.is_common()) {
+        std::array<double, 16> key;
+        for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = own.placed[k / 4][k % 4];
+        const auto [found, fresh] = by_space.emplace(std::pair(key, own.flags), nullptr);
+        if (fresh) {
+          found->second = &lowered.parts.emplace_back();
+          found->second->placed = own.placed;
+          found->second->flags = own.flags;
+        }
+        part = found->second;
+      }
+      ShapeExtent& extent = lowered.extents[i];
+      extent.part = part;
+      extent.first = part->primitives.size();
+      extent.begin = lengths();
+      lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i), *part);
+      extent.end = lengths();
+    }
+    return lowered;
   }
 
   /// Rows of surface_materials where a shape's surfaces differ; CAPLET_NONE where they do not.
@@ -385,124 +362,29 @@ class GeometryLowering {
     out_.bvh_depth = std::max(out_.bvh_depth, part.tree.depth);
   }
 
-  void place(const Part& part, const Matrix& world_from_part, std::uint32_t object, Part& top) {
-    InstanceRecord record{};
-    const Matrix part_from_world = glm::inverse(world_from_part);
-    write_matrix(record.object_from_world, part_from_world);
-    write_matrix(record.world_from_object, world_from_part);
-    record.root = part.tree.root;
-    record.light_base = CAPLET_NONE;
-    record.object = object;
-    record.flags = part.flags;
-    if (glm::determinant(glm::dmat3(world_from_part)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
+  void place(const Part& part, const Matrix& world_from_part, std::uint32_t scene_instance, Part& top,
+             std::vector<Placed>& placed) {
     const auto index = narrow<uint>(out_.instances.size());
-    out_.instances.push_back(record);
-
-    const Bounds box = placed_bounds(part, world_from_part);
+    const auto shapes = narrow<std::uint32_t>(scene_.shapes.size());
+    out_.instances.push_back(
+        instance_record(part, world_from_part, scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
+    placed.push_back({&part, index, world_from_part, scene_instance, top.primitives.size()});
     FlatPrimitive& p = top.primitives.emplace_back();
     p = FlatPrimitive{shape_instance, index, {}};
-    double largest = 0;
-    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
-    // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on either side: 32 units are
-    // ample.
-    const double slack = 32 * 0x1p-24 * largest;
-    for (int k = 0; k < 3; ++k) {
-      p.kept_box()[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
-      p.kept_box()[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
-    }
-    placed_.push_back({&part, index, world_from_part});
+    set_instance_box(part, world_from_part, p);
   }
 
-  /// Bounds of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
-  static Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
-    Bounds box;
-    if (part.primitives.size() <= 256) {
-      for (const Shape* shape : part.shapes) {
-        Shape moved = *shape;
-        // A part with a transform of its own holds its shapes in their object space.
-        moved.world_from_object = part.placed == Matrix(1) ? world_from_part * shape->world_from_object : world_from_part;
-        box.extend(bounds_of(moved));
-      }
-      return box;
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-      dvec3 p;
-      for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? part.tree.max[k] : part.tree.min[k];
-      box.extend(apply_point(world_from_part, p));
-    }
-    return box;
-  }
-
-  std::vector<Emitter> emitters_of(const Part& part, uint instance, const Matrix& world_from_part) {
-    std::vector<Emitter> out;
-    std::vector<double> areas;
+  void add_emitters(const Part& part, uint instance, const Matrix& world_from_part, std::vector<Emitter>& emitters) {
     for (const Part::Emissive& emissive : part.emissive) {
-      const AreaEmission& emission = *emissive.shape->emission;
-      double total_area = 0;
-      areas.clear();
-      for (std::size_t i = 0; i < emissive.count; ++i) {
-        areas.push_back(placed_area(part.primitives[emissive.first + i], out_.leaves, world_from_part, emission.surfaces));
-        total_area += areas.back();
-      }
-      Emitter emitter{};
-      emitter.group = group_++;
-      emitter.instance = instance;
-      emitter.two_sided = emission.two_sided;
-      emitter.spectrum = spectra_.add_illuminant(emission.radiance);
-      const double luminance = spectra_.illuminant_luminance(emission.radiance);
-      emitter.scale = emission.scale;
-      if (emission.power) {
-        // pbrt-v4: the power of a light of radiance 1, whatever the colour.
-        const double sides = emission.two_sided ? 2 : 1;
-        emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
-      }
-      emitter.luminance = luminance * emitter.scale;
-      for (std::size_t i = 0; i < emissive.count; ++i) {
-        const std::size_t at = emissive.first + i;
-        emitter.slot = part.tree.slots[at];
-        emitter.geometry = out_.primitive_geometry[part.primitives[at].id];
-        emitter.area = areas[i];
-        set_ball(part.primitives[at], world_from_part, emitter);
-        // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
-        if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
-        out.push_back(emitter);
-      }
+      emitters.resize(emitters.size() + emissive.count);
+      set_emitters(part, emissive, instance, world_from_part, group_++, spectra_, out_,
+                   &emitters[emitters.size() - emissive.count]);
     }
-    return out;
-  }
-
-  /// The ball around the image of the primitive's box, for kinds that are sampled by it.
-  static void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
-    const bool has_round_end =
-        p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
-    emitter.by_ball = !shape_has(p.shape, trait_own_light) || has_round_end;
-    if (!emitter.by_ball) return;
-    double low[3], high[3];
-    primitive_box(p, low, high);
-    const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_part, 0.5 * (a + b));
-    double radius = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
-      radius = std::max(radius, glm::length(apply_point(world_from_part, x) - center));
-    }
-    for (int k = 0; k < 3; ++k) emitter.ball[k] = center[k];
-    // The centre is rounded to floats.
-    emitter.ball[3] = radius + 0x1p-23 * glm::length(center);
-  }
-
-  void set_bounds(const EncodedTree& tree) {
-    dvec3 low(tree.min[0], tree.min[1], tree.min[2]), high(tree.max[0], tree.max[1], tree.max[2]);
-    const dvec3 center = (low + high) * 0.5;
-    out_.world.center_x = static_cast<float>(center.x);
-    out_.world.center_y = static_cast<float>(center.y);
-    out_.world.center_z = static_cast<float>(center.z);
-    out_.world.radius = static_cast<float>(glm::length(high - low) * 0.5);
   }
 
   const Scene& scene_;
   SpectrumTable& spectra_;
   FlatScene& out_;
-  std::vector<Placed> placed_;
   bool reversed_ = false;  // of the shape being appended
   std::uint32_t group_ = 0;
   int kind_bits_ = 0;  // of leaf references
@@ -510,8 +392,21 @@ class GeometryLowering {
 
 }  // namespace
 
-std::vector<Emitter> lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
+PartKey part_key(const Shape& shape, const Matrix& m) {
+  // One part for what is baked into the shapes' common space, then one for each transform that cannot be.
+  const bool stays = !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
+  return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
+}
+
+LoweredGeometry lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
   return GeometryLowering(scene, spectra, out).run();
+}
+
+Part lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object, SpectrumTable& spectra,
+                       FlatScene& out) {
+  Part part;
+  GeometryLowering(scene, spectra, out).lower_shape(shape, baked, object, part);
+  return part;
 }
 
 }  // namespace caplet

@@ -30,7 +30,8 @@ enum { light_infinite = light_count };
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
  public:
-  LightLowering(SpectrumTable& spectra, FlatScene& out) : spectra_(spectra), out_(out), radius_(out.world.radius) {}
+  LightLowering(SpectrumTable& spectra, LoweredEnvironment& environment, FlatScene& out)
+      : spectra_(spectra), environment_(environment), out_(out), radius_(out.world.radius) {}
 
   /// Luminance of the radiance of the brightest light so far, spread over all directions and the scene where it has none.
   double brightest() const { return brightest_; }
@@ -74,7 +75,11 @@ class LightLowering {
       return 0;  // found by BSDF sampling
     }
     if (out_.lighting.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
-    const EnvironmentIntegrals of = lower_environment(*light.image, out_);
+    if (environment_.image != light.image) environment_ = {light.image, lower_environment(*light.image, out_)};
+    out_.lighting.environment_width = narrow<uint>(light.image->width);
+    out_.lighting.environment_height = narrow<uint>(light.image->height);
+    out_.lighting.environment_square = light.image->equal_area ? 1 : 0;
+    const EnvironmentIntegrals& of = environment_.integrals;
     record.kind = light_image;
     record.spectrum = spectra_.add_illuminant(RgbSpectrum{glm::dvec3(1), light.image->space});
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
@@ -119,6 +124,7 @@ class LightLowering {
   }
 
   SpectrumTable& spectra_;
+  LoweredEnvironment& environment_;
   FlatScene& out_;
   const double radius_;
   double brightest_ = 0;
@@ -129,7 +135,8 @@ bool is_infinite(const Light& light) { return std::holds_alternative<InfiniteLig
 
 }  // namespace
 
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out) {
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
+                  LoweredEnvironment& environment, FlatScene& out) {
   out.lights.clear();
   out.light_data.clear();
   out.lighting.environment_width = out.lighting.environment_height = out.lighting.environment_square = 0;
@@ -161,12 +168,17 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
   }
-  LightLowering lowering(spectra, out);
+  LightLowering lowering(spectra, environment, out);
   for (const Light& light : scene.lights)
     if (!is_infinite(light)) lowering.add(light, shares);
   out.lighting.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
     if (is_infinite(light)) lowering.add(light, shares);
+  if (out.lighting.environment_width == 0) {
+    environment = {};
+    out.environment_texels.clear();
+    out.environment_cdf.clear();
+  }
   out.lighting.radiance = static_cast<float>(std::max(brightest, lowering.brightest()));
   out.lighting.light_count = narrow<uint>(out.lights.size());
   out.light_alias = light_table(shares);

@@ -8,24 +8,21 @@
 #include "base/check.h"
 #include "lower/camera.h"
 #include "lower/detail/filter.h"
-#include "lower/detail/geometry.h"
-#include "lower/detail/lights.h"
+#include "lower/detail/lowering.h"
 #include "lower/detail/materials.h"
-#include "lower/spectrum.h"
 
 namespace caplet {
 
-FlatScene lower(const Scene& scene) {
+Lowering::Lowering(const Scene& scene) : spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
-  FlatScene out;
-  SpectrumTable spectra(out, scene.film.space);
   for (const Material& material : scene.materials)
-    out.materials.push_back(lower_material(material, narrow<uint>(out.materials.size()), spectra, out));
-  const std::vector<Emitter> emitters = lower_geometry(scene, spectra, out);
-  lower_lights(scene, emitters, spectra, out);
-  out.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return out;
+    flat.materials.push_back(lower_material(material, narrow<uint>(flat.materials.size()), spectra, flat));
+  geometry = lower_geometry(scene, spectra, flat);
+  lower_lights(scene, geometry.emitters, spectra, environment, flat);
+  flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+FlatScene lower(const Scene& scene) { return std::move(Lowering(scene).flat); }
 
 FlatView lower_view(const Scene& scene) {
   FlatView out;

@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "render/buffers.h"
 
+#include <algorithm>
+
 namespace caplet {
 
 namespace {
@@ -19,6 +21,34 @@ std::span<const T> contents(const std::vector<T>& values) {
 template <class T>
 std::span<const T> contents(const T& record) {
   return {&record, 1};
+}
+
+// Changes nearer to each other than this are sent as one: a call costs more than so many bytes.
+constexpr std::size_t joined_bytes = 256;
+// What a grown buffer has beyond its contents: a quarter of them, and this at most.
+constexpr std::size_t most_spare_bytes = std::size_t{1} << 20;
+
+/// Returns the bytes sent.
+template <class T>
+std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRanges& changed, bool all, Buffer<T>& to) {
+  if (now.size() > to.size()) {
+    const std::size_t spare = std::min(now.size() / 4, most_spare_bytes / sizeof(T));
+    to = {};  // the old one makes room first
+    to = Buffer<T>(device, now.size() + spare);
+    all = true;
+  }
+  if (all) {
+    to.write(now);
+    return now.size_bytes();
+  }
+  std::uint64_t bytes = 0;
+  for (ChangedRange range : changed.joined(joined_bytes / sizeof(T))) {
+    range.end = std::min(range.end, now.size());
+    if (range.begin >= range.end) continue;
+    to.RawBuffer::write(&now[range.begin], range.begin * sizeof(T), (range.end - range.begin) * sizeof(T));
+    bytes += (range.end - range.begin) * sizeof(T);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -44,6 +74,14 @@ PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t so
   layers.path_layers = Buffer<float>(device, paths * floats_per_path(of_film));
   sort.sort_bins = Buffer<uint>(device, sort_bins);
   counters.counters = Buffer<uint>(device, std::size_t{counter_count});
+}
+
+std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, const SceneChanges& changes) {
+  std::uint64_t bytes = 0;
+#define BUFFER(name, type, access) bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
+  SCENE_GROUPS
+#undef BUFFER
+  return bytes;
 }
 #undef GROUP_BEGIN
 #undef GROUP_END

@@ -10,6 +10,7 @@
 
 #include "device/device.h"
 #include "film/film.h"
+#include "lower/changes.h"
 #include "lower/flat_scene.h"
 #include "shared/groups.h"
 #include "shared/records.h"
@@ -47,6 +48,8 @@ struct SceneBuffers {
   SCENE_GROUPS
 
   SceneBuffers(const Device& device, const FlatScene& scene);
+  /// Sends what has changed, and returns its bytes. Buffers that have grown are made anew, with some room to grow on.
+  std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
   void bind(Bindings& bindings) const;
 };
 

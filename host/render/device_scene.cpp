@@ -2,15 +2,29 @@
 // Copyright Caplet authors
 #include "render/device_scene.h"
 
+#include <utility>
+
 namespace caplet {
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
     : device_(device),
+      options_(stage_options(scene, device)),
       buffers_(device, scene),
-      kernels_(device, stage_options(scene, device)),
+      kernels_(device, options_),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),
       bvh_nodes_(scene.bvh_nodes) {}
+
+void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
+  bytes_updated_ += buffers_.update(device_, scene, changes);
+  world_ = scene.world;
+  light_radiance_ = scene.lighting.radiance;
+  bvh_nodes_ = scene.bvh_nodes;
+  if (StageOptions options = stage_options(scene, device_); options != options_) {
+    kernels_ = Kernels(device_, options);
+    options_ = std::move(options);
+  }
+}
 
 Bindings DeviceScene::bindings() const {
   Bindings out;

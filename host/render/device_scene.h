@@ -5,6 +5,7 @@
 #pragma once
 
 #include "device/device.h"
+#include "lower/changes.h"
 #include "lower/flat_scene.h"
 #include "render/buffers.h"
 #include "render/kernels.h"
@@ -15,6 +16,13 @@ class DeviceScene {
  public:
   /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError when it does not fit.
   DeviceScene(const Device& device, const FlatScene& scene);
+
+  /// Sends what differs: `scene` is the one that was sent last, but for `changes`. Buffers that have grown are made anew, and so
+  /// are the kernels when the scene needs others. Renderers on this are to be reset; queries go on. Throws RunError when it does
+  /// not fit, and then this scene is of no more use.
+  void update(const FlatScene& scene, const SceneChanges& changes);
+  /// Bytes that updates have sent.
+  std::uint64_t bytes_updated() const { return bytes_updated_; }
 
   const Device& device() const { return device_; }
   Kernels& kernels() { return kernels_; }
@@ -29,11 +37,13 @@ class DeviceScene {
 
  private:
   Device device_;
+  StageOptions options_;
   SceneBuffers buffers_;
   Kernels kernels_;
   WorldRecord world_;
   float light_radiance_ = 0;
   std::uint64_t bvh_nodes_ = 0;
+  std::uint64_t bytes_updated_ = 0;
 };
 
 }  // namespace caplet

@@ -28,6 +28,11 @@ uint sort_bits_for(std::size_t rays) {
   return static_cast<uint>(std::clamp(static_cast<int>(bits), 0, 6));
 }
 
+/// CAPLET_NONE: sorting does not pay.
+uint sort_bits_of(const DeviceScene& scene, std::size_t batch_paths) {
+  return scene.bvh_nodes() >= sorting_pays_from_nodes ? sort_bits_for(batch_paths) : CAPLET_NONE;
+}
+
 std::size_t bins_of(uint sort_bits) { return sort_bits == CAPLET_NONE ? 1 : std::size_t{8} << (3 * sort_bits); }
 
 Window window_of(const ViewRecord& view) {
@@ -68,14 +73,17 @@ Film DeviceFilm::read(int first, int rows) const {
 Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options)
     : scene_(scene),
       batch_paths_(chosen_batch_paths(scene.device(), options.batch_paths, options.most_paths)),
-      sort_bits_(scene.bvh_nodes() >= sorting_pays_from_nodes ? sort_bits_for(batch_paths_) : CAPLET_NONE),
+      sort_bits_(sort_bits_of(scene, batch_paths_)),
       layers_(options.layers),
       paths_(scene.device(), batch_paths_, bins_of(sort_bits_), layers_) {
   reset(view);
-  scene.kernels().compile(render_stages(), batch_paths_);
 }
 
 void Renderer::reset(const FlatView& view) {
+  if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
+    sort_bits_ = sort_bits;
+    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), bins_of(sort_bits_));
+  }
   sensor_ = SensorBuffers(scene_.device(), view);
   FilmLayout layout;
   layout.width = narrow<int>(view.view.width);
@@ -92,6 +100,7 @@ void Renderer::reset(const FlatView& view) {
   film_.layout = layout;
   film_.parts.clear();
   film_.words.clear();
+  scene_.kernels().compile(render_stages(), batch_paths_);
 }
 
 void Renderer::clear_counters() {

@@ -45,7 +45,7 @@ class Renderer {
   /// Renders `scene`, which must outlive this, as `view` shows it. Compiles what is not compiled yet. Throws RunError.
   Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options = {});
 
-  /// Another view of the scene as it now is; the film is empty again.
+  /// Another view of the scene as it now is (DeviceScene::update); the film is empty again. Compiles what is not compiled yet.
   void reset(const FlatView& view);
 
   /// Adds samples [sample_begin, sample_begin + sample_count) of every pixel of `window`, which lies within the film's.

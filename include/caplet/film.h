@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A rendered picture with its layers.
+// A film: the exact sums of the samples of a picture, and the picture with its layers that they make.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,16 @@
 
 #include "caplet/error.h"
 #include "caplet/export.h"
+#include "caplet/scene.h"
 
 CAPLET_BEGIN
 
+/// Samples [first, first + count) of every pixel.
+struct SampleRange {
+  std::uint32_t first = 0, count = 0;
+};
+
+/// The same samples make the same film, to the bit, in whatever order and by however many devices of one kind and runs they came.
 class CAPLET_API Film {
  public:
   Film(const Film&);
@@ -30,6 +37,17 @@ class CAPLET_API Film {
   int y() const;
   /// That were finished.
   int samples_per_pixel() const;
+  /// Which they are.
+  std::vector<SampleRange> samples() const;
+
+  /// Adds the samples of another film of the same scene, view and layers. Throws InputError, and changes nothing, when it is of
+  /// another, or has samples that are here already.
+  void add(const Film& other);
+  /// The sums as an EXR file that `load` takes. The file is replaced as a whole, or is as it was. Throws RunError.
+  void save(const std::filesystem::path& file) const;
+  /// `scene`: of which the film is; it says the picture's exposure and colours. Throws InputError when the file is missing,
+  /// broken or no film.
+  static Film load(const std::filesystem::path& file, const Scene& scene);
 
   /// "R", "G", "B", "A", "Z", "albedo.R", "N.X", "P.X", "variance.R", ... and "object.id", "primitive.id".
   std::vector<std::string> channels() const;
@@ -48,6 +66,7 @@ class CAPLET_API Film {
   friend struct Inside;
   struct Data;
   explicit Film(std::shared_ptr<const Data> data);
+  const Data& developed() const;
   std::shared_ptr<const Data> data_;
 };
 

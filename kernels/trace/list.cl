@@ -9,6 +9,7 @@
 
 // The list of one ray while it is made: the nearest crossings so far, in order.
 typedef struct {
+  const Tree* tree;
   __global HitRecord* sorted;
   uint capacity, count;
   int more;       // some were left out
@@ -16,13 +17,12 @@ typedef struct {
   float t_begin;  // nor do those at or before this t
 } HitList;
 
-// By t; leaving before entering, so that solids that touch are not nested for an instant; then slot, instance, surface.
-static inline int hit_is_before(const HitRecord* a, __global const HitRecord* b) {
+// By t; leaving before entering, so that solids that touch are not nested for an instant; then tie_is_before, surface.
+static inline int hit_is_before(const Tree* tree, const HitRecord* a, __global const HitRecord* b) {
   if (a->t != b->t) return a->t < b->t;
   const uint a_leaves = a->surface & CAPLET_LEAVING, b_leaves = b->surface & CAPLET_LEAVING;
   if (a_leaves != b_leaves) return a_leaves != 0;
-  if (a->slot != b->slot) return a->slot < b->slot;
-  if (a->instance != b->instance) return a->instance < b->instance;
+  if (a->slot != b->slot || a->instance != b->instance) return tie_is_before(tree, a->slot, a->instance, b->slot, b->instance);
   return a->surface < b->surface;
 }
 
@@ -36,12 +36,12 @@ static inline void list_add(HitList* list, float t, uint slot, uint instance, ui
   uint place = list->count;
   if (place == list->capacity) {
     list->more = 1;
-    if (place == 0 || !hit_is_before(&hit, list->sorted + place - 1)) return;
+    if (place == 0 || !hit_is_before(list->tree, &hit, list->sorted + place - 1)) return;
     place--;  // the last one makes room
   } else {
     list->count = place + 1;
   }
-  for (; place > 0 && hit_is_before(&hit, list->sorted + place - 1); place--) list->sorted[place] = list->sorted[place - 1];
+  for (; place > 0 && hit_is_before(list->tree, &hit, list->sorted + place - 1); place--) list->sorted[place] = list->sorted[place - 1];
   list->sorted[place] = hit;
 }
 
@@ -80,14 +80,16 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
   }
 }
 
-// All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order: by t, leaving before entering, slot, instance, surface. Writes the nearest
-// `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. The order of traversal cannot show.
+// All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order (hit_is_before).
+// Writes the nearest `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. Neither the tree nor the order of
+// traversal can show.
 // capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
 // itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
 static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
   HitList list;
+  list.tree = tree;
   list.sorted = sorted;
   list.capacity = capacity;
   list.count = 0;

@@ -176,8 +176,22 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
   return line_is_valid(o, d);
 }
 
-// Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: the smaller slot wins, then the smaller instance, so
-// that the order of traversal cannot show. Zero, infinite and NaN rays miss.
+// Of two hits at the same t the one that counts: of the world's shapes before those of the scene's instances, these in their order, then
+// of the smaller primitive. Slots and trees that were built otherwise, or moved, cannot show. Read at ties alone.
+static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot, uint other_instance) {
+  if (CAPLET_HAS_SHAPE(shape_instance) && instance != other_instance) {
+    // Trees of world shapes have no object number: CAPLET_NONE + 1 is 0.
+    const uint object = instance == CAPLET_NONE ? 0u : tree->instances[instance].object + 1u;
+    const uint other = other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
+    if (object != other) return object < other;
+  }
+  const uint primitive = as_uint(tree->leaves[slot]), other_primitive = as_uint(tree->leaves[other_slot]);
+  if (primitive != other_primitive) return primitive < other_primitive;
+  return instance < other_instance;
+}
+
+// Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
+// traversal can show. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
@@ -189,7 +203,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
   if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max)) return hit;
   const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
-  float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for no slot is smaller than 0
+  float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for nothing is found yet
   if (!(t_min < t_best)) return hit;
   uint best_slot = 0, best_instance = CAPLET_NONE, instance = CAPLET_NONE;
   int found = 0, best_side = 0;
@@ -231,8 +245,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
             const uint i = lowest_bit(bits);
             bits &= bits - 1;
             const uint slot = row * 8 + lane + i;
-            const int earlier = slot < best_slot || (slot == best_slot && instance < best_instance && found);
-            if (ts[i] < t_best || (ts[i] == t_best && earlier)) {
+            if (ts[i] < t_best || (ts[i] == t_best && found && tie_is_before(tree, slot, instance, best_slot, best_instance))) {
               t_best = ts[i];
               best_slot = slot;
               best_instance = instance;

@@ -121,7 +121,7 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
   }
 }
 
-TEST(Instances, EqualHitsGoToTheSmallerInstance) {
+TEST(Instances, EqualHitsGoToTheWorldThenToTheFirstInstance) {
   Encoded scene;
   const EncodedTree object = encode_tree(random_scene(31, shape_sphere, 20, 1), scene.nodes, scene.leaves);
   std::vector<InstanceRecord> instances(5);
@@ -130,21 +130,30 @@ TEST(Instances, EqualHitsGoToTheSmallerInstance) {
     store(glm::dmat4(1), instances[i].world_from_object);
     store(glm::dmat4(1), instances[i].object_from_world);
     instances[i].root = object.root;
+    instances[i].object = 9 - i;  // the last is the first of the scene
     FlatPrimitive box{shape_instance, i, {}};
     std::copy(object.min, object.min + 3, box.data);
     std::copy(object.max, object.max + 3, box.data + 3);
     top.push_back(box);
   }
-  const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
-  DeviceTracer tracer(test_device(), test_width());
-  tracer.upload(scene.nodes, scene.leaves, instances, world.root);
-  int hit = 0;
-  for (const HitRecord& h : tracer.closest(random_rays(32, 500))) {
-    if (h.slot == CAPLET_NONE) continue;
-    EXPECT_EQ(h.instance, 0u);
-    hit++;
+  const EncodedTree placed = encode_tree(top, scene.nodes, scene.leaves);
+  // The same spheres in the world too, of greater numbers.
+  for (FlatPrimitive sphere : random_scene(31, shape_sphere, 20, 1)) {
+    sphere.id += 1000;
+    top.push_back(sphere);
   }
-  EXPECT_GT(hit, 100);
+  const EncodedTree both = encode_tree(top, scene.nodes, scene.leaves);
+  for (const bool in_world : {false, true}) {
+    DeviceTracer tracer(test_device(), test_width());
+    tracer.upload(scene.nodes, scene.leaves, instances, in_world ? both.root : placed.root);
+    int hit = 0;
+    for (const HitRecord& h : tracer.closest(random_rays(32, 500))) {
+      if (h.slot == CAPLET_NONE) continue;
+      EXPECT_EQ(h.instance, in_world ? CAPLET_NONE : 4u);
+      hit++;
+    }
+    EXPECT_GT(hit, 100);
+  }
 }
 
 }  // namespace

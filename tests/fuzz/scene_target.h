@@ -41,11 +41,15 @@ inline bool within_reach(const float (&p)[3]) {
 inline bool same(const HitRecord& a, const HitRecord& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// The order that lists promise.
-inline bool before(const HitRecord& a, const HitRecord& b) {
+inline bool before(const FlatScene& scene, const HitRecord& a, const HitRecord& b) {
   if (a.t != b.t) return a.t < b.t;
   const bool a_leaves = a.surface & CAPLET_LEAVING, b_leaves = b.surface & CAPLET_LEAVING;
   if (a_leaves != b_leaves) return a_leaves;
-  return std::tie(a.slot, a.instance, a.surface) < std::tie(b.slot, b.instance, b.surface);
+  const auto key = [&](const HitRecord& hit) {
+    const std::uint32_t object = hit.instance == CAPLET_NONE ? 0 : scene.instances[hit.instance].object + 1;
+    return std::tuple(object, std::bit_cast<std::uint32_t>(scene.leaves[hit.slot]), hit.instance, hit.surface);
+  };
+  return key(a) < key(b);
 }
 
 class Checker {
@@ -75,7 +79,7 @@ class Checker {
     const std::uint32_t kept = std::min(count, capacity);
     for (std::uint32_t i = 0; i < kept; ++i) {
       crossing(ray, list[i]);
-      require(i == 0 || before(list[i - 1], list[i]));
+      require(i == 0 || before(scene_, list[i - 1], list[i]));
     }
     HitRecord scalar[capacity];
     require(host_kernels(1).trace_all(g, &ray, capacity, scalar) == count);

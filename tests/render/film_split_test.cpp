@@ -146,37 +146,48 @@ TEST(FilmSplit, DevicesShareTheSamples) {
   for (std::size_t parts = 1; parts <= std::min<std::size_t>(units, 4); ++parts) {
     const std::vector<Device> devices = test_device().split(parts);
     ASSERT_EQ(devices.size(), parts);
-    Session session(model().flat, model().view, devices, {.sample_count = samples, .layers = Layers::all(), .pass_samples = 5});
-    std::uint32_t told = 0;
-    const Film film = session.run([&](const SessionProgress& progress) {
-      EXPECT_LT(told, progress.samples_done);
-      told = progress.samples_done;
-    });
-    EXPECT_TRUE(same(film, whole())) << parts;
-    EXPECT_EQ(told, samples);
+    Session session(model().flat, model().view, devices, {.layers = Layers::all(), .pass_samples = 5});
+    for (const std::uint32_t count : {samples / 4, samples - samples / 4}) {
+      std::uint32_t told = 0;
+      EXPECT_EQ(session.render(count,
+                               [&](const SessionProgress& progress) {
+                                 EXPECT_LT(told, progress.samples_done);
+                                 told = progress.samples_done;
+                               }),
+                count);
+      EXPECT_EQ(told, count);
+    }
+    EXPECT_TRUE(same(session.film(), whole())) << parts;
   }
   EXPECT_THROW(test_device().split(units + 1), RunError);
 }
 
 TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
-  Session session(model().flat, model().view, {test_device()},
-                  {.sample_count = samples, .layers = Layers::all(), .pass_samples = 4});
-  const Film film = session.run([&](const SessionProgress& progress) {
+  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::all(), .pass_samples = 4});
+  const auto cancel_at_8 = [&](const SessionProgress& progress) {
     if (progress.samples_done >= 8) session.cancel();
-  });
+  };
+  EXPECT_EQ(session.render(samples, cancel_at_8), 8u);
+  const Film film = session.film();
   EXPECT_THAT(film.parts(), testing::ElementsAre(FilmPart{film.layout().window, 0, 8}));
-  Session rest(model().flat, model().view, {test_device()},
-               {.sample_begin = 8, .sample_count = samples - 8, .layers = Layers::all()});
-  Film sum = rest.run();
-  sum.add(film);
-  EXPECT_TRUE(same(sum, whole()));
+  // Before a render begins it is the next one that ends.
+  session.cancel();
+  EXPECT_EQ(session.render(4), 0u);
+  // It goes on after them; so does another one that is given the film.
+  EXPECT_EQ(session.render(samples - 8), samples - 8);
+  EXPECT_TRUE(same(session.film(), whole()));
+  Session other(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  other.resume(film);
+  EXPECT_EQ(other.render(samples - 8), samples - 8);
+  EXPECT_TRUE(same(other.film(), whole()));
+  Session bare(model().flat, model().view, {test_device()}, {.layers = Layers::none()});
+  EXPECT_THROW(bare.resume(film), InputError);
 }
 
 TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
-  Session session(model().flat, model().view, {test_device()},
-                  {.sample_count = samples, .layers = Layers::none(), .pass_samples = 4, .time_limit = 1e-9});
-  const Film film = session.run();
-  EXPECT_THAT(film.parts(), testing::ElementsAre(FilmPart{film.layout().window, 0, 4}));
+  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::none(), .pass_samples = 4});
+  EXPECT_EQ(session.render(samples, {}, 1e-9), 4u);
+  EXPECT_THAT(session.film().parts(), testing::ElementsAre(FilmPart{session.film().layout().window, 0, 4}));
 }
 
 // A layer that is not asked for takes no room, and changes nothing of the others.

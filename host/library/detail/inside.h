@@ -5,19 +5,40 @@
 // and so for the others.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "caplet/device.h"
 #include "caplet/film.h"
 #include "caplet/scene.h"
+#include "caplet/session.h"
 #include "device/device.h"
+#include "film/film.h"
 #include "film/image.h"
+#include "scene/edit.h"
 #include "scene/scene.h"
 
 namespace caplet::v0 {
 
+/// A number that no other state of a scene has.
+std::uint64_t next_serial();
+
 struct Scene::Data {
   caplet::Scene model;
+  /// A scene as it came, and its edits since: a copy has those of the scene that it is a copy of up to then, and its own.
+  struct Logged {
+    std::uint64_t serial;
+    SceneEdit edit;
+  };
+  std::uint64_t origin = next_serial();
+  std::vector<Logged> edits;
+
+  void edit(const SceneEdit& edit);
 };
 
 struct Device::Data {
@@ -26,23 +47,39 @@ struct Device::Data {
 };
 
 struct Film::Data {
-  LayeredImage image;
-  int samples_per_pixel = 0;
+  caplet::Film film;
+  FilmSettings settings;
+  std::map<std::string, std::string> notes;  // for its pictures
   double render_seconds = 0;
+  mutable std::once_flag once = {};  // when it is developed
+  mutable LayeredImage image = {};
 };
 
 struct Inside {
-  static Scene scene(caplet::Scene model) { return Scene(std::make_shared<Scene::Data>(Scene::Data{std::move(model)})); }
+  using SceneData = Scene::Data;
+  static Scene scene(caplet::Scene model) {
+    auto data = std::make_shared<Scene::Data>();
+    data->model = std::move(model);
+    return Scene(std::move(data));
+  }
   static std::shared_ptr<const caplet::Scene> model(const Scene& scene) { return {scene.data_, &scene.data_->model}; }
+  static const Scene::Data& data(const Scene& scene) { return *scene.data_; }
   static Device device(caplet::Device device, DeviceInfo info) {
     return Device(std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
   }
   static const caplet::Device& device(const Device& device) { return device.data_->device; }
-  static Film film(LayeredImage image, int samples_per_pixel, double render_seconds) {
-    return Film(std::make_shared<const Film::Data>(Film::Data{std::move(image), samples_per_pixel, render_seconds}));
+  static Film film(caplet::Film film, const FilmSettings& settings, std::map<std::string, std::string> notes,
+                   double render_seconds) {
+    return Film(std::shared_ptr<const Film::Data>(new Film::Data{std::move(film), settings, std::move(notes), render_seconds}));
   }
+  static const caplet::Film& film(const Film& film) { return film.data_->film; }
+  /// A session for so many samples, as Session and render() make it.
+  static Session session(const v0::Scene& scene, std::span<const Device> devices, std::uint32_t most_samples);
 };
 
 DeviceInfo to_public(const caplet::DeviceInfo& info);
+
+/// Throws InputError when the number is not within the range.
+void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most);
 
 }  // namespace caplet::v0

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 
 #include "lower/flat_scene.h"
 #include "scene/scene.h"
@@ -19,6 +20,12 @@ glm::dvec3 environment_direction(bool equal_area, double u, double v);
 struct EnvironmentIntegrals {
   double luminance = 0;    // times steradian
   double illuminance = 0;  // of a surface facing +z, in the light's space
+};
+
+/// The image whose texels a FlatScene holds.
+struct LoweredEnvironment {
+  std::shared_ptr<const EnvironmentImage> image;
+  EnvironmentIntegrals integrals;
 };
 
 /// Fills environment_texels, environment_cdf and lighting.environment_*. The distribution is constant over a texel's cell and

@@ -4,18 +4,16 @@
 // Shapes of the scene -> geometry records, primitives and trees.
 #pragma once
 
-#include <vector>
-
-#include "lower/detail/lights.h"
+#include "lower/detail/parts.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
 
 namespace caplet {
 
-/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the bounding sphere, and returns the
-/// emissive primitives in light order. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
+/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the bounding sphere, and returns
+/// what edits need of it. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
 /// becomes an instance of its own tree, shared by all shapes under the same transform.
-std::vector<Emitter> lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out);
+LoweredGeometry lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

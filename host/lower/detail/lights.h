@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "lower/detail/environment.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
@@ -27,8 +28,9 @@ struct Emitter {
 
 /// Fills lights, light_data, light_alias, environment_* and the record `lighting`. Light i is emitter i for i <
 /// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. They are selected by light_table.h;
-/// constant infinite lights are never selected, since BSDF sampling finds them as well. `world` must be set. Throws
-/// InputError for more than one image light.
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, FlatScene& out);
+/// constant infinite lights are never selected, since BSDF sampling finds them as well. `world` must be set. `environment`: the
+/// image that `out` holds already, and then the one that it holds. Throws InputError for more than one image light.
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
+                  LoweredEnvironment& environment, FlatScene& out);
 
 }  // namespace caplet

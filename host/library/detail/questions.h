@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Questions to a scene on a device, answered as the public classes do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "caplet/pick.h"
+#include "device/device.h"
+#include "render/query.h"
+#include "scene/scene.h"
+
+namespace caplet::v0 {
+
+struct Questions {
+  Query& query;
+  const caplet::Scene& scene;  // that the query asks
+  std::uint64_t shapes;        // FlatScene::shapes
+  const caplet::Device& device;
+
+  std::optional<Hit> pixel(int x, int y) const;
+  std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays) const;
+  std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most) const;
+};
+
+}  // namespace caplet::v0

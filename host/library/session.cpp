@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "caplet/session.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "library/detail/inside.h"
+#include "library/detail/questions.h"
+#include "lower/live_scene.h"
+#include "lower/lower.h"
+#include "render/known_answers.h"
+#include "render/session.h"
+#include "report/picture.h"
+
+namespace caplet::v0 {
+
+namespace {
+
+std::vector<caplet::Device> inner(std::span<const Device> devices) {
+  std::vector<caplet::Device> out;
+  for (const Device& device : devices) out.push_back(Inside::device(device));
+  if (out.empty()) throw InputError("a session needs a device");
+  return out;
+}
+
+const std::vector<caplet::Device>& tried(const std::vector<caplet::Device>& devices, const FlatScene& flat) {
+  for (const caplet::Device& device : devices) try_device(device, {.shapes = flat.shapes, .render = true});
+  return devices;
+}
+
+}  // namespace
+
+struct Session::Data {
+  Data(const Scene& of, std::span<const Device> on, std::uint32_t most_samples)
+      : devices(inner(on)),
+        live(*Inside::model(of)),
+        session(live.flat(), live.view(), tried(devices, live.flat()), {.layers = Layers::all(), .most_samples = most_samples}),
+        at(state_of(of)) {}
+
+  static std::uint64_t state_of(const Scene& scene) {
+    const Inside::SceneData& data = Inside::data(scene);
+    return data.edits.empty() ? data.origin : data.edits.back().serial;
+  }
+
+  void send() {
+    tried(devices, live.flat());
+    session.update(live.flat(), live.take_changes(), live.view());
+    seconds = 0;
+    interrupted = false;
+  }
+
+  Questions questions() {
+    if (!query) query.emplace(session.scene_on(0));
+    return {*query, live.scene(), live.flat().shapes, devices[0]};
+  }
+
+  std::vector<caplet::Device> devices;
+  LiveScene live;
+  caplet::Session session;
+  std::optional<Query> query;
+  std::uint64_t at;  // the state of the scene that it shows
+  double seconds = 0;
+  bool interrupted = false;
+};
+
+Session Inside::session(const Scene& scene, std::span<const Device> devices, std::uint32_t most_samples) {
+  return Session(std::make_unique<Session::Data>(scene, devices, most_samples));
+}
+
+Session::Session(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Session::Session(const Scene& scene, const Device& device) : Session(scene, std::span(&device, 1)) {}
+Session::Session(const Scene& scene, std::span<const Device> devices) : data_(std::make_unique<Data>(scene, devices, 0)) {}
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+Session::~Session() = default;
+
+void Session::update(const Scene& scene) {
+  Data& d = *data_;
+  const Inside::SceneData& now = Inside::data(scene);
+  auto next = now.edits.begin();
+  if (d.at != now.origin) {
+    next = std::ranges::find(now.edits, d.at, &Inside::SceneData::Logged::serial);
+    if (next == now.edits.end()) {
+      d.live.replace(now.model);
+      d.at = Data::state_of(scene);
+      return d.send();
+    }
+    ++next;
+  }
+  try {
+    for (; next != now.edits.end(); ++next) {
+      d.live.edit(next->edit);
+      d.at = next->serial;
+    }
+    d.live.edit(view_of(now.model));
+  } catch (...) {
+    d.send();
+    throw;
+  }
+  d.send();
+}
+
+int Session::render(int samples, const RenderOptions& options) {
+  check_range("samples", samples, 1, 1 << 24);
+  const auto start = std::chrono::steady_clock::now();
+  const auto count = static_cast<std::uint32_t>(samples);
+  const auto told = [&](const SessionProgress& progress) {
+    options.progress({static_cast<double>(progress.samples_done) / progress.sample_count, progress.samples_per_second});
+  };
+  const std::uint32_t done =
+      data_->session.render(count, options.progress ? told : std::function<void(const SessionProgress&)>(), options.time_limit);
+  data_->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  data_->interrupted = done < count && !options.time_limit;
+  return static_cast<int>(done);
+}
+
+void Session::cancel() { data_->session.cancel(); }
+
+Film Session::film() const {
+  const caplet::Scene& scene = data_->live.scene();
+  caplet::Film film = data_->session.film();
+  RenderResult result;
+  result.samples_per_pixel = static_cast<int>(film.samples(0));
+  result.render_seconds = data_->seconds;
+  result.interrupted = data_->interrupted;
+  return Inside::film(std::move(film), scene.film,
+                      report::picture_metadata(scene, scene.source, "libcaplet", data_->devices[0], result), data_->seconds);
+}
+
+void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
+
+std::optional<Hit> Session::pixel(int x, int y) { return data_->questions().pixel(x, y); }
+std::optional<Hit> Session::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
+std::vector<std::optional<Hit>> Session::nearest(std::span<const Ray> rays) { return data_->questions().nearest(rays); }
+std::vector<std::vector<Hit>> Session::all(std::span<const Ray> rays, std::size_t most) {
+  return data_->questions().all(rays, most);
+}
+
+}  // namespace caplet::v0

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A scene lowered, with all that is known of it beside the flat arrays.
+#pragma once
+
+#include "lower/detail/environment.h"
+#include "lower/detail/geometry.h"
+#include "lower/detail/lights.h"
+#include "lower/flat_scene.h"
+#include "lower/spectrum.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// Refers to the shapes of the scene, which must stay where they are. Its parts refer to each other: it stays where it is.
+struct Lowering {
+  /// Throws as lower() does.
+  explicit Lowering(const Scene& scene);
+  Lowering(const Lowering&) = delete;
+  Lowering& operator=(const Lowering&) = delete;
+
+  FlatScene flat;
+  SpectrumTable spectra;
+  LoweredGeometry geometry;
+  LoweredEnvironment environment;
+};
+
+}  // namespace caplet

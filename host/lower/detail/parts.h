@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What lowering knows of a scene's geometry beside the flat arrays: which tree holds what, and where it is placed. Edits go by
+// it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <glm/mat4x4.hpp>
+#include <vector>
+
+#include "lower/detail/lights.h"
+#include "lower/encode.h"
+#include "lower/flat_primitive.h"
+#include "lower/flat_scene.h"
+#include "lower/spectrum.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// One tree: primitives in its space, and where emissive ones come from.
+struct Part {
+  glm::dmat4 placed{1};  // object_from_part
+  uint flags = 0;        // of its instances
+  /// By id; after them, in the world's first part, the instances.
+  std::vector<FlatPrimitive> primitives;
+  std::vector<const Shape*> shapes;  // those that gave primitives
+  struct Emissive {
+    std::size_t first, count;  // a range of `primitives`
+    const Shape* shape;
+    std::size_t offset;  // of the first in GeometryRecord.light_offset
+  };
+  std::vector<Emissive> emissive;
+  std::size_t emitter_count = 0;
+  EncodedTree tree;
+};
+
+/// An instance record: a part as placed. By the number of the record.
+struct Placed {
+  const Part* part;
+  std::uint32_t instance;
+  glm::dmat4 world_from_part;
+  std::uint32_t scene_instance;  // index into Scene::instances; CAPLET_NONE: a part of the world
+  std::size_t top;               // index into the primitives of the world's first part
+};
+
+/// How long the arrays are that shapes add to.
+struct Lengths {
+  std::size_t geometries = 0, primitives = 0, surfaces = 0, indices = 0, normals = 0, uvs = 0, leaves = 0;
+};
+
+/// What a shape has of the flat arrays: from `begin` on up to `end`. `part` is null where it gave nothing.
+struct ShapeExtent {
+  Part* part = nullptr;
+  std::size_t first = 0;  // of its primitives in the part
+  Lengths begin, end;
+};
+
+/// Shapes of the world or of one object. Parts stay where they are when this is moved; a copy would refer to the first's.
+struct LoweredShapes {
+  LoweredShapes() = default;
+  LoweredShapes(LoweredShapes&&) = default;
+  LoweredShapes& operator=(LoweredShapes&&) = default;
+  std::deque<Part> parts;  // the first holds what is baked into the common space; then one for each transform that cannot be
+  std::vector<ShapeExtent> extents;  // by shape
+};
+
+struct LoweredGeometry {
+  LoweredShapes world;
+  std::vector<LoweredShapes> objects;
+  std::vector<Placed> placed;
+  std::vector<Emitter> emitters;  // in the order of their lights
+};
+
+/// What decides the part that a shape belongs to, and under which matrix it is stored there.
+struct PartKey {
+  glm::dmat4 placed{1};
+  uint flags = 0;
+  glm::dmat4 baked{1};
+  /// The part of what needs none of its own.
+  bool is_common() const { return placed == glm::dmat4(1) && flags == 0; }
+  bool same_part(const PartKey& other) const { return placed == other.placed && flags == other.flags; }
+};
+PartKey part_key(const Shape& shape, const glm::dmat4& world_from_object);
+
+/// The record of a part as placed; `object`: InstanceRecord.object.
+InstanceRecord instance_record(const Part& part, const glm::dmat4& world_from_part, std::uint32_t object);
+/// Writes the box of an instance into its primitive of the top tree.
+void set_instance_box(const Part& part, const glm::dmat4& world_from_part, FlatPrimitive& instance);
+
+/// The lights of an emissive shape of a part as placed, one for each of its primitives.
+void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_part,
+                  std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
+
+/// Bounding sphere of the world.
+void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
+
+/// One shape, lowered by itself into empty arrays `out` under `baked`: its primitives, with ids from 0 on.
+Part lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
+                       SpectrumTable& spectra, FlatScene& out);
+
+}  // namespace caplet

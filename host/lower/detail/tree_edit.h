@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Moves primitives within trees that are encoded: their leaf blocks, and the boxes from there to the root.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "lower/changes.h"
+#include "lower/detail/parts.h"
+#include "lower/flat_scene.h"
+
+namespace caplet {
+
+class TreeEdit {
+ public:
+  /// Of the trees in `flat`, which hold `geometry`.
+  TreeEdit(FlatScene& flat, LoweredGeometry& geometry);
+
+  /// After primitive `at` of `part` has changed in `part.primitives`: the same in its tree.
+  void move(Part& part, std::size_t at, SceneChanges& changes);
+  /// Rows were appended to the leaves.
+  void leaves_have_grown();
+
+  /// The part's expected cost of a ray, now over when it was built: of lines through its bounds, now or then, whichever is worse.
+  double cost_growth(const Part& part) const;
+
+ private:
+  struct Cost {
+    double built = 0, areas = 0, clipped = 0;  // areas of all boxes, whole and within the bounds that it was built with
+    ReferenceBox bounds{};                     // then
+  };
+  ReferenceBox leaf_box(const Part& part, std::uint32_t row) const;
+  const FlatPrimitive& primitive(const Part& part, std::uint32_t kind, std::uint32_t id) const;
+  void write_lanes(const Part& part, std::size_t at, SceneChanges& changes);
+  /// Child `i` of a node gets another box.
+  void set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& box, Cost& cost);
+  ReferenceBox box_of(std::uint32_t node, std::uint32_t i) const;
+  ReferenceBox bounds_of_node(std::uint32_t node) const;
+
+  FlatScene& flat_;
+  LoweredGeometry& geometry_;
+  // By node, and by the first row of a leaf block: the parent node times 8, and which of its children it is.
+  std::vector<std::uint32_t> node_parent_, row_parent_;
+  std::unordered_map<const Part*, Cost> costs_;
+};
+
+}  // namespace caplet

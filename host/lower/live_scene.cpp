@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/live_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "base/check.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/lowering.h"
+#include "lower/detail/materials.h"
+#include "lower/detail/shapes.h"
+#include "lower/detail/tree_edit.h"
+#include "lower/lower.h"
+
+namespace caplet {
+
+namespace {
+
+using Matrix = glm::dmat4;
+
+/// A tree of at least so many primitives is built again when edits have made it so many times as costly.
+constexpr std::size_t rebuilt_from_primitives = 256;
+constexpr double rebuilt_at_growth = 2;
+/// Beyond this share of a tree it is cheaper to build it again than to move primitive by primitive.
+constexpr std::size_t most_moved = 4096, least_unmoved_share = 8;
+
+template <class T>
+bool same_bytes(const T& a, const T& b) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// What of `now` differs from `before`.
+template <class T>
+void add_differences(const std::vector<T>& before, const std::vector<T>& now, ChangedRanges& out) {
+  const std::size_t common = std::min(before.size(), now.size());
+  std::size_t begin = 0, end = now.size();
+  while (begin < common && same_bytes(before[begin], now[begin])) ++begin;
+  if (before.size() == now.size())
+    while (end > begin && same_bytes(before[end - 1], now[end - 1])) --end;
+  out.add(begin, end - begin);
+}
+
+/// The same edit back to what stands there now.
+SceneEdit undo_of(const Scene& scene, const SceneEdit& edit) {
+  return std::visit(
+      [&](const auto& one) -> SceneEdit {
+        auto back = one;
+        using Edit = decltype(back);
+        if constexpr (std::is_same_v<Edit, CapsuleEdit>) back.to = capsule_at(scene, one.at, one.capsule);
+        if constexpr (std::is_same_v<Edit, TransformEdit>) back.world_from_object = shape_at(scene, one.at).world_from_object;
+        if constexpr (std::is_same_v<Edit, EmissionEdit>) back.to = *shape_at(scene, one.at).emission;
+        if constexpr (std::is_same_v<Edit, InstanceEdit>)
+          back.world_from_object = scene.instances[one.instance].world_from_object;
+        if constexpr (std::is_same_v<Edit, MaterialEdit>) back.to = scene.materials[one.material].model;
+        if constexpr (std::is_same_v<Edit, LightEdit>) back.to = scene.lights[one.light];
+        if constexpr (std::is_same_v<Edit, ViewEdit>) back = view_of(scene);
+        return back;
+      },
+      edit);
+}
+
+}  // namespace
+
+struct LiveScene::State {
+  explicit State(Scene of) : scene(std::move(of)) { lower_all(); }
+
+  void lower_all() {
+    auto fresh = std::make_unique<Lowering>(scene);
+    trees = std::make_unique<TreeEdit>(fresh->flat, fresh->geometry);
+    lowering = std::move(fresh);
+    changes = {};
+    changes.all = true;
+    ++lowerings;
+  }
+
+  FlatScene& flat() { return lowering->flat; }
+  LoweredGeometry& geometry() { return lowering->geometry; }
+  Part& top() { return geometry().world.parts[0]; }
+
+  ShapeExtent& extent(const ShapeAt& at) {
+    return (at.object ? geometry().objects[*at.object] : geometry().world).extents[at.shape];
+  }
+
+  // Each of these does what follows in the flat arrays from an edit that is made already; `before`: what stood there. False: that
+  // cannot be done in place, and nothing is changed.
+
+  bool follow(const CapsuleEdit& edit, const CapsuleEdit&) {
+    const Shape& shape = shape_at(scene, edit.at);
+    ShapeExtent& of = extent(edit.at);
+    if (!of.part) return false;
+    const Matrix baked = part_key(shape, shape.world_from_object).baked;
+    const std::size_t at = of.first + edit.capsule;
+    FlatPrimitive& p = of.part->primitives[at];
+    const FlatPrimitive moved = flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
+                                             baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
+    if (moved.shape != p.shape) return false;
+    std::copy(std::begin(moved.data), std::end(moved.data), std::begin(p.data));
+    trees->move(*of.part, at, changes);
+    part_has_changed(*of.part, &shape);
+    return true;
+  }
+
+  bool follow(const TransformEdit& edit, const TransformEdit& before) {
+    const Shape& shape = shape_at(scene, edit.at);
+    ShapeExtent& of = extent(edit.at);
+    if (!of.part) return false;
+    const PartKey old = part_key(shape, before.world_from_object), now = part_key(shape, edit.world_from_object);
+    const bool other_part = !now.same_part(old);
+    if (other_part && (now.is_common() || old.is_common() || of.part->shapes.size() != 1)) return false;
+    if (now.baked != old.baked && !bake(shape, of, now.baked)) return false;
+    of.part->placed = now.placed;
+    of.part->flags = now.flags;
+    part_has_changed(*of.part, &shape);
+    return true;
+  }
+
+  /// A shape of which only numbers change, under another matrix.
+  bool bake(const Shape& shape, ShapeExtent& of, const Matrix& baked) {
+    Part& part = *of.part;
+    const std::size_t count = of.end.primitives - of.begin.primitives;
+    if (count > most_moved && count * least_unmoved_share > part.primitives.size()) return false;
+    for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
+      if (const auto kind = part.primitives[of.first + i].shape; kind == shape_csg || kind == shape_polyhedron) return false;
+    FlatScene fresh;
+    const Part own = lower_shape_alone(scene, shape, baked, 0, lowering->spectra, fresh);
+    const auto as_long = [&](std::size_t size, std::size_t Lengths::*length) {
+      return size == of.end.*length - of.begin.*length;
+    };
+    if (!as_long(fresh.geometries.size(), &Lengths::geometries) || !as_long(own.primitives.size(), &Lengths::primitives) ||
+        !as_long(fresh.mesh_indices.size(), &Lengths::indices) || !as_long(fresh.mesh_normals.size(), &Lengths::normals) ||
+        !as_long(fresh.mesh_uvs.size(), &Lengths::uvs))
+      return false;
+    for (std::size_t i = 0; i < count; ++i)
+      if (own.primitives[i].shape != part.primitives[of.first + i].shape) return false;
+
+    FlatScene& to = flat();
+    if (!fresh.geometries.empty()) {
+      const uint space = set_uv_space(to.geometries[of.begin.geometries].uv_space, fresh);
+      for (std::size_t i = 0; i < fresh.geometries.size(); ++i) {
+        GeometryRecord& record = to.geometries[of.begin.geometries + i];
+        record.uv_space = space;
+        record.flags = fresh.geometries[i].flags;
+      }
+      changes.geometries.add(of.begin.geometries, fresh.geometries.size());
+    }
+    const auto put = [](const auto& from, auto& target, std::size_t begin, ChangedRanges& changed) {
+      std::ranges::copy(from, target.begin() + static_cast<std::ptrdiff_t>(begin));
+      changed.add(begin, from.size());
+    };
+    put(fresh.mesh_indices, to.mesh_indices, of.begin.indices, changes.mesh_indices);
+    put(fresh.mesh_normals, to.mesh_normals, of.begin.normals, changes.mesh_normals);
+    put(fresh.mesh_uvs, to.mesh_uvs, of.begin.uvs, changes.mesh_uvs);
+    for (std::size_t i = 0; i < count; ++i) {
+      FlatPrimitive& p = part.primitives[of.first + i];
+      std::copy_n(own.primitives[i].data, 12, p.data);
+      trees->move(part, of.first + i, changes);
+    }
+    return true;
+  }
+
+  /// Where the rotation of a shape that is lowered into `fresh` is to stand, and puts it there. `old`: where the last one stood.
+  uint set_uv_space(uint old, const FlatScene& fresh) {
+    const uint from = fresh.geometries[0].uv_space;
+    if (from == CAPLET_NONE) return CAPLET_NONE;
+    std::vector<float>& leaves = flat().leaves;
+    std::size_t at = old;
+    if (old == CAPLET_NONE) {
+      at = (leaves.size() + 7) / 8 * 8;
+      leaves.resize(at + 16);
+      trees->leaves_have_grown();
+    }
+    std::copy_n(&fresh.leaves[from], 16, &leaves[at]);
+    changes.leaves.add(at, 16);
+    return narrow<uint>(at);
+  }
+
+  bool follow(const EmissionEdit& edit, const EmissionEdit& before) {
+    ShapeExtent& of = extent(edit.at);
+    if (!of.part || edit.to.surfaces != before.to.surfaces) return false;
+    for (std::size_t i = of.begin.geometries; i < of.end.geometries; ++i) {
+      uint& flags = flat().geometries[i].flags;
+      flags &= ~CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
+      if (edit.to.two_sided) flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
+    }
+    changes.geometries.add(of.begin.geometries, of.end.geometries - of.begin.geometries);
+    update_emitters(*of.part, &shape_at(scene, edit.at));
+    lower_lights_again();
+    return true;
+  }
+
+  bool follow(const InstanceEdit& edit, const InstanceEdit&) {
+    for (Placed& placed : geometry().placed)
+      if (placed.scene_instance == edit.instance) place_again(placed);
+    world_may_have_changed();
+    return true;
+  }
+
+  bool follow(const MaterialEdit& edit, const MaterialEdit&) {
+    flat().materials[edit.material] = lower_material(scene.materials[edit.material], edit.material, lowering->spectra, flat());
+    changes.materials.add(edit.material, 1);
+    changes.material_data.add(flat().materials[edit.material].data, material_stride);
+    return true;
+  }
+
+  bool follow(const LightEdit&, const LightEdit&) {
+    lower_lights_again();
+    return true;
+  }
+
+  bool follow(const ViewEdit& edit, const ViewEdit& before) { return edit.film.space == before.film.space; }
+
+  /// `part` has other primitives or another place; `shape`, where it emits, other areas.
+  void part_has_changed(Part& part, const Shape* shape) {
+    if (&part != &top()) {
+      for (Placed& placed : geometry().placed)
+        if (placed.part == &part) place_again(placed);
+    } else if (shape->emission) {
+      update_emitters(part, shape);
+    }
+    world_may_have_changed();
+  }
+
+  /// An instance's record, its box in the world, and its lights.
+  void place_again(Placed& placed) {
+    const Part& part = *placed.part;
+    placed.world_from_part = placed.scene_instance == CAPLET_NONE
+                                 ? part.placed
+                                 : scene.instances[placed.scene_instance].world_from_object * part.placed;
+    InstanceRecord& record = flat().instances[placed.instance];
+    InstanceRecord fresh = instance_record(part, placed.world_from_part, record.object);
+    fresh.light_base = record.light_base;
+    if (!same_bytes(record, fresh)) {
+      record = fresh;
+      changes.instances.add(placed.instance, 1);
+    }
+    FlatPrimitive& box = top().primitives[placed.top];
+    set_instance_box(part, placed.world_from_part, box);
+    trees->move(top(), placed.top, changes);
+    if (part.emitter_count == 0) return;
+    for (const Part::Emissive& emissive : part.emissive)
+      emit_again(part, emissive, placed.instance, placed.world_from_part, record.light_base);
+  }
+
+  /// The lights of a shape wherever its part is.
+  void update_emitters(const Part& part, const Shape* shape) {
+    for (const Part::Emissive& emissive : part.emissive) {
+      if (emissive.shape != shape) continue;
+      if (&part == &top()) emit_again(part, emissive, CAPLET_NONE, Matrix(1), 0);
+      for (const Placed& placed : geometry().placed)
+        if (placed.part == &part)
+          emit_again(part, emissive, placed.instance, placed.world_from_part, flat().instances[placed.instance].light_base);
+    }
+  }
+
+  void emit_again(const Part& part, const Part::Emissive& emissive, uint instance, const Matrix& world_from_part,
+                  uint light_base) {
+    Emitter* first = &geometry().emitters[light_base + emissive.offset];
+    set_emitters(part, emissive, instance, world_from_part, first->group, lowering->spectra, flat(), first);
+    lights_are_old = true;
+  }
+
+  /// The world's bounds, and the lights, if these depend on what has changed.
+  void world_may_have_changed() {
+    const WorldRecord before = flat().world;
+    set_world_bounds(top().tree, flat().world);
+    if (!same_bytes(before, flat().world)) {
+      changes.world.add(0, 1);
+      if (!scene.lights.empty()) lights_are_old = true;
+    }
+    if (lights_are_old) lower_lights_again();
+  }
+
+  void lower_lights_again() {
+    FlatScene& to = flat();
+    const auto lights = to.lights;
+    const auto data = to.light_data;
+    const auto alias = to.light_alias;
+    const LightingRecord lighting = to.lighting;
+    const auto image = lowering->environment.image;
+    lower_lights(scene, geometry().emitters, lowering->spectra, lowering->environment, to);
+    add_differences(lights, to.lights, changes.lights);
+    add_differences(data, to.light_data, changes.light_data);
+    add_differences(alias, to.light_alias, changes.light_alias);
+    if (!same_bytes(lighting, to.lighting)) changes.lighting.add(0, 1);
+    if (image != lowering->environment.image) {
+      changes.environment_texels.add(0, to.environment_texels.size());
+      changes.environment_cdf.add(0, to.environment_cdf.size());
+    }
+    lights_are_old = false;
+  }
+
+  bool has_bad_tree() const {
+    const auto is_bad = [&](const Part& part) {
+      return part.primitives.size() >= rebuilt_from_primitives && trees->cost_growth(part) > rebuilt_at_growth;
+    };
+    const LoweredGeometry& all = lowering->geometry;
+    return std::ranges::any_of(all.world.parts, is_bad) || std::ranges::any_of(all.objects, [&](const LoweredShapes& object) {
+             return std::ranges::any_of(object.parts, is_bad);
+           });
+  }
+
+  void edit(const SceneEdit& edit) {
+    check_edit(scene, edit);
+    const SceneEdit before = undo_of(scene, edit);
+    put_edit(scene, edit);
+    try {
+      const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
+      const bool followed =
+          std::visit([&](const auto& one) { return follow(one, std::get<std::decay_t<decltype(one)>>(before)); }, edit);
+      if (!followed || has_bad_tree()) return lower_all();
+      changes.spectra.add(spectra, flat().spectra.size() - spectra);
+      changes.spectrum_tables.add(tables, flat().spectrum_tables.size() - tables);
+    } catch (...) {
+      put_edit(scene, before);
+      lower_all();
+      throw;
+    }
+  }
+
+  Scene scene;
+  std::unique_ptr<Lowering> lowering;
+  std::unique_ptr<TreeEdit> trees;
+  SceneChanges changes;
+  std::uint64_t lowerings = 0;
+  bool lights_are_old = false;
+};
+
+LiveScene::LiveScene(Scene scene) : state_(std::make_unique<State>(std::move(scene))) { state_->changes = {}; }
+LiveScene::LiveScene(LiveScene&&) noexcept = default;
+LiveScene& LiveScene::operator=(LiveScene&&) noexcept = default;
+LiveScene::~LiveScene() = default;
+
+const Scene& LiveScene::scene() const { return state_->scene; }
+const FlatScene& LiveScene::flat() const { return state_->lowering->flat; }
+FlatView LiveScene::view() const { return lower_view(state_->scene); }
+
+void LiveScene::edit(const SceneEdit& edit) { state_->edit(edit); }
+
+void LiveScene::replace(Scene scene) {
+  auto fresh = std::make_unique<State>(std::move(scene));
+  fresh->lowerings += state_->lowerings;
+  state_ = std::move(fresh);
+}
+
+SceneChanges LiveScene::take_changes() { return std::exchange(state_->changes, {}); }
+std::uint64_t LiveScene::lowerings() const { return state_->lowerings; }
+
+}  // namespace caplet

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Trees as placed: their records, boxes and lights.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <numbers>
+
+#include "lower/detail/area.h"
+#include "lower/detail/flat_shapes.h"
+#include "lower/detail/parts.h"
+
+namespace caplet {
+
+namespace {
+
+using Matrix = glm::dmat4;
+using glm::dvec3;
+
+void write_matrix(float* rows, const Matrix& m) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
+}
+
+/// Bounds of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
+Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
+  Bounds box;
+  if (part.primitives.size() <= 256) {
+    for (const Shape* shape : part.shapes) {
+      Shape moved = *shape;
+      // A part with a transform of its own holds its shapes in their object space.
+      moved.world_from_object = part.placed == Matrix(1) ? world_from_part * shape->world_from_object : world_from_part;
+      box.extend(bounds_of(moved));
+    }
+    return box;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    dvec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? part.tree.max[k] : part.tree.min[k];
+    box.extend(apply_point(world_from_part, p));
+  }
+  return box;
+}
+
+/// The ball around the image of the primitive's box, for kinds that are sampled by it.
+void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
+  const bool has_round_end =
+      p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
+  emitter.by_ball = !shape_has(p.shape, trait_own_light) || has_round_end;
+  if (!emitter.by_ball) return;
+  double low[3], high[3];
+  primitive_box(p, low, high);
+  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_part, 0.5 * (a + b));
+  double radius = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
+    radius = std::max(radius, glm::length(apply_point(world_from_part, x) - center));
+  }
+  for (int k = 0; k < 3; ++k) emitter.ball[k] = center[k];
+  // The centre is rounded to floats.
+  emitter.ball[3] = radius + 0x1p-23 * glm::length(center);
+}
+
+}  // namespace
+
+InstanceRecord instance_record(const Part& part, const Matrix& world_from_part, std::uint32_t object) {
+  InstanceRecord record{};
+  const Matrix part_from_world = glm::inverse(world_from_part);
+  write_matrix(record.object_from_world, part_from_world);
+  write_matrix(record.world_from_object, world_from_part);
+  record.root = part.tree.root;
+  record.light_base = CAPLET_NONE;
+  record.object = object;
+  record.flags = part.flags;
+  if (glm::determinant(glm::dmat3(world_from_part)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
+  return record;
+}
+
+void set_instance_box(const Part& part, const Matrix& world_from_part, FlatPrimitive& instance) {
+  const Bounds box = placed_bounds(part, world_from_part);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
+  // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on either side: 32 units are
+  // ample.
+  const double slack = 32 * 0x1p-24 * largest;
+  for (int k = 0; k < 3; ++k) {
+    instance.kept_box()[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
+    instance.kept_box()[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
+  }
+}
+
+void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const Matrix& world_from_part,
+                  std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out) {
+  const AreaEmission& emission = *emissive.shape->emission;
+  double total_area = 0;
+  std::vector<double> areas;
+  for (std::size_t i = 0; i < emissive.count; ++i) {
+    areas.push_back(placed_area(part.primitives[emissive.first + i], flat.leaves, world_from_part, emission.surfaces));
+    total_area += areas.back();
+  }
+  Emitter emitter{};
+  emitter.group = group;
+  emitter.instance = instance;
+  emitter.two_sided = emission.two_sided;
+  emitter.spectrum = spectra.add_illuminant(emission.radiance);
+  const double luminance = spectra.illuminant_luminance(emission.radiance);
+  emitter.scale = emission.scale;
+  if (emission.power) {
+    // pbrt-v4: the power of a light of radiance 1, whatever the colour.
+    const double sides = emission.two_sided ? 2 : 1;
+    emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
+  }
+  emitter.luminance = luminance * emitter.scale;
+  for (std::size_t i = 0; i < emissive.count; ++i) {
+    const std::size_t at = emissive.first + i;
+    emitter.slot = part.tree.slots[at];
+    emitter.geometry = flat.primitive_geometry[part.primitives[at].id];
+    emitter.area = areas[i];
+    set_ball(part.primitives[at], world_from_part, emitter);
+    // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
+    if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
+    *out++ = emitter;
+  }
+}
+
+void set_world_bounds(const EncodedTree& tree, WorldRecord& world) {
+  dvec3 low(tree.min[0], tree.min[1], tree.min[2]), high(tree.max[0], tree.max[1], tree.max[2]);
+  const dvec3 center = (low + high) * 0.5;
+  world.center_x = static_cast<float>(center.x);
+  world.center_y = static_cast<float>(center.y);
+  world.center_z = static_cast<float>(center.z);
+  world.radius = static_cast<float>(glm::length(high - low) * 0.5);
+}
+
+}  // namespace caplet

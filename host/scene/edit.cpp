@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "scene/edit.h"
+
+#include <utility>
+
+namespace caplet {
+
+namespace {
+
+[[noreturn]] void no_such(const char* what, std::size_t number, std::size_t count) {
+  throw InputError("there is no " + std::string(what) + " " + std::to_string(number) + ", of " + std::to_string(count) +
+                   " counted from 0");
+}
+
+template <class T>
+const T& at(const std::vector<T>& values, std::size_t number, const char* what) {
+  if (number >= values.size()) no_such(what, number, values.size());
+  return values[number];
+}
+
+const CapsulesShape& capsules_of(const Shape& shape) {
+  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  if (!capsules) throw InputError(shape.where, "the shape is not one of capsules");
+  return *capsules;
+}
+
+/// Throws what validate() says of a scene with nothing else in it.
+void check_alone(Scene scene, const Scene& of) {
+  scene.source = of.source;
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  if (scene.shapes.empty() && scene.instances.empty()) {
+    Shape ball;
+    ball.geometry = SphereShape{};
+    scene.shapes.push_back(std::move(ball));
+  }
+  Diagnostics diagnostics;
+  validate(scene, diagnostics);
+  diagnostics.finish();
+}
+
+/// A scene of this shape alone, in the place that it has: an object's in all the object's instances.
+Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
+  Scene out;
+  if (!place.object) {
+    out.shapes.push_back(std::move(shape));
+    return out;
+  }
+  out.objects.emplace_back().shapes.push_back(std::move(shape));
+  for (const Instance& instance : scene.instances)
+    if (instance.object == *place.object) out.instances.push_back({0, instance.world_from_object, instance.where});
+  if (out.instances.empty()) out.instances.emplace_back();
+  return out;
+}
+
+void check(const Scene& scene, const CapsuleEdit& edit) {
+  const Shape& shape = shape_at(scene, edit.at);
+  const CapsulesShape& capsules = capsules_of(shape);
+  if (edit.capsule >= capsules.p0.size()) no_such("capsule", edit.capsule, capsules.p0.size());
+  Shape one;
+  one.geometry = CapsulesShape{{edit.to.p0}, {edit.to.p1}, {edit.to.radius0}, {edit.to.radius1}, {}};
+  one.world_from_object = shape.world_from_object;
+  one.where = shape.where;
+  check_alone(alone(scene, edit.at, std::move(one)), scene);
+}
+
+void check(const Scene& scene, const TransformEdit& edit) {
+  Shape shape = shape_at(scene, edit.at);
+  shape.world_from_object = edit.world_from_object;
+  Scene one = alone(scene, edit.at, std::move(shape));
+  one.materials = scene.materials;
+  check_alone(std::move(one), scene);
+}
+
+void check(const Scene& scene, const EmissionEdit& edit) {
+  const Shape& shape = shape_at(scene, edit.at);
+  if (!shape.emission) throw InputError(shape.where, "the shape is no light");
+  Shape one;
+  one.geometry = shape.geometry;
+  one.emission = edit.to;
+  one.where = shape.where;
+  one.world_from_object = shape.world_from_object;
+  Scene scene_of_it = alone(scene, edit.at, std::move(one));
+  scene_of_it.materials = scene.materials;
+  check_alone(std::move(scene_of_it), scene);
+}
+
+void check(const Scene& scene, const InstanceEdit& edit) {
+  const Instance& instance = at(scene.instances, edit.instance, "instance");
+  Bounds box;
+  for (const Shape& shape : scene.objects[instance.object].shapes) box.extend(bounds_of(shape));
+  if (box.empty()) box = {glm::dvec3(0), glm::dvec3(0)};
+  // What has the object's bounds does for it.
+  Shape diagonal;
+  diagonal.geometry = CapsulesShape{{glm::vec3(box.min)}, {glm::vec3(box.max)}, {0}, {}, {}};
+  Scene one;
+  one.objects.emplace_back().shapes.push_back(std::move(diagonal));
+  one.instances.push_back({0, edit.world_from_object, instance.where});
+  check_alone(std::move(one), scene);
+}
+
+void check(const Scene& scene, const MaterialEdit& edit) {
+  const Material& material = at(scene.materials, edit.material, "material");
+  Scene one;
+  one.materials.push_back({edit.to, material.name, material.where});
+  check_alone(std::move(one), scene);
+}
+
+void check(const Scene& scene, const LightEdit& edit) {
+  at(scene.lights, edit.light, "light");
+  Scene one;
+  one.lights.push_back(edit.to);
+  check_alone(std::move(one), scene);
+}
+
+void put(Scene& scene, const ViewEdit& edit) {
+  scene.camera = edit.camera;
+  scene.filter = edit.filter;
+  scene.film = edit.film;
+  scene.sampler = edit.sampler;
+  scene.integrator = edit.integrator;
+}
+
+void check(const Scene& scene, const ViewEdit& edit) {
+  Scene one;
+  put(one, edit);
+  check_alone(std::move(one), scene);
+}
+
+Shape& shape_at(Scene& scene, const ShapeAt& at) { return const_cast<Shape&>(shape_at(std::as_const(scene), at)); }
+
+void put(Scene& scene, const CapsuleEdit& edit) {
+  auto& capsules = std::get<CapsulesShape>(shape_at(scene, edit.at).geometry);
+  if (capsules.radius1.empty() && edit.to.radius0 != edit.to.radius1) capsules.radius1 = capsules.radius0;
+  capsules.p0[edit.capsule] = edit.to.p0;
+  capsules.p1[edit.capsule] = edit.to.p1;
+  capsules.radius0[edit.capsule] = edit.to.radius0;
+  if (!capsules.radius1.empty()) capsules.radius1[edit.capsule] = edit.to.radius1;
+}
+void put(Scene& scene, const TransformEdit& edit) { shape_at(scene, edit.at).world_from_object = edit.world_from_object; }
+void put(Scene& scene, const EmissionEdit& edit) { shape_at(scene, edit.at).emission = edit.to; }
+void put(Scene& scene, const InstanceEdit& edit) { scene.instances[edit.instance].world_from_object = edit.world_from_object; }
+void put(Scene& scene, const MaterialEdit& edit) { scene.materials[edit.material].model = edit.to; }
+void put(Scene& scene, const LightEdit& edit) { scene.lights[edit.light] = edit.to; }
+
+}  // namespace
+
+void check_edit(const Scene& scene, const SceneEdit& edit) {
+  std::visit([&](const auto& one) { check(scene, one); }, edit);
+}
+
+void apply_edit(Scene& scene, const SceneEdit& edit) {
+  check_edit(scene, edit);
+  put_edit(scene, edit);
+}
+
+void put_edit(Scene& scene, const SceneEdit& edit) {
+  std::visit([&](const auto& one) { put(scene, one); }, edit);
+}
+
+const Shape& shape_at(const Scene& scene, const ShapeAt& place) {
+  if (!place.object) return at(scene.shapes, place.shape, "shape");
+  return at(at(scene.objects, *place.object, "object").shapes, place.shape, "shape of the object");
+}
+
+Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule) {
+  const CapsulesShape& capsules = capsules_of(shape_at(scene, at));
+  if (capsule >= capsules.p0.size()) no_such("capsule", capsule, capsules.p0.size());
+  return {capsules.p0[capsule], capsules.p1[capsule], capsules.radius0[capsule],
+          capsules.radius1.empty() ? capsules.radius0[capsule] : capsules.radius1[capsule]};
+}
+
+ViewEdit view_of(const Scene& scene) { return {scene.camera, scene.filter, scene.film, scene.sampler, scene.integrator}; }
+
+}  // namespace caplet
