@@ -20,7 +20,8 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   world_ = scene.world;
   light_radiance_ = scene.lighting.radiance;
   bvh_nodes_ = scene.bvh_nodes;
-  if (StageOptions options = stage_options(scene, device_); options != options_) {
+  // A kind that has gone may come back: what knows it stays, and no picture waits for a compiler.
+  if (StageOptions options = options_.together_with(stage_options(scene, device_)); options != options_) {
     kernels_ = Kernels(device_, options);
     options_ = std::move(options);
   }

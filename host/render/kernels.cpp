@@ -100,6 +100,16 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
           {{"shapes", shapes_on_trial(scene.shapes)}, {"materials", scene.material_kinds()}, {"lights", scene.light_kinds()}}};
 }
 
+StageOptions StageOptions::together_with(const StageOptions& others) const {
+  StageOptions out = others;
+  if (compiler == others.compiler)
+    for (auto& [list, rows_of_list] : out.rows) {
+      const auto here = rows.find(list);
+      rows_of_list |= here != rows.end() ? here->second : ~std::uint64_t{0};
+    }
+  return out;
+}
+
 Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device), options_(std::move(options)), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {}
 

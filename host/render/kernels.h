@@ -36,6 +36,8 @@ struct StageOptions {
   RowMasks rows;         // the kinds of shapes, materials and lights that there are
 
   bool operator==(const StageOptions&) const = default;
+  /// Options for these and `others`: kernels that were built for more kinds than there are do as well.
+  StageOptions together_with(const StageOptions& others) const;
 };
 StageOptions stage_options(const FlatScene& scene, const Device& device);
 
