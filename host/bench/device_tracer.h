@@ -29,10 +29,10 @@ class DeviceTracer {
   std::vector<int> any(std::span<const RayRecord> rays);
 
  private:
-  void run(cl::Kernel& kernel, const cl::Buffer& out);
+  void run(cl::Kernel& kernel);
 
   Device device_;
-  Program program_;
+  bool pool_;
   cl::Kernel closest_, any_;
   Buffer<float> nodes_, leaves_;
   Buffer<InstanceRecord> instances_;
