@@ -4,59 +4,48 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-
 namespace caplet::bench {
 namespace {
 
+// Stages as a renderer has them, with a struct of their own for what they take.
 const char* const kernels = R"(
 #include "groups.cl"
 typedef struct {
+  Tree tree;
+  uint root;
   __global const RayRecord* restrict rays;
   __global HitRecord* restrict hits;
   __global int* restrict any;
 } Stage;
 static RayRecord traced_ray(const Stage* g, uint item) { return g->rays[item]; }
-#if TRACED_ANY
-static void traced_hit(const Stage* g, uint item, const HitRecord* hit) { g->any[item] = hit->slot != CAPLET_NONE; }
-#else
-static void traced_hit(const Stage* g, uint item, const HitRecord* hit) { g->hits[item] = *hit; }
-#endif
-#if CAPLET_POOL
-#include "trace/stream.cl"
-#else
-#include "trace/trace.cl"
-#endif
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
+  if (TRACED_ANY) g->any[item] = hit->slot != CAPLET_NONE;
+  else g->hits[item] = *hit;
+}
+#define TRACED_TREE(g) (&(g)->tree)
+#define TRACED_ROOT(g) ((g)->root)
+#include "trace/many.cl"
 __kernel void trace(__global const float* restrict nodes, __global const float* restrict leaves,
-    __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays, uint count,
-    __global HitRecord* restrict hits, __global int* restrict any) {
-  const Stage stage = {rays, hits, any};
-  const Tree tree = {0, nodes, leaves, instances};
-#if CAPLET_POOL
-  const uint share = (count + (uint)get_global_size(0) - 1) / (uint)get_global_size(0), first = (uint)get_global_id(0) * share;
-#if CAPLET_POOL == 2
-  for (uint i = first; i < min(count, first + share); i += CAPLET_STREAM_RAYS)
-    trace_stream(&stage, &tree, root, i, min((uint)CAPLET_STREAM_RAYS, min(count, first + share) - i));
-#else
-  if (first < count) trace_pool(&stage, &tree, root, first, min(count, first + share));
-#endif
-#else
-  const uint i = (uint)get_global_id(0);
-  if (i < count) {
-    const HitRecord hit = trace_ray(&tree, root, rays[i], TRACED_ANY);
-    traced_hit(&stage, i, &hit);
-  }
-#endif
+    __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays,
+    __global HitRecord* restrict hits, __global int* restrict any, uint item_count) {
+  const Stage stage = {{0, nodes, leaves, instances}, root, rays, hits, any};
+#include "stages/items.cl"
 }
 )";
 
 }  // namespace
 
-DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options)
-    : device_(device),
-      pool_(width == 8 && std::getenv("POOL") != nullptr),
-      closest_(Program::from_source(device, "trace_closest", flatten_kernels(kernels), fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_POOL={} -DTRACED_ANY=0 {}", width, (pool_ ? std::getenv("POOL") : "0"), options)).kernel("trace")),
-      any_(Program::from_source(device, "trace_any", flatten_kernels(kernels), fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_POOL={} -DTRACED_ANY=1 {}", width, (pool_ ? std::getenv("POOL") : "0"), options)).kernel("trace")) {}
+DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options, Manner manner)
+    : device_(device), shares_(width == 8) {
+  const std::string all = fmt::format("-DCAPLET_REAL_WIDTH={} {} {}", width,
+                                      manner == Manner::stream       ? "-DTRACED_NEIGHBOURS=1"
+                                      : manner == Manner::one_by_one ? "-DCAPLET_ONE_BY_ONE"
+                                                                     : "",
+                                      options);
+  const std::string source = flatten_kernels(kernels);
+  closest_ = Program::from_source(device, "trace_closest", source, all + " -DTRACED_ANY=0").kernel("trace");
+  any_ = Program::from_source(device, "trace_any", source, all + " -DTRACED_ANY=1").kernel("trace");
+}
 
 void DeviceTracer::upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances,
                           uint root) {
@@ -79,11 +68,11 @@ void DeviceTracer::run(cl::Kernel& kernel) {
   kernel.setArg(2, instances_.handle());
   kernel.setArg(3, root_);
   kernel.setArg(4, rays_.handle());
-  kernel.setArg(5, static_cast<cl_uint>(count));
-  kernel.setArg(6, hits_.handle());
-  kernel.setArg(7, anys_.handle());
-  if (pool_)
-    launch(device_, kernel, (count + 1023) / 1024, 1);
+  kernel.setArg(5, hits_.handle());
+  kernel.setArg(6, anys_.handle());
+  kernel.setArg(7, static_cast<cl_uint>(count));
+  if (shares_)
+    launch_shares(device_, kernel, count);
   else
     launch(device_, kernel, count, 64);
   device_.finish();

@@ -15,8 +15,12 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
+  /// How rays of width 8 go through the tree (kernels/trace/many.cl): many at once, as a renderer's do; as its camera rays, if
+  /// there are no instances; or one after the other, as on devices that are no good at the former.
+  enum class Manner { pool, stream, one_by_one };
+
   /// width: CAPLET_REAL_WIDTH, 8 or 1. Without further options for all shapes.
-  DeviceTracer(const Device& device, int width, const std::string& options = "");
+  DeviceTracer(const Device& device, int width, const std::string& options = "", Manner manner = Manner::pool);
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
   /// Runs over the rays set before; blocks.
@@ -32,7 +36,7 @@ class DeviceTracer {
   void run(cl::Kernel& kernel);
 
   Device device_;
-  bool pool_;
+  bool shares_;
   cl::Kernel closest_, any_;
   Buffer<float> nodes_, leaves_;
   Buffer<InstanceRecord> instances_;

@@ -185,14 +185,14 @@ std::vector<RayRecord> camera_rays(int size) {
   std::vector<RayRecord> out;
   out.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   for (int ty = 0; ty < size; ty += 8)
-   for (int tx = 0; tx < size; tx += 8)
-  for (int y = ty; y < std::min(ty + 8, size); y++)
-    for (int x = tx; x < std::min(tx + 8, size); x++) {
-      const float u = 0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
-      const float v = 0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
-      const Vec d = normalize({u, v, -1});
-      out.push_back({0, 0, 3, 0, d.x, d.y, d.z, inf});
-    }
+    for (int tx = 0; tx < size; tx += 8)
+      for (int y = ty; y < std::min(ty + 8, size); y++)
+        for (int x = tx; x < std::min(tx + 8, size); x++) {
+          const float u = 0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
+          const float v = 0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
+          const Vec d = normalize({u, v, -1});
+          out.push_back({0, 0, 3, 0, d.x, d.y, d.z, inf});
+        }
   return out;
 }
 

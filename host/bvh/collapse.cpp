@@ -92,8 +92,8 @@ class Collapser {
   }
 
   /// The roots in the order of slots: the best pairs first of a root and a slot whose number's bits tell the octant of the node
-  /// that the root lies in (bit k: towards larger values along axis k). A ray meets the slots in the order of slot ^ octant of its
-  /// direction, nearly (Ylitie et al. 2017, section 3.3).
+  /// that the root lies in (bit k: towards larger values along axis k). A ray meets the slots in the order of slot ^ octant of
+  /// its direction, nearly (Ylitie et al. 2017, section 3.3).
   std::array<std::uint32_t, width> placed(std::uint32_t index, const std::vector<std::uint32_t>& roots) const {
     std::array<std::uint32_t, width> slots;
     slots.fill(no_root);

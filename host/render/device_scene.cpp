@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "render/device_scene.h"
 
+#include "shared/shapes.h"
+
 namespace caplet {
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
@@ -10,6 +12,7 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       kernels_(device, stage_options(scene, device)),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),
+      has_camera_stage_(device.encoding() == Encoding::wide && (scene.shapes & shape_bit(shape_instance)) == 0),
       bvh_nodes_(scene.bvh_nodes) {}
 
 Bindings DeviceScene::bindings() const {

@@ -5,14 +5,11 @@
 // overlaps. A round is three tight loops: over the rays at nodes, over those at leaves, and over all of them to go on. Hits are those of
 // trace_ray to the bit: what is found depends on neither order.
 //
-// The including file has defined
-//   RayRecord traced_ray(const Stage*, uint item)
-//   void traced_hit(const Stage*, uint item, const HitRecord*)
-//   TRACED_ANY   // 1: any hit will do
+// What the including file has defined: many.cl.
 #ifndef CAPLET_TRACE_POOL_CL
 #define CAPLET_TRACE_POOL_CL
 
-#include "trace/set_bits.cl"
+#include "trace/eight.cl"
 #include "trace/trace.cl"
 
 #ifndef CAPLET_POOL_RAYS
@@ -39,25 +36,6 @@ typedef struct {
   int current, top;
   int enter[CAPLET_POOL_STACK], child[CAPLET_POOL_STACK];
 } PooledRay;
-
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_ia32_permvarsi256) && defined(__AVX2__) && !defined(CAPLET_POOL_PORTABLE)
-#define CAPLET_PERMUTE 1
-#endif
-#if __has_builtin(__builtin_prefetch)
-#define CAPLET_PREFETCH 1
-#endif
-#endif
-
-// Lane i of the result: lane order[i] of x.
-static inline int8 permuted(int8 x, int8 order) {
-#ifdef CAPLET_PERMUTE
-  typedef int caplet_v8si __attribute__((vector_size(32)));
-  return __builtin_astype(__builtin_ia32_permvarsi256(__builtin_astype(x, caplet_v8si), __builtin_astype(order, caplet_v8si)), int8);
-#else
-  return shuffle(x, as_uint8(order));
-#endif
-}
 
 static inline int octant_of(const SlabRay* s) { return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0); }
 
@@ -160,18 +138,10 @@ static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree*
   r->flip = octant_of(&r->slab);
 }
 
-static inline void pool_fetch(__global const float* at) {
-#ifdef CAPLET_PREFETCH
-  const char* line = (const char*)(size_t)at;
-  __builtin_prefetch(line, 0, 3);
-  __builtin_prefetch(line + 64, 0, 3);
-  __builtin_prefetch(line + 128, 0, 3);
-  __builtin_prefetch(line + 192, 0, 3);
-#endif
-}
-
 // Rays [next, end).
-static void trace_pool(const Stage* g, const Tree* tree, uint root, uint next, const uint end) {
+static void trace_pool(const Stage* g, uint next, const uint end) {
+  const Tree* tree = TRACED_TREE(g);
+  const uint root = TRACED_ROOT(g);
   PooledRay pool[CAPLET_POOL_RAYS];
   // Places in the pool, each with one more that is written and not kept.
   uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1], going_on[CAPLET_POOL_RAYS + 1];
@@ -193,7 +163,6 @@ static void trace_pool(const Stage* g, const Tree* tree, uint root, uint next, c
       pool_visit(&pool[at_node[i]], tree->nodes);
       going_on[count++] = at_node[i];
     }
-#ifndef NOFILT
     int near = 0;
     for (int i = 0; i < leaves; i++) {
       const uchar place = at_leaf[i];
@@ -209,7 +178,6 @@ static void trace_pool(const Stage* g, const Tree* tree, uint root, uint next, c
       count += 1 - may;
     }
     leaves = near;
-#endif
     for (int i = 0; i < leaves; i++) {
       PooledRay* r = &pool[at_leaf[i]];
       if (CAPLET_HAS_SHAPE(shape_instance) && CAPLET_LEAF_KIND(r->current) == shape_instance)
@@ -254,7 +222,7 @@ static void trace_pool(const Stage* g, const Tree* tree, uint root, uint next, c
       r->current = current;
       __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
       __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(current) * 8;
-      pool_fetch(is_leaf ? block : node);
+      fetch_ahead(is_leaf ? block : node);
       at_node[nodes] = at_leaf[leaves] = place;
       nodes += 1 - is_leaf;
       leaves += is_leaf;

@@ -5,7 +5,7 @@
 // each of its children is visited by those that meet it. Pays for camera rays, which share most of their way. Hits are those of trace_ray
 // to the bit: what is found depends on neither order. For scenes without instances.
 //
-// The including file has defined what pool.cl wants.
+// What the including file has defined: many.cl.
 #ifndef CAPLET_TRACE_STREAM_CL
 #define CAPLET_TRACE_STREAM_CL
 
@@ -22,25 +22,6 @@ typedef struct {
   float t_min, t_best;
 } StreamSlab;
 
-// Bytes of `ids` in the order of `order`.
-static inline uchar8 picked(uchar8 ids, uchar8 order) {
-#if defined(__has_builtin) && defined(__SSSE3__) && !defined(CAPLET_POOL_PORTABLE)
-#if __has_builtin(__builtin_ia32_pshufb128)
-#define CAPLET_PICKED 1
-#endif
-#endif
-#ifdef CAPLET_PICKED
-  typedef char caplet_v16qi __attribute__((vector_size(16)));
-  const uchar16 a = (uchar16)(ids, (uchar8)(0)), b = (uchar16)(order, (uchar8)(0));
-  return __builtin_astype(__builtin_ia32_pshufb128(__builtin_astype(a, caplet_v16qi), __builtin_astype(b, caplet_v16qi)), uchar16).lo;
-#else
-  return shuffle(ids, order);
-#endif
-}
-
-// Bit i of the result: bit k of byte i.
-static inline uint bit_column(ulong bytes, int k) { return (uint)(((bytes >> k & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56); }
-
 typedef struct {
   ShapeRay shape;
   NearRay near;
@@ -49,7 +30,9 @@ typedef struct {
 } StreamRay;
 
 // Rays [first, first + count), at most CAPLET_STREAM_RAYS.
-static void trace_stream(const Stage* g, const Tree* tree, uint root, uint first, uint count) {
+static void trace_stream(const Stage* g, uint first, uint count) {
+  const Tree* tree = TRACED_TREE(g);
+  const uint root = TRACED_ROOT(g);
   StreamSlab slabs[CAPLET_STREAM_RAYS];
   StreamRay rays[CAPLET_STREAM_RAYS];
   uchar octants[CAPLET_STREAM_RAYS], met[CAPLET_STREAM_RAYS + 8], near[CAPLET_STREAM_RAYS + 8];
@@ -116,14 +99,14 @@ static void trace_stream(const Stage* g, const Tree* tree, uint root, uint first
           const int begin = end;
           for (int i = 0; i < n; i += 8) {
             const uint column = bit_column(as_ulong(vload8(0, met + i)), k);
-            vstore8(picked(vload8(0, lists + at + i), as_uchar8(set_bits[column])), 0, lists + end);
+            vstore8(permuted_bytes(vload8(0, lists + at + i), as_uchar8(set_bits[column])), 0, lists + end);
             end += (int)popcount(column);
           }
           list_child[top] = child[k];
           list_at[top] = begin;
           list_count[top] = end - begin;
           top++;
-          pool_fetch(child[k] < 0 ? tree->leaves + (size_t)CAPLET_LEAF_ROW(child[k]) * 8
+          fetch_ahead(child[k] < 0 ? tree->leaves + (size_t)CAPLET_LEAF_ROW(child[k]) * 8
                                   : tree->nodes + (size_t)(uint)child[k] * CAPLET_NODE_FLOATS);
         }
         continue;

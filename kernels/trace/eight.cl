@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The bits that are set in a byte.
-#ifndef CAPLET_TRACE_SET_BITS_CL
-#define CAPLET_TRACE_SET_BITS_CL
+// Eight lanes and eight bytes in another order. Compilers for processors with such instructions are told of them, where they know their
+// names (CAPLET_EIGHT_IS_FAST); the portable way, which CAPLET_PORTABLE asks for everywhere, gives the same.
+#ifndef CAPLET_TRACE_EIGHT_CL
+#define CAPLET_TRACE_EIGHT_CL
+
+#if defined(__has_builtin) && defined(__AVX2__) && !defined(CAPLET_PORTABLE)
+#if __has_builtin(__builtin_ia32_permvarsi256) && __has_builtin(__builtin_ia32_pshufb128)
+#define CAPLET_EIGHT_IS_FAST 1
+#endif
+#endif
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define CAPLET_PREFETCH 1
+#endif
+#endif
 
 // Entry m: the numbers of the bits set in m from the highest down, a byte each, the highest in the least significant byte.
 __constant ulong set_bits[256] = {
@@ -33,5 +45,42 @@ __constant ulong set_bits[256] = {
     0x10203050607UL, 0x4050607UL, 0x4050607UL, 0x104050607UL, 0x104050607UL, 0x204050607UL, 0x204050607UL, 0x10204050607UL,
     0x10204050607UL, 0x304050607UL, 0x304050607UL, 0x10304050607UL, 0x10304050607UL, 0x20304050607UL, 0x20304050607UL,
     0x1020304050607UL, 0x1020304050607UL};
+
+// Lane i of the result: lane order[i] (0 to 7) of x.
+static inline int8 permuted(int8 x, int8 order) {
+#ifdef CAPLET_EIGHT_IS_FAST
+  typedef int caplet_v8si __attribute__((vector_size(32)));
+  return __builtin_astype(__builtin_ia32_permvarsi256(__builtin_astype(x, caplet_v8si), __builtin_astype(order, caplet_v8si)), int8);
+#else
+  return shuffle(x, as_uint8(order));
+#endif
+}
+
+// Byte i of the result: byte order[i] (0 to 7) of x.
+static inline uchar8 permuted_bytes(uchar8 x, uchar8 order) {
+#ifdef CAPLET_EIGHT_IS_FAST
+  typedef char caplet_v16qi __attribute__((vector_size(16)));
+  const uchar16 a = (uchar16)(x, (uchar8)(0)), b = (uchar16)(order, (uchar8)(0));
+  return __builtin_astype(__builtin_ia32_pshufb128(__builtin_astype(a, caplet_v16qi), __builtin_astype(b, caplet_v16qi)), uchar16).lo;
+#else
+  return shuffle(x, order);
+#endif
+}
+
+// Bit i of the result: bit k of byte i. The products of bit 8 i with 2^(56 - 7 i) meet at 56 + i, and no others get there.
+static inline uint bit_column(ulong bytes, int k) { return (uint)(((bytes >> k & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56); }
+
+// Asks for 256 bytes that are read soon.
+static inline void fetch_ahead(__global const float* at) {
+#ifdef CAPLET_PREFETCH
+  const char* line = (const char*)(size_t)at;
+  __builtin_prefetch(line, 0, 3);
+  __builtin_prefetch(line + 64, 0, 3);
+  __builtin_prefetch(line + 128, 0, 3);
+  __builtin_prefetch(line + 192, 0, 3);
+#else
+  (void)at;
+#endif
+}
 
 #endif
