@@ -7,30 +7,45 @@
 namespace caplet::bench {
 namespace {
 
+// Stages as a renderer has them, with a struct of their own for what they take.
 const char* const kernels = R"(
-#include "trace/trace.cl"
-#define ARGUMENTS __global const float* restrict nodes, __global const float* restrict leaves, \
-    __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays, uint count
-__kernel void closest(ARGUMENTS, __global HitRecord* restrict out) {
-  const uint i = (uint)get_global_id(0);
-  const Tree tree = {0, nodes, leaves, instances};
-  if (i < count) out[i] = trace_ray(&tree, root, rays[i], 0);
+#include "groups.cl"
+typedef struct {
+  Tree tree;
+  uint root;
+  __global const RayRecord* restrict rays;
+  __global HitRecord* restrict hits;
+  __global int* restrict any;
+} Stage;
+static RayRecord traced_ray(const Stage* g, uint item) { return g->rays[item]; }
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
+  if (TRACED_ANY) g->any[item] = hit->slot != CAPLET_NONE;
+  else g->hits[item] = *hit;
 }
-__kernel void any_hit(ARGUMENTS, __global int* restrict out) {
-  const uint i = (uint)get_global_id(0);
-  const Tree tree = {0, nodes, leaves, instances};
-  if (i < count) out[i] = trace_ray(&tree, root, rays[i], 1).slot != CAPLET_NONE;
+#define TRACED_TREE(g) (&(g)->tree)
+#define TRACED_ROOT(g) ((g)->root)
+#include "trace/many.cl"
+__kernel void trace(__global const float* restrict nodes, __global const float* restrict leaves,
+    __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays,
+    __global HitRecord* restrict hits, __global int* restrict any, uint item_count) {
+  const Stage stage = {{0, nodes, leaves, instances}, root, rays, hits, any};
+#include "stages/items.cl"
 }
 )";
 
 }  // namespace
 
-DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options, const RowMasks& rows)
-    : device_(device),
-      program_(Program::from_source(device, "trace_test", flatten_kernels(kernels, rows),
-                                    fmt::format("-DCAPLET_REAL_WIDTH={} {}", width, options))),
-      closest_(program_.kernel("closest")),
-      any_(program_.kernel("any_hit")) {}
+DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options, const RowMasks& rows, Manner manner)
+    : device_(device), shares_(width == 8) {
+  const std::string all = fmt::format("-DCAPLET_REAL_WIDTH={} {} {}", width,
+                                      manner == Manner::stream       ? "-DTRACED_NEIGHBOURS=1"
+                                      : manner == Manner::one_by_one ? "-DCAPLET_ONE_BY_ONE"
+                                                                     : "",
+                                      options);
+  const std::string source = flatten_kernels(kernels, rows);
+  closest_ = Program::from_source(device, "trace_closest", source, all + " -DTRACED_ANY=0").kernel("trace");
+  any_ = Program::from_source(device, "trace_any", source, all + " -DTRACED_ANY=1").kernel("trace");
+}
 
 void DeviceTracer::upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances,
                           uint root) {
@@ -46,21 +61,25 @@ void DeviceTracer::set_rays(std::span<const RayRecord> rays) {
   anys_ = Buffer<int>(device_, rays.size());
 }
 
-void DeviceTracer::run(cl::Kernel& kernel, const cl::Buffer& out) {
+void DeviceTracer::run(cl::Kernel& kernel) {
   const std::size_t count = rays_.size();
   kernel.setArg(0, nodes_.handle());
   kernel.setArg(1, leaves_.handle());
   kernel.setArg(2, instances_.handle());
   kernel.setArg(3, root_);
   kernel.setArg(4, rays_.handle());
-  kernel.setArg(5, static_cast<cl_uint>(count));
-  kernel.setArg(6, out);
-  launch(device_, kernel, count, 64);
+  kernel.setArg(5, hits_.handle());
+  kernel.setArg(6, anys_.handle());
+  kernel.setArg(7, static_cast<cl_uint>(count));
+  if (shares_)
+    launch_shares(device_, kernel, count);
+  else
+    launch(device_, kernel, count, 64);
   device_.finish();
 }
 
-void DeviceTracer::run_closest() { run(closest_, hits_.handle()); }
-void DeviceTracer::run_any() { run(any_, anys_.handle()); }
+void DeviceTracer::run_closest() { run(closest_); }
+void DeviceTracer::run_any() { run(any_); }
 std::vector<HitRecord> DeviceTracer::hits() const { return hits_.read(); }
 std::vector<int> DeviceTracer::any() const { return anys_.read(); }
 

@@ -15,8 +15,13 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
+  /// How rays of width 8 go through the tree (kernels/trace/many.cl): many at once, as a renderer's do; as its camera rays, if
+  /// there are no instances; or one after the other, as on devices that are no good at the former.
+  enum class Manner { pool, stream, one_by_one };
+
   /// width: CAPLET_REAL_WIDTH, 8 or 1. For the shapes of `rows`.
-  DeviceTracer(const Device& device, int width, const std::string& options = "", const RowMasks& rows = {});
+  DeviceTracer(const Device& device, int width, const std::string& options = "", const RowMasks& rows = {},
+               Manner manner = Manner::pool);
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
   /// Runs over the rays set before; blocks.
@@ -29,10 +34,10 @@ class DeviceTracer {
   std::vector<int> any(std::span<const RayRecord> rays);
 
  private:
-  void run(cl::Kernel& kernel, const cl::Buffer& out);
+  void run(cl::Kernel& kernel);
 
   Device device_;
-  Program program_;
+  bool shares_;
   cl::Kernel closest_, any_;
   Buffer<float> nodes_, leaves_;
   Buffer<InstanceRecord> instances_;

@@ -184,13 +184,15 @@ Scene walk_scene(const std::string& kind, std::size_t count, std::vector<FlatPri
 std::vector<RayRecord> camera_rays(int size) {
   std::vector<RayRecord> out;
   out.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-  for (int y = 0; y < size; y++)
-    for (int x = 0; x < size; x++) {
-      const float u = 0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
-      const float v = 0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
-      const Vec d = normalize({u, v, -1});
-      out.push_back({0, 0, 3, 0, d.x, d.y, d.z, inf});
-    }
+  for (int ty = 0; ty < size; ty += 8)
+    for (int tx = 0; tx < size; tx += 8)
+      for (int y = ty; y < std::min(ty + 8, size); y++)
+        for (int x = tx; x < std::min(tx + 8, size); x++) {
+          const float u = 0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
+          const float v = 0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
+          const Vec d = normalize({u, v, -1});
+          out.push_back({0, 0, 3, 0, d.x, d.y, d.z, inf});
+        }
   return out;
 }
 

@@ -12,6 +12,7 @@ namespace caplet::bvh {
 namespace {
 
 constexpr double node_cost = 1.0, leaf_cost = 1.0;
+constexpr std::uint32_t no_root = 0xffffffff;
 constexpr std::uint32_t parallel_threshold = 4096;
 
 /// cost[i]: least cost of the subtree as at most i + 1 roots (each a wide node or a leaf). left[i]: how many of these the left
@@ -90,6 +91,37 @@ class Collapser {
     gather(node.right, allowed - left, false, roots);
   }
 
+  /// The roots in the order of slots: the best pairs first of a root and a slot whose number's bits tell the octant of the node
+  /// that the root lies in (bit k: towards larger values along axis k). A ray meets the slots in the order of slot ^ octant of
+  /// its direction, nearly (Ylitie et al. 2017, section 3.3).
+  std::array<std::uint32_t, width> placed(std::uint32_t index, const std::vector<std::uint32_t>& roots) const {
+    std::array<std::uint32_t, width> slots;
+    slots.fill(no_root);
+    const Box& all = binary_.nodes[index].box;
+    std::array<std::array<float, width>, width> gain{};  // root, slot
+    for (std::size_t r = 0; r < roots.size(); r++) {
+      const Box& box = binary_.nodes[roots[r]].box;
+      for (std::size_t s = 0; s < width; s++)
+        for (std::size_t k = 0; k < 3; k++) {
+          const float off = 0.5f * (box.min[k] - all.min[k]) + 0.5f * (box.max[k] - all.max[k]);
+          gain[r][s] += (s >> k & 1) != 0 ? off : -off;
+        }
+    }
+    std::array<bool, width> done{};
+    for (std::size_t n = 0; n < roots.size(); n++) {
+      std::size_t best_root = width, best_slot = 0;
+      for (std::size_t r = 0; r < roots.size(); r++)
+        for (std::size_t s = 0; s < width; s++)
+          if (!done[r] && slots[s] == no_root && (best_root == width || gain[r][s] > gain[best_root][best_slot])) {
+            best_root = r;
+            best_slot = s;
+          }
+      done[best_root] = true;
+      slots[best_slot] = roots[best_root];
+    }
+    return slots;
+  }
+
   std::int32_t emit(std::uint32_t index, int depth) {
     const std::int32_t at = narrow<std::int32_t>(tree_.nodes.size());
     tree_.nodes.emplace_back();
@@ -97,23 +129,25 @@ class Collapser {
     tree_.sah += node_cost * binary_.nodes[index].box.area() * scale_;
     std::vector<std::uint32_t> roots;
     gather(index, width, true, roots);
+    const std::array<std::uint32_t, width> slots = placed(index, roots);
     for (std::size_t i = 0; i < width; i++) {
-      const Box box = i < roots.size() ? binary_.nodes[roots[i]].box : Box{};
+      const Box box = slots[i] != no_root ? binary_.nodes[slots[i]].box : Box{};
       for (std::size_t k = 0; k < 3; k++) {
         tree_.nodes[static_cast<std::size_t>(at)].min[k][i] = box.min[k];
         tree_.nodes[static_cast<std::size_t>(at)].max[k][i] = box.max[k];
       }
       tree_.nodes[static_cast<std::size_t>(at)].child[i] = 0x7fffffff;
     }
-    for (std::size_t i = 0; i < roots.size(); i++) {
-      const BinaryNode& root = binary_.nodes[roots[i]];
+    for (std::size_t i = 0; i < width; i++) {
+      if (slots[i] == no_root) continue;
+      const BinaryNode& root = binary_.nodes[slots[i]];
       std::int32_t child = 0;
       if (root.left == 0) {
         child = ~narrow<std::int32_t>(tree_.leaves.size());
         tree_.leaves.push_back({root.first, root.count, binary_.items[root.first].group});
         tree_.sah += leaf_cost * root.box.area() * scale_;
       } else {
-        child = emit(roots[i], depth + 1);
+        child = emit(slots[i], depth + 1);
       }
       tree_.nodes[static_cast<std::size_t>(at)].child[i] = child;
     }

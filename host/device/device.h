@@ -212,6 +212,12 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
 /// kernel.
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
 
+/// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep the
+/// device's units busy to the end. Throws RunError naming the kernel.
+void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count);
+/// The number of these work-items.
+std::size_t share_count(const Device& device, std::size_t count);
+
 /// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record layout on this device; once per
 /// device and driver (remembered in the cache). The environment variable CAPLET_SELF_TEST leaves it out (0) or forces it (1).
 /// Throws RunError that says what is wrong.

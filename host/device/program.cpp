@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -150,6 +151,17 @@ void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, s
   const std::size_t global = (count + local - 1) / local * local;
   cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local), device_name,
           [&] { device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(global), cl::NDRange(local)); });
+}
+
+std::size_t share_count(const Device& device, std::size_t count) {
+  // A share is long enough to keep a pool of rays full, and short enough that units which are done early find others.
+  constexpr std::size_t most_items = 1024, least_items = 128, shares_a_unit = 8;
+  const std::size_t wanted = std::max(count / most_items, std::size_t{device.info().compute_units} * shares_a_unit);
+  return std::max<std::size_t>(1, std::min(wanted, count / least_items));
+}
+
+void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count) {
+  if (count > 0) launch(device, kernel, share_count(device, count), 1);
 }
 
 }  // namespace caplet

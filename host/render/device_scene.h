@@ -32,6 +32,8 @@ class DeviceScene {
   const WorldRecord& world() const { return world_; }
   /// LightingRecord.radiance.
   float light_radiance() const { return light_radiance_; }
+  /// Whether camera rays have a stage of their own: where eight lanes are tested at a time, and there are no instances.
+  bool has_camera_stage() const { return has_camera_stage_; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
@@ -42,6 +44,7 @@ class DeviceScene {
   Kernels kernels_;
   WorldRecord world_;
   float light_radiance_ = 0;
+  bool has_camera_stage_ = false;
   std::uint64_t bvh_nodes_ = 0;
   std::uint64_t bytes_updated_ = 0;
 };

@@ -32,6 +32,16 @@ constexpr const char* stage_groups[] = {
 #undef STAGE
 };
 
+/// Whether they trace rays.
+constexpr bool stage_traces[] = {
+#define STAGE(name, groups) false,
+#define TRACED_STAGE(name, groups) true,
+#include "shared/queries.def"
+#define TRACED_STAGE(name, groups) true,
+#include "shared/stages.def"
+#undef STAGE
+};
+
 constexpr Stage stages_of_a_render[] = {
 #define STAGE(name, groups) Stage::name,
 #include "shared/stages.def"
@@ -113,13 +123,20 @@ StageOptions StageOptions::together_with(const StageOptions& others) const {
 Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device), options_(std::move(options)), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {}
 
+bool Kernels::takes_shares(Stage stage) const {
+  return stage_traces[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;
+}
+
 void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
   for (const Stage stage : stages) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
     const std::string name = name_of(stage);
     Program program = Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
-    program.prepare(name, local_size_of(stage), stage == Stage::sort_prefix ? 1 : most);
+    program.prepare(name, local_size_of(stage),
+                    stage == Stage::sort_prefix ? 1
+                    : takes_shares(stage)       ? share_count(device_, most)
+                                                : most);
     compile_seconds_ += program.build_seconds();
     compile_seconds_by_stage_.emplace_back(name, program.build_seconds());
     cl::Kernel kernel = program.kernel(name);
@@ -127,7 +144,9 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
   }
 }
 
-std::size_t Kernels::local_size_of(Stage stage) const { return stage == Stage::sort_prefix ? 1 : local_size_; }
+std::size_t Kernels::local_size_of(Stage stage) const {
+  return stage == Stage::sort_prefix || takes_shares(stage) ? 1 : local_size_;
+}
 
 void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count) {
   if (count == 0) return;
@@ -136,7 +155,10 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count) {
   const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
   compiled->kernel.setArg(index, narrow<cl_uint>(count));
   const auto start = std::chrono::steady_clock::now();
-  launch(device_, compiled->kernel, count, local_size_of(stage));
+  if (takes_shares(stage))
+    launch_shares(device_, compiled->kernel, count);
+  else
+    launch(device_, compiled->kernel, count, local_size_of(stage));
   if (!timed_) return;
   device_.finish();
   compiled->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

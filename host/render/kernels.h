@@ -61,6 +61,7 @@ class Kernels {
   const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const { return compile_seconds_by_stage_; }
 
  private:
+  bool takes_shares(Stage stage) const;  // its work-items do several items each
   std::size_t local_size_of(Stage stage) const;
 
   struct Compiled {

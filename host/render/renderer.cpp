@@ -100,7 +100,9 @@ void Renderer::reset(const FlatView& view) {
   film_.layout = layout;
   film_.parts.clear();
   film_.words.clear();
-  scene_.kernels().compile(render_stages(), batch_paths_);
+  std::vector<Stage> stages(render_stages().begin(), render_stages().end());
+  if (!scene_.has_camera_stage()) std::erase(stages, Stage::extend_camera);
+  scene_.kernels().compile(stages, batch_paths_);
 }
 
 void Renderer::clear_counters() {
@@ -121,6 +123,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
     record.window_x = narrow<uint>(window.x);
     record.window_y = narrow<uint>(window.y);
     record.window_width = narrow<uint>(window.width);
+    record.window_height = narrow<uint>(window.height);
     record.pixel_begin = narrow<uint>(first);
     record.pixel_count = narrow<uint>(count);
     record.sample_begin = sample_begin;
@@ -151,9 +154,11 @@ void Renderer::batch(const BatchRecord& record) {
   kernels.run(Stage::generate, bindings, record.path_count);
   rays_.camera += record.path_count;
   std::array<uint, counter_count> counters{};
+  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
   for (std::size_t queued = record.path_count; queued > 0;) {
     if (sorts) paths_.sort.sort_bins.clear();
-    kernels.run(Stage::extend, bindings, queued);
+    kernels.run(extend, bindings, queued);
+    extend = Stage::extend;
     kernels.run(Stage::shade, bindings, queued);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     const uint next = counters[counter_next], shadow = counters[counter_shadow];

@@ -127,6 +127,36 @@ static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, __global const
   return ray;
 }
 
+// A ray as filters want it that look along it: its origin, an orthonormal frame with w along the direction, and the length of the
+// direction, in which t counts, rounded up.
+typedef struct {
+  float ox, oy, oz;
+  float ux, uy, uz, vx, vy, vz, wx, wy, wz;
+  float length;
+} NearRay;
+
+// The frame: Duff et al. 2017, Building an Orthonormal Basis, Revisited.
+static inline NearRay near_ray(float3 o, float3 d) {
+  NearRay ray;
+  const float length = sqrt(dot(d, d));
+  const float3 w = d / length;
+  const float sign = copysign(1.0f, w.z), a = -1.0f / (sign + w.z), b = w.x * w.y * a;
+  ray.ox = o.x;
+  ray.oy = o.y;
+  ray.oz = o.z;
+  ray.ux = 1.0f + sign * w.x * w.x * a;
+  ray.uy = sign * b;
+  ray.uz = -sign * w.x;
+  ray.vx = b;
+  ray.vy = sign + w.y * w.y * a;
+  ray.vz = -w.y;
+  ray.wx = w.x;
+  ray.wy = w.y;
+  ray.wz = w.z;
+  ray.length = length * (1.0f + 0x1p-20f);
+  return ray;
+}
+
 // What a line does to a shape: it goes in at t_enter and out at t_exit, through the surfaces of these numbers. `enter` and `exit`: lanes
 // in which that crossing is on the shape: both or none for closed solids; open ones miss parts, and one crossing alone is an entrance or
 // an exit by the side it is seen from. t_enter <= t_exit to rounding wherever both are there (of bilinear patches either may be first);

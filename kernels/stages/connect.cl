@@ -2,10 +2,12 @@
 // Copyright Caplet authors
 //
 // Shadow rays: what reaches the light adds its radiance.
-#include "trace/trace.cl"
-
-static void stage_item(const Stage* g, uint item) {
+static RayRecord traced_ray(const Stage* g, uint item) { return g->shadows.path_shadow[g->shadows.queue_shadow[item]]; }
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const uint path = g->shadows.queue_shadow[item];
-  if (trace_any(&g->tree, g->shadows.path_shadow[path])) return;
-  g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
+  if (hit->slot == CAPLET_NONE) g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }
+#define TRACED_TREE(g) (&(g)->tree)
+#define TRACED_ROOT(g) ((g)->tree.world->root)
+#define TRACED_ANY 1
+#include "trace/many.cl"

@@ -2,9 +2,9 @@
 // Copyright Caplet authors
 //
 // Closest hit of every ray in the queue.
-#include "trace/trace.cl"
-
-static void stage_item(const Stage* g, uint item) {
-  const uint path = g->queues.queue[item];
-  g->rays.path_hit[path] = trace_closest(&g->tree, g->rays.path_ray[path]);
-}
+static RayRecord traced_ray(const Stage* g, uint item) { return g->rays.path_ray[g->queues.queue[item]]; }
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) { g->rays.path_hit[g->queues.queue[item]] = *hit; }
+#define TRACED_TREE(g) (&(g)->tree)
+#define TRACED_ROOT(g) ((g)->tree.world->root)
+#define TRACED_ANY 0
+#include "trace/many.cl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The entry point of a stage: its groups' buffers are the arguments (arguments.cl).
+// The entry point of a stage: its groups' buffers are the arguments (arguments.cl). A work-item does one item, or its share of them.
 
 // Work-items compute with float8 where eight primitives are tested at once: compilers that run work-items side by side must not do so
 // on top of it. Without this hint Intel's of 2025 and later are slow, and wrong where functions are called (docs/drivers.md).
@@ -26,6 +26,5 @@ __kernel void STAGE_NAME(
 #undef BUFFER
 #undef GROUP_END
   };
-  const uint item = (uint)get_global_id(0);
-  if (item < item_count) stage_item(&stage, item);
+#include "stages/items.cl"
 }

@@ -32,12 +32,23 @@ typedef struct {
   uint seed;  // of the pixel
 } PathSample;
 
+// Where pixel number `pixel` of a batch is in the full image. A window's pixels are numbered tile by tile of 8 x 8, so that camera rays
+// of near numbers are neighbours: tiles in rows from the top left, within each likewise; those at the right and lower edges are smaller.
+static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
+  const uint width = batch->window_width, in_window = batch->pixel_begin + pixel;
+  const uint band = in_window / (8u * width), in_band = in_window - band * 8u * width;
+  const uint rows = min(8u, batch->window_height - 8u * band);
+  const uint tile = in_band / (8u * rows), in_tile = in_band - tile * 8u * rows;
+  const uint columns = min(8u, width - 8u * tile);
+  return (uint2)(batch->window_x + 8u * tile + in_tile % columns, batch->window_y + 8u * band + in_tile / columns);
+}
+
 // Of path number `path` of a batch.
 static inline PathSample path_sample(__global const BatchRecord* batch, uint seed, uint path) {
-  const uint pixel = batch->pixel_begin + path / batch->sample_count;
+  const uint2 pixel = batch_pixel(batch, path / batch->sample_count);
   PathSample s;
-  s.x = batch->window_x + pixel % batch->window_width;
-  s.y = batch->window_y + pixel / batch->window_width;
+  s.x = pixel.x;
+  s.y = pixel.y;
   s.sample = batch->sample_begin + path % batch->sample_count;
   s.seed = pixel_seed(s.x, s.y, seed);
   return s;

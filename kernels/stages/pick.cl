@@ -3,10 +3,13 @@
 //
 // The nearest crossing of every ray of a query.
 #include "stages/pick_record.cl"
-#include "trace/trace.cl"
 
-static void stage_item(const Stage* g, uint item) {
+static RayRecord traced_ray(const Stage* g, uint item) { return g->query.query_rays[item]; }
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const RayRecord ray = g->query.query_rays[item];
-  const HitRecord hit = trace_closest(&g->tree, ray);
-  g->picks.picks[item] = pick_record(&g->tree, &g->surfaces, &ray, &hit);
+  g->picks.picks[item] = pick_record(&g->tree, &g->surfaces, &ray, hit);
 }
+#define TRACED_TREE(g) (&(g)->tree)
+#define TRACED_ROOT(g) ((g)->tree.world->root)
+#define TRACED_ANY 0
+#include "trace/many.cl"

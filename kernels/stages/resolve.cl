@@ -58,9 +58,8 @@ static inline float4 layer_at(__global const float* values, const int count) {
 static void stage_item(const Stage* g, uint item) {
   __global const BatchRecord* batch = g->batch.batch;
   __global const ViewRecord* view = g->view.view;
-  const uint pixel = batch->pixel_begin + item;
-  const uint x = batch->window_x + pixel % batch->window_width, y = batch->window_y + pixel / batch->window_width;
-  const uint place = (y - view->crop_y) * view->crop_width + (x - view->crop_x);
+  const uint2 pixel = batch_pixel(batch, item);
+  const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   *film++ += batch->sample_count;
   const uint layers = batch->layers;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// How a stage traces its rays: one a work-item, or, where eight lanes are tested at a time, an equal share of them a work-item, which
+// goes through the tree with many at once if the device is good at it. The including file has defined
+//   RayRecord traced_ray(const Stage* g, uint item)
+//   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
+//   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
+//   TRACED_ANY                       // 1: any hit will do
+//   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them, and no instance is in the tree
+// Programs may be built with CAPLET_ONE_BY_ONE: a ray after the other; or CAPLET_PORTABLE: many at once, whatever the device.
+#ifndef CAPLET_TRACE_MANY_CL
+#define CAPLET_TRACE_MANY_CL
+
+#include "trace/eight.cl"
+#include "trace/trace.cl"
+
+#if CAPLET_REAL_WIDTH == 8
+// Work-items take shares of their rays (kernel.cl).
+#define STAGE_TAKES_SHARES
+#if defined(CAPLET_ONE_BY_ONE) || (!defined(CAPLET_EIGHT_IS_FAST) && !defined(CAPLET_PORTABLE))
+static void stage_share(const Stage* g, uint begin, uint end) {
+  for (; begin < end; begin++) {
+    const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ANY);
+    traced_hit(g, begin, &hit);
+  }
+}
+#elif TRACED_NEIGHBOURS
+#include "trace/stream.cl"
+static void stage_share(const Stage* g, uint begin, uint end) {
+  for (; begin < end; begin += CAPLET_STREAM_RAYS) trace_stream(g, begin, min(end - begin, (uint)CAPLET_STREAM_RAYS));
+}
+#else
+#include "trace/pool.cl"
+static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, begin, end); }
+#endif
+#else
+static void stage_item(const Stage* g, uint item) {
+  const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, item), TRACED_ANY);
+  traced_hit(g, item, &hit);
+}
+#endif
+
+#endif

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Many rays of one work-item in flight at a time, for processors with eight lanes: what the rays in the pool wait for (memory, a branch)
+// overlaps. A round is three tight loops: over the rays at nodes, over those at leaves, and over all of them to go on. Hits are those of
+// trace_ray to the bit: what is found depends on neither order.
+//
+// What the including file has defined: many.cl.
+#ifndef CAPLET_TRACE_POOL_CL
+#define CAPLET_TRACE_POOL_CL
+
+#include "trace/eight.cl"
+#include "trace/trace.cl"
+
+#ifndef CAPLET_POOL_RAYS
+#define CAPLET_POOL_RAYS 24
+#endif
+// Nodes on the longest path, both levels of trees together.
+#ifndef CAPLET_PATH_NODES
+#define CAPLET_PATH_NODES (2 * CAPLET_TREE_DEPTH_MAX)
+#endif
+// Each node on the path leaves seven children, the last one writes eight places; one entry at the bottom, one that leaves an instance.
+#define CAPLET_POOL_STACK (7 * CAPLET_PATH_NODES + 8 + 2)
+#define CAPLET_POOL_LEAVE_INSTANCE 0x7fffffff  // a child: the ray goes back to the world
+
+// A child is a node or a leaf, with the parameter where the ray enters its box: not negative, so its bits order as it does.
+typedef struct {
+  SlabRay slab;
+  ShapeRay shape;
+  NearRay near;
+  float t_min, t_best;
+  uint slot, inside, instance;  // hit so far; the instance that the ray is in, and that of the hit
+  int side, found;
+  uint item;
+  int flip;  // the octant of the direction: bit k where it falls along axis k
+  int current, top;
+  int enter[CAPLET_POOL_STACK], child[CAPLET_POOL_STACK];
+} PooledRay;
+
+static inline int octant_of(const SlabRay* s) { return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0); }
+
+// 0: the ray can hit nothing.
+static inline int pool_begin(PooledRay* r, const Tree* tree, uint root, uint item, RayRecord ray) {
+  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
+  r->item = item;
+  r->t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack entries go by the bits
+  r->t_best = fmin(ray.t_max, MAXFLOAT);           // as trace_ray
+  r->slot = 0;
+  r->instance = r->inside = CAPLET_NONE;
+  r->side = r->found = 0;
+  r->slab = slab_ray(o, d);
+  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
+  r->near = near_ray(o, d);
+  r->flip = octant_of(&r->slab);
+  r->current = (int)root;
+  r->enter[0] = -1;  // ends every search for the next entry
+  r->child[0] = 0;
+  r->top = 1;
+  return line_is_valid(o, d) && ray.t_min < ray.t_max && r->t_min < r->t_best;
+}
+
+// The children of a node that the ray meets go on its stack, nearest on top by the octant that they lie in.
+static inline void pool_visit(PooledRay* r, __global const float* nodes) {
+  __global const float* node = nodes + (size_t)(uint)r->current * CAPLET_NODE_FLOATS;
+  const SlabRay* s = &r->slab;
+  const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
+  const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
+  const float8 nz = vload8(0, node + s->near_z) * s->near_iz - s->near_oz;
+  const float8 fx = vload8(0, node + s->far_x) * s->far_ix - s->far_ox;
+  const float8 fy = vload8(0, node + s->far_y) * s->far_iy - s->far_oy;
+  const float8 fz = vload8(0, node + s->far_z) * s->far_iz - s->far_oz;
+  const float8 near = real_max(real_max(nx, ny), real_max(nz, real_of(r->t_min)));
+  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(r->t_best)));
+  // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in the order of k ^ flip.
+  const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(r->flip);
+  const uint met = mask_bits(permuted(near <= far, lanes));
+  const int8 order = convert_int8(as_uchar8(set_bits[met])) ^ (int8)(r->flip);
+  vstore8(permuted(as_int8(near), order), 0, r->enter + r->top);
+  vstore8(permuted(vload8(0, (__global const int*)(node + 48)), order), 0, r->child + r->top);
+  r->top += (int)popcount(met);
+}
+
+// What the ray hits of the leaf block that it is at.
+static inline void pool_test(PooledRay* r, const Tree* tree) {
+  const uint kind = CAPLET_LEAF_KIND(r->current), row = CAPLET_LEAF_ROW(r->current);
+  __global const float* block = tree->leaves + (size_t)row * 8;
+  real t;
+  real_mask side;
+  real_mask ok = shape_hit(kind, &r->shape, block, 0, &t, &side);
+  ok &= lanes_filled(block, 0) & (t > r->t_min) & (t <= r->t_best);
+  if (r->shape.sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
+  if (r->shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
+  uint bits = mask_bits(ok);
+  if (bits == 0) return;
+  float ts[CAPLET_REAL_WIDTH];
+  real_store(t, ts);
+  int sides[CAPLET_REAL_WIDTH];
+  mask_store(side, sides);
+  do {
+    const uint i = lowest_bit(bits);
+    bits &= bits - 1;
+    const uint slot = row * 8 + i;
+    if (ts[i] < r->t_best ||
+        (ts[i] == r->t_best && r->found && tie_is_before(tree, slot, r->inside, r->slot, r->instance))) {
+      r->t_best = ts[i];
+      r->slot = slot;
+      r->instance = r->inside;
+      r->side = sides[i];
+      r->found = 1;
+    }
+  } while (bits != 0);
+}
+
+// Into the instance that the ray is at. Below its root's entries lies one that leads back.
+static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
+  const uint instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
+  __global const InstanceRecord* placed = tree->instances + instance;
+  const RayRecord ray = traced_ray(g, r->item);
+  r->inside = instance;
+  r->enter[r->top] = 0;
+  r->child[r->top++] = CAPLET_POOL_LEAVE_INSTANCE;
+  const int valid = ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz), r->t_min, tree->leaves,
+                                    &r->slab, &r->shape);
+  r->near = near_ray((float3)(r->shape.ox, r->shape.oy, r->shape.oz), (float3)(r->shape.dx, r->shape.dy, r->shape.dz));
+  r->flip = octant_of(&r->slab);
+  if (!valid) return;
+  r->enter[r->top] = 0;
+  r->child[r->top++] = (int)placed->root;
+}
+
+static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree* tree) {
+  const RayRecord ray = traced_ray(g, r->item);
+  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
+  r->inside = CAPLET_NONE;
+  r->slab = slab_ray(o, d);
+  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
+  r->near = near_ray(o, d);
+  r->flip = octant_of(&r->slab);
+}
+
+// Rays [next, end).
+static void trace_pool(const Stage* g, uint next, const uint end) {
+  const Tree* tree = TRACED_TREE(g);
+  const uint root = TRACED_ROOT(g);
+  PooledRay pool[CAPLET_POOL_RAYS];
+  // Places in the pool, each with one more that is written and not kept.
+  uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1], going_on[CAPLET_POOL_RAYS + 1];
+  int nodes = 0, leaves = 0;
+  const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
+
+  for (uint place = 0; place < CAPLET_POOL_RAYS; place++) {
+    int begun = 0;
+    while (!begun && next < end) {
+      begun = pool_begin(&pool[place], tree, root, next, traced_ray(g, next));
+      if (!begun) traced_hit(g, next, &miss);
+      next++;
+    }
+    if (begun) at_node[nodes++] = (uchar)place;
+  }
+  while (nodes + leaves > 0) {
+    int count = 0;
+    for (int i = 0; i < nodes; i++) {
+      pool_visit(&pool[at_node[i]], tree->nodes);
+      going_on[count++] = at_node[i];
+    }
+#ifdef CAPLET_CAPSULE_NEAR
+    int near = 0;
+    for (int i = 0; i < leaves; i++) {
+      const uchar place = at_leaf[i];
+      const PooledRay* r = &pool[place];
+      int may = 1;
+      if (CAPLET_LEAF_KIND(r->current) == shape_capsule) {
+        __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8;
+        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->t_best) & lanes_filled(block, 0)) != 0;
+      }
+      at_leaf[near] = place;
+      going_on[count] = place;
+      near += may;
+      count += 1 - may;
+    }
+    leaves = near;
+#endif
+    for (int i = 0; i < leaves; i++) {
+      PooledRay* r = &pool[at_leaf[i]];
+      if (CAPLET_HAS_SHAPE(shape_instance) && CAPLET_LEAF_KIND(r->current) == shape_instance)
+        pool_enter_instance(r, g, tree);
+      else
+        pool_test(r, tree);
+      going_on[count++] = at_leaf[i];
+    }
+    nodes = leaves = 0;
+    for (int i = 0; i < count; i++) {
+      const uchar place = going_on[i];
+      PooledRay* r = &pool[place];
+      int top = r->top;
+      if (TRACED_ANY && r->found) top = 1;
+      for (;;) {
+        const int t_best = as_int(r->t_best);
+        do top--;
+        while (r->enter[top] > t_best);
+        if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 || r->child[top] != CAPLET_POOL_LEAVE_INSTANCE) break;
+        pool_leave_instance(r, g, tree);
+      }
+      if (top == 0) {
+        HitRecord hit = miss;
+        if (r->found) {
+          hit.t = r->t_best;
+          hit.slot = r->slot;
+          hit.instance = r->instance;
+          hit.surface = (uint)r->side;
+        }
+        traced_hit(g, r->item, &hit);
+        int begun = 0;
+        while (!begun && next < end) {
+          begun = pool_begin(r, tree, root, next, traced_ray(g, next));
+          if (!begun) traced_hit(g, next, &miss);
+          next++;
+        }
+        if (begun) at_node[nodes++] = place;
+        continue;
+      }
+      r->top = top;
+      const int current = r->child[top], is_leaf = (int)((uint)current >> 31);
+      r->current = current;
+      __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
+      __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(current) * 8;
+      fetch_ahead(is_leaf ? block : node);
+      at_node[nodes] = at_leaf[leaves] = place;
+      nodes += 1 - is_leaf;
+      leaves += is_leaf;
+    }
+  }
+}
+
+#endif
