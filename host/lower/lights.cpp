@@ -103,6 +103,7 @@ class LightLowering {
     }
     void position(const char*, const glm::dvec3&) {}
     void direction(const char*, const char*, const glm::dvec3&) {}
+    void number(const char*, double, double, double) {}
     void cone(double, double) {}
   };
 
