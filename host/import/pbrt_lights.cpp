@@ -85,6 +85,11 @@ struct LightReader {
     value = pbrt::direction(parameters, parameters.point(from, glm::dvec3(0)), parameters.point(to, glm::dvec3(0, 0, 1)),
                             world_from_light);
   }
+  void number(const char* name, double& value, double low, double high) {
+    value = parameters.number(name, value);
+    if (!(value >= low && value <= high))
+      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
+  }
   void cone(double& total_angle, double& falloff_start_angle) {
     const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
     if (!(cone > 0 && cone <= 180)) parameters.error("coneangle", "must be above 0 and at most 180 degrees");

@@ -27,6 +27,12 @@ constexpr std::uint32_t kind_of = light_count;
 enum { light_infinite = light_count };
 #include "scene/lights.def"
 
+// Every row of lights.def has its model: `area` is an emission, and `constant` and `image` have one together.
+#define LIGHT_MODEL(name, Type) +1
+static_assert(2
+#include "scene/lights.def"
+              == light_count);
+
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
  public:
@@ -108,6 +114,7 @@ class LightLowering {
     }
     void position(const char*, const glm::dvec3&) {}
     void direction(const char*, const char*, const glm::dvec3&) {}
+    void number(const char*, double, double, double) {}
     void cone(double, double) {}
   };
 

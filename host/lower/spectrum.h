@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "lower/color.h"
 #include "lower/flat_scene.h"
 #include "scene/spectrum.h"
 
@@ -49,19 +50,5 @@ class SpectrumTable {
   FlatScene& out_;
   ColorSpace space_;
 };
-
-/// True when the value does not depend on wavelength (for the dispersive flag).
-bool is_constant(const Spectrum& spectrum);
-
-/// Value at `nm` of a spectrum that is not RGB.
-double evaluate(const Spectrum& spectrum, double nm);
-
-/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of
-/// texels (a table of exact solutions built on first use, interpolated).
-std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
-
-/// 3x3 row-major, linear RGB of `space` from XYZ and back.
-std::array<double, 9> rgb_from_xyz(ColorSpace space);
-std::array<double, 9> xyz_from_rgb(ColorSpace space);
 
 }  // namespace caplet

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/check.h"
+#include "lower/color.h"
 #include "lower/detail/spectrum_observer.h"
-#include "lower/spectrum.h"
 
 namespace caplet {
 

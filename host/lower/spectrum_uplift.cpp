@@ -15,8 +15,8 @@
 #include <mutex>
 #include <vector>
 
+#include "lower/color.h"
 #include "lower/detail/spectrum_color.h"
-#include "lower/spectrum.h"
 
 namespace caplet {
 

@@ -17,14 +17,25 @@
 #define PATH_SPECULAR 1u   // the last scattering was a delta: light sampling could not have found what is hit next
 #define PATH_DEPTH_SHIFT 8
 
-// Pairs of sample dimensions: three for the camera, four for each scattering.
-#define SAMPLE_FILTER 0
-#define SAMPLE_LENS 1
-#define SAMPLE_WAVELENGTH 2
-#define SAMPLE_BSDF(depth) (3 + 4 * (depth))
-#define SAMPLE_LIGHT(depth) (4 + 4 * (depth))
-#define SAMPLE_CHOICES(depth) (5 + 4 * (depth))   // x: which light, y: which lobe
-#define SAMPLE_ROULETTE(depth) (6 + 4 * (depth))
+// Addresses of random numbers (dimensions.def).
+enum {
+#define CAMERA_DIMENSION(name) camera_dimension_##name,
+#define SCATTERING_DIMENSION(name)
+#include "shared/dimensions.def"
+#undef CAMERA_DIMENSION
+#undef SCATTERING_DIMENSION
+  camera_dimension_count
+};
+enum {
+#define CAMERA_DIMENSION(name)
+#define SCATTERING_DIMENSION(name) scattering_dimension_##name,
+#include "shared/dimensions.def"
+#undef CAMERA_DIMENSION
+#undef SCATTERING_DIMENSION
+  scattering_dimension_count
+};
+#define CAMERA_SAMPLE(name) camera_dimension_##name
+#define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
 
 typedef struct {
   uint x, y;  // pixel of the full image

@@ -122,13 +122,13 @@ static void stage_item(const Stage* g, uint item) {
   }
 
   const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
-  const float2 choices = sampler_2d(at.seed, at.sample, SAMPLE_CHOICES(depth));
+  const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
     sample_light(g, &scene, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths,
-                 sampler_bits(at.seed, at.sample, SAMPLE_CHOICES(depth)), sampler_2d(at.seed, at.sample, SAMPLE_LIGHT(depth)));
+                 sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
-  if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SAMPLE_BSDF(depth)), &sample)) return;
+  if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &sample)) return;
   const float3 wi = to_world(&frame, sample.wi);
   if (sample.transmitted != (dot(wi, s.ng) * dot(wo, s.ng) < 0.0f)) return;
   throughput *= sample.weight;
@@ -140,7 +140,7 @@ static void stage_item(const Stage* g, uint item) {
   // faster than time grows (docs/performance.md).
   const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
   if (depth >= 3 && survival < 1.0f) {
-    if (sampler_1d(at.seed, at.sample, SAMPLE_ROULETTE(depth)) >= survival) return;
+    if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return;
     throughput /= survival;
   }
   if (!(max4(fabs(throughput)) > 0.0f)) return;

@@ -100,8 +100,8 @@ std::vector<float> random_numbers(std::size_t count, unsigned seed) {
   return u;
 }
 
-BsdfOnDevice::BsdfOnDevice()
-    : device_(test_device()), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels), "")) {}
+BsdfOnDevice::BsdfOnDevice(const RowMasks& rows)
+    : device_(test_device()), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels, rows), "")) {}
 
 cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf) const {
   cl::Kernel kernel = program_.kernel(name);

@@ -39,7 +39,8 @@ struct EvalRow {
 
 class BsdfOnDevice {
  public:
-  BsdfOnDevice();
+  /// Kernels: for the rows of the lists that a mask names.
+  explicit BsdfOnDevice(const RowMasks& rows = {});
   /// u: three numbers (component, u.x, u.y) a sample.
   std::vector<SampleRow> sample(const BsdfParameters& bsdf, const Direction& wo, const std::vector<float>& u) const;
   std::vector<EvalRow> evaluate(const BsdfParameters& bsdf, const std::vector<Direction>& wo,

@@ -2,7 +2,6 @@
 // Copyright Caplet authors
 //
 // Closest and any hit of every shape against brute force in double, in both encodings.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -90,6 +90,32 @@ TEST_P(EveryLight, SamplesAreSoundAndGiveItsIrradiance) {
   EXPECT_NEAR(mean, expected, 4 * error + (trial.per_white ? 1e-3 : 2e-6) * expected);
 }
 
+// What a renderer builds for a scene of this light alone gives what the kernels of all lights give, and what is built for all
+// others has nothing of it.
+TEST_P(EveryLight, KernelsOfItAloneSayTheSameAndThoseOfAllOthersNothing) {
+  const LightTrial trial = trial_of(GetParam());
+  const FlatScene flat = lower(trial.scene);
+  const std::uint64_t own = std::uint64_t{1} << GetParam().number;
+  ASSERT_EQ(flat.light_kinds(), own);
+  LightBench all(flat), alone(flat, {{"lights", own}, {"shapes", flat.shapes}}), others(flat, {{"lights", ~own}});
+  const std::vector<SampledLight> expected = all.sample(trial.p, 1000), seen = alone.sample(trial.p, 1000),
+                                  none = others.sample(trial.p, 1000);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_EQ(seen[i].pdf, expected[i].pdf);
+    ASSERT_EQ(seen[i].radiance, expected[i].radiance);
+    ASSERT_EQ(seen[i].wi, expected[i].wi);
+    ASSERT_EQ(seen[i].target, expected[i].target);
+    ASSERT_EQ(none[i].pdf, 0);
+  }
+  EXPECT_EQ(expected[0].pdf > 0, trial.is_sampled);
+  const std::vector<glm::dvec3> directions = sphere_directions(1000);
+  const std::vector<glm::dvec2> sky = all.sky(directions), own_sky = alone.sky(directions), no_sky = others.sky(directions);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    ASSERT_EQ(own_sky[i].x, sky[i].x);
+    ASSERT_EQ(no_sky[i].x, 0);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryLight, testing::ValuesIn(all_lights), name_of_kind);
 
 // A light of the model that is no row of the list would be on no trial.

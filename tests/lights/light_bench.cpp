@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <random>
 
 #include "support/test_device.h"
@@ -95,15 +96,20 @@ __kernel void select_lights(SCENE, __global const uint* u, __global uint* out, u
 }
 )";
 
-Program& program(const Device& device) {
-  static Program built = Program::from_source(device, "light_bench", flatten_kernels(kernel_text),
-                                              fmt::format("-DCAPLET_REAL_WIDTH={}", test_width()));
-  return built;
+Program& program_of(const Device& device, const RowMasks& rows) {
+  static std::map<RowMasks, Program> built;
+  const auto found = built.find(rows);
+  if (found != built.end()) return found->second;
+  return built
+      .emplace(rows, Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows),
+                                          fmt::format("-DCAPLET_REAL_WIDTH={}", test_width())))
+      .first->second;
 }
 
 }  // namespace
 
-LightBench::LightBench(const FlatScene& scene) : device_(test_device()), scene_(device_, scene) {}
+LightBench::LightBench(const FlatScene& scene, const RowMasks& rows)
+    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows)) {}
 
 cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
   cl_uint index = 0;
@@ -126,7 +132,7 @@ std::vector<SampledLight> LightBench::sample(const glm::dvec3& p, std::size_t co
   for (float& x : u) x = static_cast<float>(engine() >> 8) * 0x1p-24f;
   const Buffer<float> numbers(device_, std::span<const float>(u));
   Buffer<float> out(device_, 11 * count);
-  cl::Kernel kernel = program(device_).kernel("sample_lights");
+  cl::Kernel kernel = program_->kernel("sample_lights");
   cl_uint at = bind_scene(kernel);
   for (int k = 0; k < 3; ++k) kernel.setArg(at++, static_cast<float>(p[k]));
   kernel.setArg(at++, numbers.handle());
@@ -149,7 +155,7 @@ std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& 
       for (int k = 0; k < 3; ++k) flat.push_back(static_cast<float>(v[k]));
   const Buffer<float> in(device_, std::span<const float>(flat));
   Buffer<float> out(device_, points.size());
-  cl::Kernel kernel = program(device_).kernel("area_densities");
+  cl::Kernel kernel = program_->kernel("area_densities");
   cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, light);
   for (int k = 0; k < 3; ++k) kernel.setArg(at++, static_cast<float>(p[k]));
@@ -167,7 +173,7 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
     for (int k = 0; k < 3; ++k) flat.push_back(static_cast<float>(d[k]));
   const Buffer<float> in(device_, std::span<const float>(flat));
   Buffer<float> out(device_, 2 * directions.size());
-  cl::Kernel kernel = program(device_).kernel("sky");
+  cl::Kernel kernel = program_->kernel("sky");
   cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, in.handle());
   kernel.setArg(at++, out.handle());
@@ -182,7 +188,7 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
 std::vector<std::uint64_t> LightBench::all_selections() {
   constexpr std::size_t shift = 14, items = std::size_t{1} << (32 - shift);
   Buffer<std::uint32_t> out(device_, 9 * items);
-  cl::Kernel kernel = program(device_).kernel("selections");
+  cl::Kernel kernel = program_->kernel("selections");
   cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, static_cast<cl_uint>(shift));
   kernel.setArg(at++, out.handle());
@@ -197,7 +203,7 @@ std::vector<std::uint64_t> LightBench::all_selections() {
 std::vector<std::uint32_t> LightBench::select(const std::vector<std::uint32_t>& u) {
   const Buffer<std::uint32_t> numbers(device_, std::span<const std::uint32_t>(u));
   Buffer<std::uint32_t> out(device_, u.size());
-  cl::Kernel kernel = program(device_).kernel("select_lights");
+  cl::Kernel kernel = program_->kernel("select_lights");
   cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, numbers.handle());
   kernel.setArg(at++, out.handle());

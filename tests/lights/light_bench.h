@@ -27,7 +27,8 @@ struct SampledLight {
 /// The device, its buffers for one scene, and the kernels.
 class LightBench {
  public:
-  explicit LightBench(const FlatScene& scene);
+  /// Kernels: for the rows of the lists that a mask names.
+  explicit LightBench(const FlatScene& scene, const RowMasks& rows = {});
 
   /// light_sample at p with `count` independent uniform random numbers (fixed seed), at wavelengths 450 to 600 nm; the radiance
   /// is that at the first.
@@ -46,6 +47,7 @@ class LightBench {
   cl_uint bind_scene(cl::Kernel& kernel);
   Device device_;
   SceneBuffers scene_;
+  Program* program_;
 };
 
 }  // namespace caplet::test

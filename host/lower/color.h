@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Values of spectra and colours (spectrum_color.cpp, spectrum_uplift.cpp).
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// True when the value does not depend on wavelength (for the dispersive flag).
+bool is_constant(const Spectrum& spectrum);
+
+/// Value at `nm` of a spectrum that is not RGB.
+double evaluate(const Spectrum& spectrum, double nm);
+
+/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of
+/// texels (a table of exact solutions built on first use, interpolated).
+std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
+
+/// 3x3 row-major, linear RGB of `space` from XYZ and back.
+std::array<double, 9> rgb_from_xyz(ColorSpace space);
+std::array<double, 9> xyz_from_rgb(ColorSpace space);
+
+}  // namespace caplet
