@@ -80,7 +80,7 @@ void run(std::size_t count, const std::string& choice) {
   on.finish();
   fmt::print("{:<28} {:>9.1f} ms  {} bytes\n", "sending all of it", 1e3 * watch.lap(), live.flat().device_bytes());
   Renderer renderer(device, live.view());
-  renderer.pass(renderer.film().layout.window, 0, 1);
+  renderer.pass(renderer.layout().window, 0, 1);
   on.finish();
 
   const auto measure = [&](const char* what, const std::function<SceneEdit()>& next) {
