@@ -130,6 +130,7 @@ std::optional<Identity> identity_of(const Place& place) {
 
 struct Inputs {
   std::mutex mutex;
+  int keepers = 0;
   std::map<std::pair<dev_t, ino_t>, std::string> names;
 };
 
@@ -321,7 +322,17 @@ void note_input(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !(S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode))) return;
   const std::lock_guard lock(inputs().mutex);
-  inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
+  if (inputs().keepers > 0) inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
+}
+
+NotedInputs::NotedInputs() {
+  const std::lock_guard lock(inputs().mutex);
+  ++inputs().keepers;
+}
+
+NotedInputs::~NotedInputs() {
+  const std::lock_guard lock(inputs().mutex);
+  if (--inputs().keepers == 0) inputs().names.clear();
 }
 
 void Outputs::add(const std::string& flag, const fs::path& target) {

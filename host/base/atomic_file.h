@@ -22,8 +22,7 @@ namespace caplet {
 ///   its owner where that is allowed. When `write` throws, the target is as before. Where a rename is refused (a mount point),
 ///   the contents are copied into the target.
 /// - A fifo, a character device or one of this process's standard streams: a temporary file is copied into it.
-/// Throws RunError when that fails, and for a target that is a folder, a block device, a socket or a file that this run reads
-/// (note_input).
+/// Throws RunError when that fails, and for a target that is a folder, a block device, a socket or a noted input (NotedInputs).
 void write_atomically(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);
 
 /// The same for contents that are in memory.
@@ -41,7 +40,17 @@ void check_writable(const std::filesystem::path& target, const std::string& flag
 /// then says nothing of a format.
 bool is_stream(const std::filesystem::path& target);
 
-/// To be called for each file that a run reads, so that no output replaces it. A file that does not exist is ignored.
+/// While one lives, files that are read are noted, and write_atomically and Outputs refuse to replace them: a command of the
+/// program has one. Where there is none, as in the library, a file may be read, changed and written over.
+class NotedInputs {
+ public:
+  NotedInputs();
+  ~NotedInputs();
+  NotedInputs(const NotedInputs&) = delete;
+  NotedInputs& operator=(const NotedInputs&) = delete;
+};
+
+/// To be called for each file that is read. A file that does not exist is ignored.
 void note_input(const std::filesystem::path& path);
 
 /// The outputs of a run, by option. No two may be the same file, whatever their names and links, nor one that is read.

@@ -15,6 +15,7 @@
 #include <iostream>
 #include <new>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "cli/commands.h"
@@ -90,6 +91,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   const caplet::SecondTry second_try(argv);
+  const caplet::NotedInputs inputs;
   const caplet::cli::Invocation invocation{{argv, argv + argc}};
   CLI::App app{"Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any OpenCL device.", "caplet"};
   app.set_version_flag("--version", "caplet " CAPLET_VERSION);

@@ -99,6 +99,8 @@ class Device {
  private:
   friend class RawBuffer;
   struct Accounting;
+  struct Programs;
+  friend class Program;
   static Device open(const cl::Device& device, const DeviceInfo& info, Encoding encoding);
   DeviceInfo info_;
   Encoding encoding_ = Encoding::single;
@@ -106,6 +108,7 @@ class Device {
   cl::Context context_;
   std::shared_ptr<cl::CommandQueue> queue_;
   std::shared_ptr<Accounting> accounting_;
+  std::shared_ptr<Programs> programs_;
 };
 
 /// Untyped buffer; Buffer<T> below is the one to use. Empty sizes are allocated as 16 bytes, since OpenCL has no empty buffers.
@@ -156,9 +159,9 @@ enum class BinaryCache {
   always
 };
 
-/// A compiled program: one kernel file, one set of options. Its binary is cached on disk by device, driver, source hash and
-/// options (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an error).
-/// Compiling that takes noticeable time is logged.
+/// A compiled program: one kernel file, one set of options. Copies of a device compile one once. Its binary is cached on disk by
+/// device, driver, source hash and options (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable
+/// cache is never an error). Compiling that takes noticeable time is logged.
 class Program {
  public:
   /// `options` like "-DCAPLET_REAL_WIDTH=8". "-cl-std=CL1.2" is always added. Throws RunError with the build log.

@@ -9,6 +9,7 @@
 #include "device/cl_error.h"
 #include "device/describe.h"
 #include "device/detail/accounting.h"
+#include "device/detail/programs.h"
 #include "device/device.h"
 #include "device/select.h"
 
@@ -116,6 +117,7 @@ Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding e
     out.queue_ = std::make_shared<cl::CommandQueue>(out.context_, device);
   });
   out.accounting_ = std::make_shared<Accounting>();
+  out.programs_ = std::make_shared<Programs>();
   return out;
 }
 

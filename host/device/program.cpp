@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "device/cache.h"
 #include "device/cl_error.h"
+#include "device/detail/programs.h"
 #include "device/device.h"
 
 namespace caplet {
@@ -99,6 +100,17 @@ Program Program::from_source(const Device& device, const std::string& name, cons
   Program out;
   out.device_ = device;
   out.name_ = name;
+  const std::pair shared_key(all_options, source);
+  const bool shares = cache == BinaryCache::automatic && device.programs_;
+  if (shares) {
+    const std::lock_guard lock(device.programs_->mutex);
+    const auto found = device.programs_->compiled.find(shared_key);
+    if (found != device.programs_->compiled.end()) {
+      out.program_ = found->second;
+      out.build_seconds_ = seconds_since(start);
+      return out;
+    }
+  }
   if (const std::optional<Binary> binary = keeps_binary ? cache_load(key, "program") : std::nullopt) {
     if (std::optional<cl::Program> program = from_binary(device, *binary, all_options)) {
       out.program_ = std::move(*program);
@@ -109,6 +121,10 @@ Program Program::from_source(const Device& device, const std::string& name, cons
     out.program_ = from_text(device, name, source, all_options);
     if (keeps_binary)
       if (const Binary binary = binary_of(out.program_); !binary.empty()) cache_store(key, "program", binary);
+  }
+  if (shares) {
+    const std::lock_guard lock(device.programs_->mutex);
+    device.programs_->compiled.emplace(shared_key, out.program_);
   }
   out.build_seconds_ = seconds_since(start);
   if (!out.from_cache_ && out.build_seconds_ >= noticeable_seconds)

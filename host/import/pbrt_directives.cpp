@@ -19,6 +19,7 @@
 #include "import/detail/pbrt_parser.h"
 #include "import/detail/pbrt_shapes.h"
 #include "import/detail/pbrt_v3.h"
+#include "scene/edit.h"
 
 namespace caplet::pbrt {
 
@@ -137,17 +138,10 @@ void Parser::coord_sys_transform() {
 
 void Parser::look_at() {
   const glm::dvec3 eye = vector_argument(), target = vector_argument(), up = vector_argument();
-  const glm::dvec3 forward = glm::normalize(target - eye);
-  const glm::dvec3 sideways = glm::cross(glm::normalize(up), forward);
-  // Six digits of text leave an angle of 1e-6 between up and the view undetermined.
-  if (!(glm::length(sideways) > 1e-6)) {
+  if (const auto world_from_camera = camera_looking(eye, target, up))
+    state_.ctm = state_.ctm * glm::affineInverse(*world_from_camera);
+  else
     diagnostics_.error(where_, "LookAt has no direction (the points coincide, or up lies along the view)");
-    return;
-  }
-  const glm::dvec3 right = glm::normalize(sideways);
-  const glm::dmat4 world_from_camera(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0), glm::dvec4(forward, 0),
-                                     glm::dvec4(eye, 1));
-  state_.ctm = state_.ctm * glm::affineInverse(world_from_camera);
 }
 
 void Parser::rotate() {

@@ -3,14 +3,22 @@
 #include "caplet/render.h"
 
 #include "library/detail/inside.h"
+#include "library/detail/sessions.h"
+#include "lower/lower.h"
+#include "render/known_answers.h"
 
 namespace caplet::v0 {
 
 Film render(const Scene& scene, const Device& device, const RenderOptions& options) {
-  const int samples = scene.samples_per_pixel();
-  Session session = Inside::session(scene, std::span(&device, 1), static_cast<std::uint32_t>(samples));
-  session.render(samples, options);
-  return session.film();
+  const caplet::Scene& model = *Inside::model(scene);
+  const caplet::Device& on = Inside::device(device);
+  const FlatScene flat = lower(model);
+  try_device(on, {.shapes = flat.shapes, .render = true});
+  const auto samples = static_cast<std::uint32_t>(model.sampler.samples_per_pixel);
+  caplet::Session session(flat, lower_view(model), {on}, {.layers = Layers::all(), .most_samples = samples});
+  SessionRuns runs;
+  runs.render(session, samples, options);
+  return runs.film(session, model, on);
 }
 
 }  // namespace caplet::v0

@@ -6,8 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
+#include <numbers>
 
 #include "base/spelling.h"
 #include "library/detail/inside.h"
@@ -21,6 +20,7 @@ constexpr int most_samples = 1 << 24, most_events = 1 << 16;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 // A session that is further behind takes the scene as a whole.
 constexpr std::size_t most_logged = 1 << 16;
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 caplet::Spectrum to_model(const Spectrum& spectrum) {
   if (const auto* value = std::get_if<double>(&spectrum)) return ConstantSpectrum{*value};
@@ -229,22 +229,18 @@ void Scene::set_emission(std::uint32_t shape, const Spectrum& radiance, double s
 }
 
 void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up) {
-  const glm::dvec3 forward = glm::normalize(to_vector(target) - to_vector(eye));
-  const glm::dvec3 sideways = glm::cross(glm::normalize(to_vector(up)), forward);
-  if (!(glm::length(sideways) > 1e-6))
-    throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");
-  const glm::dvec3 right = glm::normalize(sideways);
+  const auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
+  if (!world_from_camera) throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");
   ViewEdit view = view_of(data_->model);
-  view.camera.world_from_camera = glm::dmat4(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0),
-                                             glm::dvec4(forward, 0), glm::dvec4(to_vector(eye), 1));
+  view.camera.world_from_camera = *world_from_camera;
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
 }
 
-double Scene::fov() const { return glm::degrees(data_->model.camera.fov); }
+double Scene::fov() const { return data_->model.camera.fov * degrees_per_radian; }
 void Scene::set_fov(double degrees) {
   ViewEdit view = view_of(data_->model);
-  view.camera.fov = glm::radians(degrees);
+  view.camera.fov = degrees / degrees_per_radian;
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
 }

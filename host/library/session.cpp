@@ -7,10 +7,10 @@
 
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
+#include "library/detail/sessions.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
 #include "render/known_answers.h"
-#include "render/session.h"
 #include "report/picture.h"
 
 namespace caplet::v0 {
@@ -31,11 +31,33 @@ const std::vector<caplet::Device>& tried(const std::vector<caplet::Device>& devi
 
 }  // namespace
 
+std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto told = [&](const SessionProgress& progress) {
+    options.progress({static_cast<double>(progress.samples_done) / progress.sample_count, progress.samples_per_second});
+  };
+  const std::uint32_t done =
+      session.render(samples, options.progress ? told : std::function<void(const SessionProgress&)>(), options.time_limit);
+  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  interrupted = done < samples && !options.time_limit;
+  return done;
+}
+
+Film SessionRuns::film(const caplet::Session& session, const caplet::Scene& scene, const caplet::Device& device) const {
+  caplet::Film film = session.film();
+  RenderResult result;
+  result.samples_per_pixel = static_cast<int>(film.samples(0));
+  result.render_seconds = seconds;
+  result.interrupted = interrupted;
+  return Inside::film(std::move(film), scene.film, report::picture_metadata(scene, scene.source, "libcaplet", device, result),
+                      seconds);
+}
+
 struct Session::Data {
-  Data(const Scene& of, std::span<const Device> on, std::uint32_t most_samples)
+  Data(const Scene& of, std::span<const Device> on)
       : devices(inner(on)),
         live(*Inside::model(of)),
-        session(live.flat(), live.view(), tried(devices, live.flat()), {.layers = Layers::all(), .most_samples = most_samples}),
+        session(live.flat(), live.view(), tried(devices, live.flat()), {.layers = Layers::all()}),
         at(state_of(of)) {}
 
   static std::uint64_t state_of(const Scene& scene) {
@@ -44,10 +66,10 @@ struct Session::Data {
   }
 
   void send() {
-    tried(devices, live.flat());
+    if (live.flat().shapes != tried_shapes) tried(devices, live.flat());
+    tried_shapes = live.flat().shapes;
     session.update(live.flat(), live.take_changes(), live.view());
-    seconds = 0;
-    interrupted = false;
+    runs = {};
   }
 
   Questions questions() {
@@ -60,17 +82,12 @@ struct Session::Data {
   caplet::Session session;
   std::optional<Query> query;
   std::uint64_t at;  // the state of the scene that it shows
-  double seconds = 0;
-  bool interrupted = false;
+  SessionRuns runs;
+  std::uint64_t tried_shapes = live.flat().shapes;  // that the devices have shown to get right
 };
 
-Session Inside::session(const Scene& scene, std::span<const Device> devices, std::uint32_t most_samples) {
-  return Session(std::make_unique<Session::Data>(scene, devices, most_samples));
-}
-
-Session::Session(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Session::Session(const Scene& scene, const Device& device) : Session(scene, std::span(&device, 1)) {}
-Session::Session(const Scene& scene, std::span<const Device> devices) : data_(std::make_unique<Data>(scene, devices, 0)) {}
+Session::Session(const Scene& scene, std::span<const Device> devices) : data_(std::make_unique<Data>(scene, devices)) {}
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
@@ -103,30 +120,12 @@ void Session::update(const Scene& scene) {
 
 int Session::render(int samples, const RenderOptions& options) {
   check_range("samples", samples, 1, 1 << 24);
-  const auto start = std::chrono::steady_clock::now();
-  const auto count = static_cast<std::uint32_t>(samples);
-  const auto told = [&](const SessionProgress& progress) {
-    options.progress({static_cast<double>(progress.samples_done) / progress.sample_count, progress.samples_per_second});
-  };
-  const std::uint32_t done =
-      data_->session.render(count, options.progress ? told : std::function<void(const SessionProgress&)>(), options.time_limit);
-  data_->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  data_->interrupted = done < count && !options.time_limit;
-  return static_cast<int>(done);
+  return static_cast<int>(data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
 }
 
 void Session::cancel() { data_->session.cancel(); }
 
-Film Session::film() const {
-  const caplet::Scene& scene = data_->live.scene();
-  caplet::Film film = data_->session.film();
-  RenderResult result;
-  result.samples_per_pixel = static_cast<int>(film.samples(0));
-  result.render_seconds = data_->seconds;
-  result.interrupted = data_->interrupted;
-  return Inside::film(std::move(film), scene.film,
-                      report::picture_metadata(scene, scene.source, "libcaplet", data_->devices[0], result), data_->seconds);
-}
+Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene(), data_->devices[0]); }
 
 void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
 

@@ -45,7 +45,7 @@ RenderResult render(const FlatScene& scene, const FlatView& view, const Device& 
   int done = 0;
   while (done < total) {
     const uint count = samples_in_pass(renderer, pixels, total - done);
-    renderer.pass(renderer.film().layout.window, static_cast<uint>(done), count, [&](std::size_t pixels_done) {
+    renderer.pass(renderer.layout().window, static_cast<uint>(done), count, [&](std::size_t pixels_done) {
       if (!progress) return;
       const double samples = done + static_cast<double>(count) * static_cast<double>(pixels_done) / static_cast<double>(pixels);
       progress({samples / total, done, samples * static_cast<double>(pixels) / std::max(1e-9, seconds_since(start))});

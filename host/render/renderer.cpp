@@ -99,10 +99,21 @@ void Renderer::reset(const FlatView& view) {
   }
   film_.layout = layout;
   film_.parts.clear();
-  film_.words.clear();
+  is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
   if (!scene_.has_camera_stage()) std::erase(stages, Stage::extend_camera);
   scene_.kernels().compile(stages, batch_paths_);
+}
+
+// Megabytes: left to the first pass where that goes over all of it.
+void Renderer::clear_film() const {
+  if (is_old_) film_.words.clear();
+  is_old_ = false;
+}
+
+const DeviceFilm& Renderer::film() const {
+  clear_film();
+  return film_;
 }
 
 void Renderer::clear_counters() {
@@ -116,6 +127,8 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   CHECK_LT_(0u, sample_count);
   CHECK_LE_(std::size_t{sample_count}, batch_paths_);
   add_part(film_.parts, {window, sample_begin, sample_count});
+  if (window != film_.layout.window) clear_film();
+  const bool first_pass = std::exchange(is_old_, false);
   const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
@@ -135,6 +148,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
     record.film_words = narrow<uint>(film_.layout.words_per_pixel());
     record.color_exponent = film_.layout.color_exponent;
     record.length_exponent = film_.layout.length_exponent;
+    record.first = first_pass ? 1 : 0;
     batch(record);
     if (batch_done) batch_done(first + count);
   }

@@ -55,13 +55,15 @@ class Renderer {
             const std::function<void(std::size_t)>& batch_done = {});
 
   /// What has been added up so far. Valid until the next pass or reset.
-  const DeviceFilm& film() const { return film_; }
+  const DeviceFilm& film() const;
+  const FilmLayout& layout() const { return film_.layout; }
   std::size_t batch_paths() const { return batch_paths_; }
   const RayCounts& rays() const { return rays_; }
 
  private:
   void batch(const BatchRecord& record);
   void clear_counters();
+  void clear_film() const;
 
   DeviceScene& scene_;
   std::size_t batch_paths_;
@@ -69,7 +71,8 @@ class Renderer {
   Layers layers_;
   SensorBuffers sensor_;
   PathBuffers paths_;
-  DeviceFilm film_;
+  mutable DeviceFilm film_;
+  mutable bool is_old_ = true;  // the film's words are those of before a reset: they count as zeros
   RayCounts rays_;
 };
 

@@ -54,7 +54,7 @@ void Session::update(const FlatScene& scene, const SceneChanges& changes, const 
 }
 
 void Session::resume(Film film) {
-  if (!(film.layout() == workers_.front()->renderer.film().layout))
+  if (!(film.layout() == workers_.front()->renderer.layout()))
     throw InputError("the film is one of another picture, other layers or another scene");
   clear();
   for (const FilmPart& part : film.parts()) next_ = std::max(next_, part.sample_begin + part.sample_count);
@@ -73,7 +73,7 @@ std::uint32_t Session::render(std::uint32_t sample_count, const std::function<vo
   std::exception_ptr failure;
 
   const auto work = [&](Renderer& renderer) {
-    const Window window = renderer.film().layout.window;
+    const Window window = renderer.layout().window;
     const auto fill = std::max<std::size_t>(1, renderer.batch_paths() / std::max<std::size_t>(1, window.pixels()));
     const auto most = static_cast<std::uint32_t>(
         std::min<std::size_t>(options_.pass_samples > 0 ? options_.pass_samples : fill, renderer.batch_paths()));

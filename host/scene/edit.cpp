@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "scene/edit.h"
 
+#include <glm/geometric.hpp>
 #include <utility>
 
 namespace caplet {
@@ -171,5 +172,14 @@ Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule) {
 }
 
 ViewEdit view_of(const Scene& scene) { return {scene.camera, scene.filter, scene.film, scene.sampler, scene.integrator}; }
+
+std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+  const glm::dvec3 forward = glm::normalize(target - eye);
+  const glm::dvec3 sideways = glm::cross(glm::normalize(up), forward);
+  // Six digits of text leave an angle of 1e-6 between up and the view undetermined.
+  if (!(glm::length(sideways) > 1e-6)) return std::nullopt;
+  const glm::dvec3 right = glm::normalize(sideways);
+  return glm::dmat4(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0), glm::dvec4(forward, 0), glm::dvec4(eye, 1));
+}
 
 }  // namespace caplet

@@ -82,4 +82,8 @@ Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule);
 /// The view as it now is.
 ViewEdit view_of(const Scene& scene);
 
+/// Camera::world_from_camera of a camera at `eye` that looks at `target`, `up` being up; none where the points coincide, or up
+/// lies along the view.
+std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
+
 }  // namespace caplet

@@ -51,9 +51,7 @@ class CAPLET_API Session {
   std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most = 256);
 
  private:
-  friend struct Inside;
   struct Data;
-  explicit Session(std::unique_ptr<Data> data);
   std::unique_ptr<Data> data_;
 };
 

@@ -24,7 +24,8 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   {                                                                                                 \
     ulong4 sums[words];                                                                             \
     for (int w = 0; w < words; ++w)                                                                 \
-      sums[w] = (ulong4)(film[w], film[count > 1 ? words + w : 0], film[count > 2 ? 2 * words + w : 0], 0); \
+      sums[w] = first ? (ulong4)(0)                                                                 \
+                      : (ulong4)(film[w], film[count > 1 ? words + w : 0], film[count > 2 ? 2 * words + w : 0], 0); \
     for (uint i = 0; i < batch->sample_count; ++i) {                                                \
       const uint path = item * batch->sample_count + i;                                             \
       exact_add(sums, words, sample, unit);                                                         \
@@ -61,7 +62,9 @@ static void stage_item(const Stage* g, uint item) {
   const uint2 pixel = batch_pixel(batch, item);
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
-  *film++ += batch->sample_count;
+  const int first = batch->first != 0u;
+  *film = (first ? 0ul : *film) + batch->sample_count;
+  ++film;
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
   uint offset = 0;  // of the layer in path_layers
@@ -75,6 +78,7 @@ static void stage_item(const Stage* g, uint item) {
   }
 #define ID_LAYER(name, option, channel, value)                                                                           \
   if (layers & (1u << layer_##name)) {                                                                                   \
+    if (first) *film = 0;                                                                                                \
     for (uint i = 0; i < batch->sample_count; ++i) {                                                                     \
       const uint path = item * batch->sample_count + i;                                                                  \
       const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]);                               \

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Installs a build folder into an empty one, and builds and runs docs/library.md's example with nothing but what is there.
+"""Installs a build folder into an empty one, and builds and runs docs/library.md's programs with nothing but what is there.
 
 usage: installed.py SOURCES BUILD CXX
 """
@@ -27,8 +27,8 @@ def check(holds, what):
         sys.exit(what)
 
 
-def block(page, language):
-    return re.search(rf"^```{language}\n(.*?)^```", page, re.M | re.S)[1]
+def blocks(page, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", page, re.M | re.S)
 
 
 def main():
@@ -47,17 +47,28 @@ def main():
         check(run(prefix / "bin/caplet", "--version").startswith("caplet "), "the installed program does not tell its version")
         page = (SOURCES / "docs/library.md").read_text()
         project.mkdir()
-        (project / "CMakeLists.txt").write_text(block(page, "cmake"))
-        (project / "main.cpp").write_text(block(page, "cpp"))
+        example, edits = blocks(page, "cpp")
+        check(len(edits.splitlines()) < 40, f"the program of edits has {len(edits.splitlines())} lines")
+        (project / "CMakeLists.txt").write_text(blocks(page, "cmake")[0] + """
+add_executable(edits edits.cpp)
+target_link_libraries(edits PRIVATE caplet::caplet)
+""")
+        (project / "main.cpp").write_text(example)
+        (project / "edits.cpp").write_text(edits)
         run("cmake", "-S", project, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={prefix}",
             f"-DCMAKE_CXX_COMPILER={CXX}", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
         run("cmake", "--build", build)
         library = [str(path) for path in prefix.glob("lib*/**/") if list(path.glob("libcaplet*"))]
-        said = run(build / "example", SOURCES / "scenes/capsules.pbrt", folder / "out.exr",
-                   env=os.environ | {"LD_LIBRARY_PATH": ":".join(library)})
+        environment = os.environ | {"LD_LIBRARY_PATH": ":".join(library)}
+        said = run(build / "example", SOURCES / "scenes/capsules.pbrt", folder / "out.exr", env=environment)
         check(re.search(r"t = [0-9.]+\n$", said), f"the example says: {said}")
         check((folder / "out.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01", "the example wrote no OpenEXR file")
-        print(said, end="")
+        film, fresh = folder / "film.exr", folder / "fresh.exr"
+        told = [run(build / "edits", SOURCES / "scenes/capsules.pbrt", *words, env=environment)
+                for words in ((film,), (film, "go-on"), (fresh, "at-once"))]
+        check(len(set(told)) == 1 and re.search(r" at [0-9.]+\n$", told[0]), f"the program of edits says: {told}")
+        check(film.read_bytes() == fresh.read_bytes(), "a film of edits, saved, loaded and added to, is not that of one fresh render")
+        print(said, *told[:1], end="")
 
 
 main()

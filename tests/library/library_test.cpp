@@ -6,6 +6,7 @@
 #include <caplet/log.h>
 #include <caplet/pick.h>
 #include <caplet/render.h>
+#include <caplet/session.h>
 #include <caplet/verify.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -174,6 +176,177 @@ TEST_F(Library, PicksTellWhatAPixelShowsAndRaysHit) {
   EXPECT_FALSE(picker.pixel(0, 0).has_value());
   EXPECT_THROW(picker.pixel(12, 0), caplet::InputError);
   EXPECT_THROW(picker.pixel(-1, 0), caplet::InputError);
+}
+
+// --- Edits ---
+
+bool same_pictures(const caplet::Film& a, const caplet::Film& b) {
+  for (const char* channel : {"R", "G", "B", "A", "Z", "variance.G"})
+    if (a.values(channel) != b.values(channel)) return false;
+  return a.ids("object.id") == b.ids("object.id") && a.ids("primitive.id") == b.ids("primitive.id");
+}
+
+class LibraryEdits : public Library {
+ protected:
+  LibraryEdits() {
+    std::ofstream(folder_ / "edits.pbrt") << R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "perspective" "float fov" 30
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+Sampler "independent" "integer pixelsamples" 4
+WorldBegin
+LightSource "point" "rgb I" [9 9 9] "point3 from" [0 3 4]
+MakeNamedMaterial "white" "string type" "diffuse"
+MakeNamedMaterial "other" "string type" "diffuse" "rgb reflectance" [0.1 0.2 0.9]
+NamedMaterial "white"
+Shape "capsule" "point3 p0" [-0.5 0 0] "point3 p1" [0.5 0 0] "float radius" 0.3 "string name" "bar"
+ObjectBegin "thing"
+  NamedMaterial "other"
+  Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [0 0.5 0] "float radius" [0.2 0.1] "string name" "pin"
+ObjectEnd
+ObjectInstance "thing"
+AreaLightSource "diffuse" "rgb L" [4 4 4]
+Shape "sphere" "float radius" 0.2 "string name" "lamp"
+)";
+  }
+  caplet::Scene scene() const { return caplet::import_scene(folder_ / "edits.pbrt"); }
+};
+
+TEST_F(LibraryEdits, ASceneTellsAndTakesWhatIsEdited) {
+  caplet::Scene edited = scene();
+  const caplet::Scene before = edited;
+  EXPECT_THAT(edited.shapes(), testing::ElementsAre("bar", "lamp", "pin"));
+  const std::uint32_t bar = edited.shape("bar"), pin = edited.shape("pin"), lamp = edited.shape("lamp");
+  EXPECT_EQ(edited.capsules(bar), 1u);
+  EXPECT_EQ(edited.capsules(lamp), 0u);
+  EXPECT_EQ(edited.capsule(pin, 0).radius1, 0.1f);
+  edited.set_capsule(bar, 0, {{-1, 0, 0}, {1, 0, 0}, 0.25f, 0.25f});
+  EXPECT_EQ(edited.capsule(bar, 0).p1, (std::array<float, 3>{1, 0, 0}));
+  EXPECT_EQ(edited.bounds().max[0], 1.25);
+  EXPECT_EQ(before.capsule(bar, 0).p1, (std::array<float, 3>{0.5f, 0, 0}));
+  const caplet::Transform moved{1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 1, 4};
+  edited.set_transform(lamp, moved);
+  EXPECT_EQ(edited.transform(lamp), moved);
+  ASSERT_EQ(edited.instances(), 1u);
+  edited.set_instance(0, moved);
+  EXPECT_EQ(edited.instance(0), moved);
+  ASSERT_EQ(edited.lights(), 1u);
+  edited.set_light(0, caplet::Rgb{1, 0, 0}, 3);
+  EXPECT_EQ(edited.light_scale(0), 3);
+  edited.set_fov(45);
+  EXPECT_NEAR(edited.fov(), 45, 1e-12);
+  EXPECT_THROW(edited.shape("bra"), caplet::InputError);
+  EXPECT_THROW(edited.capsule(lamp, 0), caplet::InputError);
+  EXPECT_THROW(edited.capsule(bar, 1), caplet::InputError);
+  EXPECT_THROW(edited.capsules(3), caplet::InputError);
+  EXPECT_THROW(edited.set_capsule(bar, 0, {{0, 0, 0}, {1, 0, 0}, -1, -1}), caplet::InputError);
+  EXPECT_THROW(edited.set_transform(bar, caplet::Transform{}), caplet::InputError);
+  EXPECT_THROW(edited.set_material(9, caplet::Diffuse{}), caplet::InputError);
+  EXPECT_THROW(edited.set_material(0, caplet::Diffuse{std::string("metal-Gold-eta")}), caplet::InputError);
+  EXPECT_THROW(edited.set_emission(bar, 1.0, 1), caplet::InputError);
+  EXPECT_THROW(edited.set_light(1, 1.0, 1), caplet::InputError);
+  EXPECT_THROW(edited.look_at({0, 0, 5}, {0, 0, 0}, {0, 0, 1}), caplet::InputError);
+  EXPECT_THROW(edited.set_fov(180), caplet::InputError);
+  EXPECT_EQ(edited.capsule(bar, 0).radius0, 0.25f);
+}
+
+TEST_F(LibraryEdits, ASessionFollowsThem) {
+  const caplet::Device device = test_device();
+  caplet::Scene edited = scene();
+  caplet::Session session(edited, device);
+  EXPECT_EQ(session.render(4), 4);
+  EXPECT_TRUE(same_pictures(session.film(), caplet::render(edited, device)));
+  const caplet::Scene copy = edited;
+  const std::vector<std::function<void()>> edits = {
+      [&] {
+        edited.set_capsule(edited.shape("bar"), 0, {{-1, 0.3f, 0}, {1, 0, 0}, 0.25f, 0.25f});
+      },
+      [&] {
+        edited.set_capsule(edited.shape("pin"), 0, {{0, 0, 0}, {0, 0.7f, 0}, 0.3f, 0.1f});
+      },
+      [&] {
+        edited.set_instance(0, {1, 0, 0, 0.5, 0, 1, 0, 0.5, 0, 0, 1, 1});
+      },
+      [&] { edited.set_material(0, caplet::Conductor{.roughness_u = 0.2, .roughness_v = 0.3}); },
+      [&] {
+        edited.set_light(0, caplet::Rgb{1, 5, 2}, 3);
+      },
+      [&] {
+        edited.set_emission(edited.shape("lamp"), caplet::Rgb{9, 1, 1}, 2);
+      },
+      [&] {
+        edited.set_transform(edited.shape("lamp"), {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 1});
+      },
+      [&] {
+        edited.look_at({1, 2, 5}, {0, 0, 0}, {0, 1, 0});
+      },
+      [&] { edited.set_fov(40); },
+      [&] { edited.set_size(20, 20); },
+  };
+  caplet::Film last = session.film();
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    edits[i]();
+    session.update(edited);
+    EXPECT_EQ(session.film().samples_per_pixel(), 0);
+    session.render(1);
+    session.render(3);
+    const caplet::Film film = session.film();
+    EXPECT_TRUE(same_pictures(film, caplet::render(edited, device))) << i;
+    if (i + 1 < edits.size()) {
+      EXPECT_FALSE(same_pictures(film, last)) << i;
+    }
+    last = film;
+  }
+  const auto hit = session.pixel(10, 9);
+  caplet::Picker picker(edited, device);
+  const auto expected = picker.pixel(10, 9);
+  ASSERT_TRUE(hit && expected);
+  EXPECT_EQ(hit->t, expected->t);
+  EXPECT_EQ(hit->object, expected->object);
+  // A scene that has gone another way.
+  session.update(copy);
+  session.render(4);
+  EXPECT_TRUE(same_pictures(session.film(), caplet::render(copy, device)));
+}
+
+TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
+  const caplet::Device device = test_device();
+  const caplet::Scene of = scene();
+  caplet::Session session(of, device);
+  session.render(3);
+  const caplet::Film first = session.film();
+  first.save(folder_ / "film.exr");
+  caplet::Session other(of, device);
+  other.resume(caplet::Film::load(folder_ / "film.exr", of));
+  other.render(1);
+  EXPECT_TRUE(same_pictures(other.film(), caplet::render(of, device)));
+  // Read, added to, and written over.
+  caplet::Film loaded = caplet::Film::load(folder_ / "film.exr", of);
+  EXPECT_TRUE(same_pictures(loaded, first));
+  ASSERT_EQ(loaded.samples().size(), 1u);
+  EXPECT_EQ(loaded.samples()[0].first, 0u);
+  EXPECT_EQ(loaded.samples()[0].count, 3u);
+  EXPECT_THROW(loaded.add(first), caplet::InputError);
+  EXPECT_THROW(loaded.add(other.film()), caplet::InputError);
+  other.film().save(folder_ / "film.exr");
+  EXPECT_EQ(caplet::Film::load(folder_ / "film.exr", of).samples_per_pixel(), 4);
+  EXPECT_THROW(caplet::Film::load(folder_ / "edits.pbrt", of), caplet::InputError);
+  caplet::Scene wide = of;
+  wide.set_size(30, 16);
+  EXPECT_THROW(caplet::Session(wide, device).resume(first), caplet::InputError);
+}
+
+TEST_F(LibraryEdits, ASessionIsCancelledFromAnotherThread) {
+  caplet::Scene large = scene();
+  large.set_size(320, 240);
+  caplet::Session session(large, test_device());
+  caplet::RenderOptions options;
+  std::jthread other;
+  options.progress = [&](const caplet::RenderProgress&) {
+    if (!other.joinable()) other = std::jthread([&] { session.cancel(); });
+  };
+  const int done = session.render(1 << 24, options);  // days
+  EXPECT_GT(done, 0);
+  EXPECT_EQ(session.film().samples_per_pixel(), done);
 }
 
 TEST_F(Library, VerifyCounts) {

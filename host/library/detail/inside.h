@@ -9,14 +9,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "caplet/device.h"
 #include "caplet/film.h"
 #include "caplet/scene.h"
-#include "caplet/session.h"
 #include "device/device.h"
 #include "film/film.h"
 #include "film/image.h"
@@ -73,8 +71,6 @@ struct Inside {
     return Film(std::shared_ptr<const Film::Data>(new Film::Data{std::move(film), settings, std::move(notes), render_seconds}));
   }
   static const caplet::Film& film(const Film& film) { return film.data_->film; }
-  /// A session for so many samples, as Session and render() make it.
-  static Session session(const v0::Scene& scene, std::span<const Device> devices, std::uint32_t most_samples);
 };
 
 DeviceInfo to_public(const caplet::DeviceInfo& info);

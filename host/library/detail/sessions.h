@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Between the sessions of host/render and the public classes.
+#pragma once
+
+#include <cstdint>
+
+#include "caplet/film.h"
+#include "caplet/render.h"
+#include "device/device.h"
+#include "render/session.h"
+#include "scene/scene.h"
+
+namespace caplet::v0 {
+
+/// What a session has done since its film was empty.
+struct SessionRuns {
+  double seconds = 0;
+  bool interrupted = false;
+
+  /// Adds the next samples and returns how many were finished.
+  std::uint32_t render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options);
+  /// What there is of `scene` now. `device`: that is named in its pictures.
+  Film film(const caplet::Session& session, const caplet::Scene& scene, const caplet::Device& device) const;
+};
+
+}  // namespace caplet::v0
