@@ -204,6 +204,9 @@ SceneEdit random_capsule_edit(const Scene& scene, const ShapeAt& at, Random& ran
   const Capsule was = capsule_at(scene, at, i);
   if (was.radius0 == was.radius1) to.radius1 = to.radius0;
   if (was.radius0 != was.radius1 && to.radius0 == to.radius1) to.radius1 *= 0.5f;
+  // Some onto another one: which of the two is seen must not depend on their places in the tree.
+  const Capsule other = capsule_at(scene, at, random.below(capsules.p0.size()));
+  if (random.below(3) == 0 && (other.radius0 == other.radius1) == (was.radius0 == was.radius1)) to = other;
   return CapsuleEdit{at, i, to};
 }
 
@@ -319,6 +322,16 @@ TEST_F(OneEdit, AMovedCapsule) {
   for (const double reach : {2.5, 8.0})
     expect_in_place(random_capsule_edit(edited.live.scene(), capsules, random, reach), "capsule");
   expect_in_place(random_capsule_edit(edited.live.scene(), {2u, 0}, random, 1.5), "capsule of an object");
+}
+
+TEST_F(OneEdit, CapsulesMovedOntoOthers) {
+  Random random(2);
+  for (int i = 0; i < 150; ++i) {
+    const std::size_t from = random.below(600), onto = random.below(600);
+    const Capsule was = capsule_at(edited.live.scene(), capsules, from), to = capsule_at(edited.live.scene(), capsules, onto);
+    if ((was.radius0 == was.radius1) == (to.radius0 == to.radius1)) edited.edit(CapsuleEdit{capsules, from, to});
+  }
+  edited.expect_fresh("capsules onto others");
 }
 
 TEST_F(OneEdit, ALight) {
