@@ -9,8 +9,8 @@ usage: includes.py [--root FOLDER]          one line for each that does not; exi
 
 The table names each room's folder and, in its last column, the rooms and libraries that its files include: all of them and no others. A room
 may include rooms of earlier rows only, so no arrow runs up and none in a circle. Headers in a folder `detail` are their room's own; a folder of
-tests may include those of the rooms that its CMakeLists.txt links as ROOM_detail. Within a room a unit (x.h with x.cpp) may depend on each
-other, directly or through others, in at most three places of the whole tree.
+tests may include those of the rooms that its CMakeLists.txt links as ROOM_detail. Within a room no
+units (x.h with x.cpp) may depend on each other in a circle, directly or through others.
 """
 import argparse
 import pathlib
@@ -19,7 +19,6 @@ import sys
 import tempfile
 
 PAGE = "docs/architecture.md"
-CIRCLES_ALLOWED = 1  # of units, within rooms
 LIBRARIES = {  # how their headers begin
     "assimp": ("assimp/",), "CLI11": ("CLI/",), "Embree": ("embree3/", "embree4/"), "fmt": ("fmt/",), "glm": ("glm/",),
     "json": ("nlohmann/",), "OpenCL": ("CL/",), "OpenEXR": ("Imf", "Iex", "Imath"), "OpenImageIO": ("OpenImageIO/",), "spdlog": ("spdlog/",),
@@ -193,10 +192,8 @@ class Check:
             self.complaints.append("a circle of headers: " + ", ".join(members))
         for members in circles({room.name: room.used & set(self.by_name) for room in self.rooms.values()}):
             self.complaints.append("a circle of rooms: " + ", ".join(members))
-        self.unit_circles = circles(self.units)
-        if len(self.unit_circles) > CIRCLES_ALLOWED:
-            for members in self.unit_circles:
-                self.complaints.append(f"a circle within a room (more than {CIRCLES_ALLOWED} of them): " + ", ".join(members))
+        for members in circles(self.units):
+            self.complaints.append("a circle within a room: " + ", ".join(members))
 
     def drawn(self):
         """Without the arrows that follow from others."""
@@ -272,8 +269,6 @@ def main():
         print(line)
     if check.complaints:
         return 1
-    for members in check.unit_circles:
-        print("a circle within a room, as allowed: " + ", ".join(members))
     print(f"{len(check.rooms)} rooms, as {PAGE} has them")
     return 0
 
