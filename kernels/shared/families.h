@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where the data of materials and lights lie in material_data and light_data, and what their lists say of them. Valid as OpenCL
-// C 1.2 and as C++.
+// Where the data of materials and lights lie in material_data and light_data, and what their lists say of them. Valid as OpenCL C 1.2
+// and as C++.
 #ifndef CAPLET_SHARED_FAMILIES_H
 #define CAPLET_SHARED_FAMILIES_H
 
@@ -83,14 +83,8 @@ struct FamilyField {
 #define MATERIAL(name, traits) inline constexpr FamilyField name##_field_list[] = {
 #define LIGHT(name, way) inline constexpr FamilyField name##_field_list[] = {
 #define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
-#define MATERIAL_END(name) \
-  {}                       \
-  }                        \
-  ;
-#define LIGHT_END(name) \
-  {}                    \
-  }                     \
-  ;
+#define MATERIAL_END(name) {}};
+#define LIGHT_END(name) {}};
 #include "shared/materials.def"
 #define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
 #include "shared/lights.def"
