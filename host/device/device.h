@@ -150,8 +150,8 @@ class Buffer : public RawBuffer {
 /// std::logic_error for unknown names.
 std::string kernel_source(std::string_view name);
 
-/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/), for a program that has these rows
-/// of the lists: it holds the text of no others. Throws std::logic_error for a file that does not exist.
+/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/), for a program that has
+/// these rows of the lists: it holds the text of no others. Throws std::logic_error for a file that does not exist.
 std::string flatten_kernels(const std::string& text, const RowMasks& rows = {});
 
 enum class BinaryCache {

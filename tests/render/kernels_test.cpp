@@ -42,7 +42,7 @@ TEST(Kernels, HaveTheArgumentsOfTheirGroups) {
 }
 
 TEST(Kernels, WantTheBuffersOfTheirGroups) {
-  Kernels kernels(test_device(), "-DCAPLET_REAL_WIDTH=1");
+  Kernels kernels(test_device(), {"-DCAPLET_REAL_WIDTH=1", {}});
   EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // not compiled
   kernels.compile(std::array{Stage::sort_prefix}, 1);
   EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // no groups
