@@ -215,8 +215,8 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
 /// kernel.
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
 
-/// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep the
-/// device's units busy to the end. Throws RunError naming the kernel.
+/// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep
+/// the device's units busy to the end. Throws RunError naming the kernel.
 void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count);
 /// The number of these work-items.
 std::size_t share_count(const Device& device, std::size_t count);
