@@ -33,14 +33,14 @@ void say(const Say& line, const std::string& name, double ours, double peer, con
 
 struct Bench {
   const Say& line;
-  DeviceTracer& tracer;
   const Peer* peer;  // null: Embree has no such shape
   const std::vector<float>& leaves;
   double seconds;
   bool by_shape = false;  // ids of the peer are not primitive ids
 
   /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
-  void run(const std::string& name, const std::vector<RayRecord>& ours, const std::vector<RayRecord>& theirs) {
+  void run(const std::string& name, DeviceTracer& tracer, const std::vector<RayRecord>& ours,
+           const std::vector<RayRecord>& theirs) {
     if (ours.empty()) return;
     std::vector<std::uint32_t> ids(theirs.size());
     tracer.set_rays(ours);
@@ -72,10 +72,26 @@ struct Bench {
   }
 };
 
-/// As a renderer builds its kernels (stage_options).
-DeviceTracer tracer_for(const Device& device, int width, std::uint64_t shapes, int kind_bits) {
-  return DeviceTracer(device, width, fmt::format("-DCAPLET_LEAF_KIND_BITS={}", kind_bits), {{"shapes", shapes}});
-}
+/// As a renderer traces: camera rays through a stage of their own where there are no instances.
+struct Tracers {
+  DeviceTracer camera, others;
+
+  Tracers(const Device& device, int width, std::uint64_t shapes, int kind_bits)
+      : camera(tracer_for(device, width, shapes, kind_bits,
+                          (shapes & shape_bit(shape_instance)) == 0 ? DeviceTracer::Manner::stream : DeviceTracer::Manner::pool)),
+        others(tracer_for(device, width, shapes, kind_bits, DeviceTracer::Manner::pool)) {}
+
+  void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root) {
+    camera.upload(nodes, leaves, instances, root);
+    others.upload(nodes, leaves, instances, root);
+  }
+
+ private:
+  static DeviceTracer tracer_for(const Device& device, int width, std::uint64_t shapes, int kind_bits,
+                                 DeviceTracer::Manner manner) {
+    return DeviceTracer(device, width, fmt::format("-DCAPLET_LEAF_KIND_BITS={}", kind_bits), {{"shapes", shapes}}, manner);
+  }
+};
 
 int width_for(const Device& device, const Options& options) {
   return options.width != 0 ? options.width : device.is_cpu() ? 8 : 1;
@@ -86,13 +102,13 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   const FlatScene scene = lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
   std::optional<Peer> peer;
   if (!same.empty() && Peer::is_there()) peer.emplace(same);
-  DeviceTracer tracer = tracer_for(device, width_for(device, options), scene.shapes, scene.leaf_kind_bits);
-  tracer.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
-  Bench bench{line, tracer, peer ? &*peer : nullptr, scene.leaves, options.seconds, true};
+  Tracers tracers(device, width_for(device, options), scene.shapes, scene.leaf_kind_bits);
+  tracers.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
+  Bench bench{line, peer ? &*peer : nullptr, scene.leaves, options.seconds, true};
   const auto camera = camera_rays(options.size);
-  bench.run(kind + " camera", camera, camera);
-  const auto scattered = scattered_rays(camera, tracer.closest(camera));
-  bench.run(kind + " scattered", scattered, scattered);
+  bench.run(kind + " camera", tracers.camera, camera, camera);
+  const auto scattered = scattered_rays(camera, tracers.camera.closest(camera));
+  bench.run(kind + " scattered", tracers.others, scattered, scattered);
 }
 
 void run_walks(const Device& device, const Options& options, const Say& line) {
@@ -114,17 +130,17 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
       fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}", static_cast<double>(nodes.size() * sizeof(float)) / n,
                   static_cast<double>(leaves.size() * sizeof(float)) / n));
 
-  DeviceTracer tracer = tracer_for(device, width_for(device, options), shapes, leaf_kind_bits(shapes));
-  tracer.upload(nodes, leaves, {}, tree.root);
-  Bench bench{line, tracer, peer ? &*peer : nullptr, leaves, options.seconds};
+  Tracers tracers(device, width_for(device, options), shapes, leaf_kind_bits(shapes));
+  tracers.upload(nodes, leaves, {}, tree.root);
+  Bench bench{line, peer ? &*peer : nullptr, leaves, options.seconds};
   const auto camera = camera_rays(options.size);
-  bench.run(kind + " camera", camera, camera);
-  auto bounce = bounce_rays(primitives, tree.slots, camera, tracer.closest(camera));
-  bench.run(kind + " bounce", bounce, bounce);
+  bench.run(kind + " camera", tracers.camera, camera, camera);
+  auto bounce = bounce_rays(primitives, tree.slots, camera, tracers.camera.closest(camera));
+  bench.run(kind + " bounce", tracers.others, bounce, bounce);
   if (options.sorted) {
     auto in_order = bounce;
     sort_rays(in_order);
-    bench.run(kind + " bounce sorted", in_order, bounce);
+    bench.run(kind + " bounce sorted", tracers.others, in_order, bounce);
   }
 }
 

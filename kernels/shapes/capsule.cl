@@ -76,8 +76,9 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
 // In the frame (u, v, w) the ends are a and b relative to the ray's origin, each component off by 12 eps |a| at most: one rounding
 // of a difference, three products and two sums, 6 eps by which the frame is none. The nearest point q of the segment is found
 // with a parameter off by 6 eps |a| / |b - a|, which lengthens |q| by 6 eps |a|. What capsule_hit names is a point of the ray
-// within 12 eps (|o - p0| + L + r) of the surface, L <= 2 D with D the greater of |a| and |b|. Together 54 eps D + 12 eps r, and 16 eps D of t in lengths;
-// 96 eps (D + r) are allowed, with D as a sum of components, and 1e-18 for segments seen end-on, whose direction has no digits.
+// within 16 eps (|o - p0| + L + r) of the surface, L <= 2 D with D the greater of |a| and |b|; a t in lengths is off by 16 eps of it.
+// Together 82 eps D + 16 eps r; 96 eps (D + r) are allowed, with D as a sum of components, and 1e-18 for segments seen end-on, whose
+// direction has no digits.
 #define CAPLET_CAPSULE_NEAR 1
 static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane, float t_min, float t_max) {
   const RealVector p0 = capsule_p0_lanes(block, lane), p1 = capsule_p1_lanes(block, lane);
