@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "render/detail/known_rays.h"
 #include "shared/shapes.h"
 
 namespace caplet {
@@ -11,7 +12,8 @@ namespace caplet {
 namespace {
 
 bool camera_stage_pays(const Device& device, const FlatScene& scene) {
-  return device.encoding() == Encoding::wide && (scene.shapes & shape_bit(shape_instance)) == 0;
+  // Its kernel is built for, and tried with, what shapes_on_trial names.
+  return device.encoding() == Encoding::wide && (shapes_on_trial(scene.shapes) & shape_bit(shape_instance)) == 0;
 }
 
 }  // namespace

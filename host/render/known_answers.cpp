@@ -119,15 +119,18 @@ Seen seen_of(const PickRecord& pick) {
   return {std::isfinite(pick.t), static_cast<double>(pick.t), pick.object, pick.leaving != 0};
 }
 
-/// What `extend` and `connect` say of rays.
+/// What the stages of a render say of rays.
 struct TracedPaths {
-  std::vector<HitRecord> hits;  // of each ray
-  std::vector<bool> free;       // each shadow ray
+  std::vector<HitRecord> hits;         // of each ray
+  std::vector<HitRecord> camera_hits;  // the same by extend_camera; none where there is no such stage
+  std::vector<bool> free;              // each shadow ray
 };
 
 TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span<const RayRecord> shadows) {
   const std::size_t paths = std::max(rays.size(), shadows.size());
-  scene.kernels().compile(std::array{Stage::extend, Stage::connect}, paths);
+  std::vector<Stage> stages{Stage::extend, Stage::connect};
+  if (scene.has_camera_stage()) stages.push_back(Stage::extend_camera);
+  scene.kernels().compile(stages, paths);
   PathBuffers buffers(scene.device(), paths, 1, Layers::none());
   std::vector<uint> all(paths);
   std::iota(all.begin(), all.end(), 0u);
@@ -142,8 +145,16 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   scene.kernels().run(Stage::extend, bindings, rays.size());
   scene.kernels().run(Stage::connect, bindings, shadows.size());
   TracedPaths out;
-  out.hits = buffers.rays.path_hit.read();
-  out.hits.resize(rays.size());
+  const auto hits = [&] {
+    std::vector<HitRecord> read = buffers.rays.path_hit.read();
+    read.resize(rays.size());
+    return read;
+  };
+  out.hits = hits();
+  if (scene.has_camera_stage()) {
+    scene.kernels().run(Stage::extend_camera, bindings, rays.size());
+    out.camera_hits = hits();
+  }
   const std::vector<float4> seen = buffers.radiance.path_radiance.read();
   for (std::size_t i = 0; i < shadows.size(); ++i) out.free.push_back(seen[i].x == 1.0f);
   return out;
@@ -166,6 +177,9 @@ void check_render(const KnownScene& known, const FlatScene& flat, const Device& 
     const KnownRay& ray = known.rays[i];
     if (const std::string wrong = difference(ray, seen_of(flat, traced.hits[i]), 0); !wrong.empty())
       tally.add("nearest crossing (extend)", ray, wrong);
+    if (!traced.camera_hits.empty())
+      if (const std::string wrong = difference(ray, seen_of(flat, traced.camera_hits[i]), 0); !wrong.empty())
+        tally.add("nearest crossing (extend_camera)", ray, wrong);
     if (!traced.free[2 * i]) tally.add("any crossing (connect)", ray, "is blocked where it is free");
     if (traced.free[2 * i + 1] != ray.crossings.empty())
       tally.add("any crossing (connect)", ray,
@@ -207,7 +221,8 @@ std::string key_of(const Trial& trial) {
 std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
   std::vector<std::string> out{key_of(trial), name_of(device.encoding()), kernel_source("probe/self_test.cl"),
                                kernel_source("probe/layout.cl")};
-  if (trial.render) out.insert(out.end(), {stage_source(Stage::extend), stage_source(Stage::connect)});
+  if (trial.render)
+    out.insert(out.end(), {stage_source(Stage::extend), stage_source(Stage::extend_camera), stage_source(Stage::connect)});
   if (trial.nearest) out.push_back(stage_source(Stage::pick));
   if (trial.lists) out.insert(out.end(), {stage_source(Stage::pick_all), stage_source(Stage::pick_list)});
   return out;
