@@ -28,9 +28,9 @@ typedef struct {
   SlabRay slab;
   ShapeRay shape;
   NearRay near;
-  float t_min, t_best;
-  uint slot, inside, instance;  // hit so far; the instance that the ray is in, and that of the hit
-  int side, found;
+  NearestHit nearest;
+  float t_min;
+  uint instance;  // that the ray is in
   uint item;
   int flip;  // the octant of the direction: bit k where it falls along axis k
   int current, top;
@@ -39,24 +39,27 @@ typedef struct {
 
 static inline int octant_of(const SlabRay* s) { return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0); }
 
+// The ray as it is in the world.
+static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) {
+  r->instance = CAPLET_NONE;
+  r->slab = slab_ray(o, d);
+  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
+  r->near = near_ray(o, d);
+  r->flip = octant_of(&r->slab);
+}
+
 // 0: the ray can hit nothing.
 static inline int pool_begin(PooledRay* r, const Tree* tree, uint root, uint item, RayRecord ray) {
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   r->item = item;
   r->t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack entries go by the bits
-  r->t_best = fmin(ray.t_max, MAXFLOAT);           // as trace_ray
-  r->slot = 0;
-  r->instance = r->inside = CAPLET_NONE;
-  r->side = r->found = 0;
-  r->slab = slab_ray(o, d);
-  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
-  r->near = near_ray(o, d);
-  r->flip = octant_of(&r->slab);
+  r->nearest = nothing_before(ray.t_max);
+  pool_ray(r, tree, o, d);
   r->current = (int)root;
   r->enter[0] = -1;  // ends every search for the next entry
   r->child[0] = 0;
   r->top = 1;
-  return line_is_valid(o, d) && ray.t_min < ray.t_max && r->t_min < r->t_best;
+  return line_is_valid(o, d) && ray.t_min < ray.t_max && r->t_min < r->nearest.t;
 }
 
 // The children of a node that the ray meets go on its stack, nearest on top by the octant that they lie in.
@@ -70,7 +73,7 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   const float8 fy = vload8(0, node + s->far_y) * s->far_iy - s->far_oy;
   const float8 fz = vload8(0, node + s->far_z) * s->far_iz - s->far_oz;
   const float8 near = real_max(real_max(nx, ny), real_max(nz, real_of(r->t_min)));
-  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(r->t_best)));
+  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(r->nearest.t)));
   // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in the order of k ^ flip.
   const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(r->flip);
   const uint met = mask_bits(permuted(near <= far, lanes));
@@ -80,43 +83,12 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   r->top += (int)popcount(met);
 }
 
-// What the ray hits of the leaf block that it is at.
-static inline void pool_test(PooledRay* r, const Tree* tree) {
-  const uint kind = CAPLET_LEAF_KIND(r->current), row = CAPLET_LEAF_ROW(r->current);
-  __global const float* block = tree->leaves + (size_t)row * 8;
-  real t;
-  real_mask side;
-  real_mask ok = shape_hit(kind, &r->shape, block, 0, &t, &side);
-  ok &= lanes_filled(block, 0) & (t > r->t_min) & (t <= r->t_best);
-  if (r->shape.sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
-  if (r->shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
-  uint bits = mask_bits(ok);
-  if (bits == 0) return;
-  float ts[CAPLET_REAL_WIDTH];
-  real_store(t, ts);
-  int sides[CAPLET_REAL_WIDTH];
-  mask_store(side, sides);
-  do {
-    const uint i = lowest_bit(bits);
-    bits &= bits - 1;
-    const uint slot = row * 8 + i;
-    if (ts[i] < r->t_best ||
-        (ts[i] == r->t_best && r->found && tie_is_before(tree, slot, r->inside, r->slot, r->instance))) {
-      r->t_best = ts[i];
-      r->slot = slot;
-      r->instance = r->inside;
-      r->side = sides[i];
-      r->found = 1;
-    }
-  } while (bits != 0);
-}
-
 // Into the instance that the ray is at. Below its root's entries lies one that leads back.
 static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
   const uint instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
   __global const InstanceRecord* placed = tree->instances + instance;
   const RayRecord ray = traced_ray(g, r->item);
-  r->inside = instance;
+  r->instance = instance;
   r->enter[r->top] = 0;
   r->child[r->top++] = CAPLET_POOL_LEAVE_INSTANCE;
   const int valid = ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz), r->t_min, tree->leaves,
@@ -130,12 +102,7 @@ static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree*
 
 static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree* tree) {
   const RayRecord ray = traced_ray(g, r->item);
-  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
-  r->inside = CAPLET_NONE;
-  r->slab = slab_ray(o, d);
-  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
-  r->near = near_ray(o, d);
-  r->flip = octant_of(&r->slab);
+  pool_ray(r, tree, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz));
 }
 
 // Rays [next, end).
@@ -171,7 +138,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       int may = 1;
       if (CAPLET_LEAF_KIND(r->current) == shape_capsule) {
         __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8;
-        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->t_best) & lanes_filled(block, 0)) != 0;
+        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->nearest.t) & lanes_filled(block, 0)) != 0;
       }
       at_leaf[near] = place;
       going_on[count] = place;
@@ -185,7 +152,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       if (CAPLET_HAS_SHAPE(shape_instance) && CAPLET_LEAF_KIND(r->current) == shape_instance)
         pool_enter_instance(r, g, tree);
       else
-        pool_test(r, tree);
+        test_leaf(tree, CAPLET_LEAF_KIND(r->current), CAPLET_LEAF_ROW(r->current), 0, &r->shape, r->instance, &r->nearest);
       going_on[count++] = at_leaf[i];
     }
     nodes = leaves = 0;
@@ -193,22 +160,16 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       const uchar place = going_on[i];
       PooledRay* r = &pool[place];
       int top = r->top;
-      if (TRACED_ANY && r->found) top = 1;
+      if (TRACED_ANY && r->nearest.found) top = 1;
       for (;;) {
-        const int t_best = as_int(r->t_best);
+        const int t_best = as_int(r->nearest.t);
         do top--;
         while (r->enter[top] > t_best);
         if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 || r->child[top] != CAPLET_POOL_LEAVE_INSTANCE) break;
         pool_leave_instance(r, g, tree);
       }
       if (top == 0) {
-        HitRecord hit = miss;
-        if (r->found) {
-          hit.t = r->t_best;
-          hit.slot = r->slot;
-          hit.instance = r->instance;
-          hit.surface = (uint)r->side;
-        }
+        const HitRecord hit = hit_record(&r->nearest);
         traced_hit(g, r->item, &hit);
         int begun = 0;
         while (!begun && next < end) {

@@ -19,14 +19,13 @@
 typedef struct {
   float near_ix, near_iy, near_iz, near_ox, near_oy, near_oz;
   float far_ix, far_iy, far_iz, far_ox, far_oy, far_oz;
-  float t_min, t_best;
+  float t_min, t_best;  // t_best: as nearest.t of the StreamRay
 } StreamSlab;
 
 typedef struct {
   ShapeRay shape;
   NearRay near;
-  uint slot;
-  int side, found;
+  NearestHit nearest;
 } StreamRay;
 
 // Rays [first, first + count), at most CAPLET_STREAM_RAYS.
@@ -38,7 +37,6 @@ static void trace_stream(const Stage* g, uint first, uint count) {
   uchar octants[CAPLET_STREAM_RAYS], met[CAPLET_STREAM_RAYS + 8], near[CAPLET_STREAM_RAYS + 8];
   uchar lists[CAPLET_STREAM_STACK * CAPLET_STREAM_RAYS + 16];  // of rays, by number
   int list_child[CAPLET_STREAM_STACK], list_at[CAPLET_STREAM_STACK], list_count[CAPLET_STREAM_STACK];
-  const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
 
   for (uint i = 0; i < count; i++) {
     const RayRecord ray = traced_ray(g, first + i);
@@ -50,12 +48,11 @@ static void trace_stream(const Stage* g, uint first, uint count) {
     to->far_ix = s.far_ix; to->far_iy = s.far_iy; to->far_iz = s.far_iz;
     to->far_ox = s.far_ox; to->far_oy = s.far_oy; to->far_oz = s.far_oz;
     to->t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
-    to->t_best = fmin(ray.t_max, MAXFLOAT);
     StreamRay* r = &rays[i];
     r->shape = shape_ray(o, d, to->t_min, tree->leaves);
     r->near = near_ray(o, d);
-    r->slot = 0;
-    r->side = r->found = 0;
+    r->nearest = nothing_before(ray.t_max);
+    to->t_best = r->nearest.t;
     const int valid = line_is_valid(o, d) && ray.t_min < ray.t_max && to->t_min < to->t_best;
     octants[i] = (uchar)(valid ? octant_of(&s) : 8);
   }
@@ -113,54 +110,26 @@ static void trace_stream(const Stage* g, uint first, uint count) {
       }
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       __global const float* block = tree->leaves + (size_t)row * 8;
-      const real_mask filled = lanes_filled(block, 0);
       int nears = 0;
       for (int i = 0; i < n; i++) {
         const uchar id = lists[at + i];
         near[nears] = id;
 #ifdef CAPLET_CAPSULE_NEAR
         if (kind == shape_capsule &&
-            mask_bits(capsule_near(&rays[id].near, block, 0, slabs[id].t_min, slabs[id].t_best) & filled) == 0)
+            mask_bits(capsule_near(&rays[id].near, block, 0, slabs[id].t_min, slabs[id].t_best) & lanes_filled(block, 0)) == 0)
           continue;
 #endif
         nears++;
       }
       for (int i = 0; i < nears; i++) {
         const uchar id = near[i];
-        StreamRay* r = &rays[id];
-        float t_best = slabs[id].t_best;
-        real t;
-        real_mask side;
-        real_mask ok = shape_hit(kind, &r->shape, block, 0, &t, &side);
-        ok &= filled & (t > slabs[id].t_min) & (t <= t_best);
-        uint bits = mask_bits(ok);
-        if (bits == 0) continue;
-        float ts[CAPLET_REAL_WIDTH];
-        real_store(t, ts);
-        int sides[CAPLET_REAL_WIDTH];
-        mask_store(side, sides);
-        do {
-          const uint j = lowest_bit(bits);
-          bits &= bits - 1;
-          const uint slot = row * 8 + j;
-          if (ts[j] < t_best || (ts[j] == t_best && r->found && tie_is_before(tree, slot, CAPLET_NONE, r->slot, CAPLET_NONE))) {
-            t_best = ts[j];
-            r->slot = slot;
-            r->side = sides[j];
-            r->found = 1;
-          }
-        } while (bits != 0);
-        slabs[id].t_best = t_best;
+        test_leaf(tree, kind, row, 0, &rays[id].shape, CAPLET_NONE, &rays[id].nearest);
+        slabs[id].t_best = rays[id].nearest.t;
       }
     }
   }
   for (uint i = 0; i < count; i++) {
-    HitRecord hit = miss;
-    if (rays[i].found) {
-      hit.t = slabs[i].t_best;
-      hit.slot = rays[i].slot;
-      hit.surface = (uint)rays[i].side;
-    }
+    const HitRecord hit = hit_record(&rays[i].nearest);
     traced_hit(g, first + i, &hit);
   }
 }

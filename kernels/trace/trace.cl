@@ -190,23 +190,70 @@ static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint
   return instance < other_instance;
 }
 
+// The nearest hit that is found so far, and where there is none, how far a ray goes: a hit at exactly its end is none.
+typedef struct {
+  float t;
+  uint slot, instance;
+  int side, found;
+} NearestHit;
+
+static inline NearestHit nothing_before(float t_max) {
+  const NearestHit nothing = {fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 0, 0};
+  return nothing;
+}
+
+static inline HitRecord hit_record(const NearestHit* nearest) {
+  HitRecord hit = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
+  if (nearest->found) {
+    hit.t = nearest->t;
+    hit.slot = nearest->slot;
+    hit.instance = nearest->instance;
+    hit.surface = (uint)nearest->side;
+  }
+  return hit;
+}
+
+// What the ray hits of the lanes from `lane` on of the leaf block at `row`, whose shapes are of one kind. `instance`: that the ray is in.
+static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
+  __global const float* block = tree->leaves + (size_t)row * 8;
+  real t;
+  real_mask side;
+  real_mask ok = shape_hit(kind, shape, block, lane, &t, &side);
+  ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
+  // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
+  if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
+  if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
+  uint bits = mask_bits(ok);
+  if (bits == 0) return;
+  float ts[CAPLET_REAL_WIDTH];
+  real_store(t, ts);
+  int sides[CAPLET_REAL_WIDTH];
+  mask_store(side, sides);
+  do {
+    const uint i = lowest_bit(bits);
+    bits &= bits - 1;
+    const uint slot = row * 8 + lane + i;
+    if (ts[i] < nearest->t ||
+        (ts[i] == nearest->t && nearest->found && tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
+      nearest->t = ts[i];
+      nearest->slot = slot;
+      nearest->instance = instance;
+      nearest->side = sides[i];
+      nearest->found = 1;
+    }
+  } while (bits != 0);
+}
+
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
 // traversal can show. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
-  HitRecord hit;
-  hit.t = INFINITY;
-  hit.slot = CAPLET_NONE;
-  hit.instance = CAPLET_NONE;
-  hit.surface = 0;
+  NearestHit nearest = nothing_before(ray.t_max);
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
-  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max)) return hit;
   const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
-  float t_best = fmin(ray.t_max, MAXFLOAT);  // hits at exactly t_max lose the tie below, for nothing is found yet
-  if (!(t_min < t_best)) return hit;
-  uint best_slot = 0, best_instance = CAPLET_NONE, instance = CAPLET_NONE;
-  int found = 0, best_side = 0;
+  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < nearest.t)) return hit_record(&nearest);
+  uint instance = CAPLET_NONE;
 
   ulong stack[CAPLET_STACK_SIZE];
   int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
@@ -216,62 +263,23 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   for (;;) {
     if (current >= 0) {
       __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
-      if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
+      if (visit_node(node, &slab, t_min, nearest.t, stack, &top, &current)) continue;
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
-      __global const float* block = leaves + (size_t)row * 8;
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
-        instance = ((__global const uint*)block)[0];
+        instance = ((__global const uint*)leaves)[(size_t)row * 8];
         __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
         current = (int)placed->root;
         if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
       } else {
-        for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) {
-          real t;
-          real_mask side;
-          real_mask ok = shape_hit(kind, &shape, block, lane, &t, &side);
-          ok &= lanes_filled(block, lane) & (t > t_min) & (t <= t_best);
-          // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
-          if (shape.sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
-          if (shape.sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
-          uint bits = mask_bits(ok);
-          if (bits == 0) continue;
-          float ts[CAPLET_REAL_WIDTH];
-          real_store(t, ts);
-          int sides[CAPLET_REAL_WIDTH];
-          mask_store(side, sides);
-          do {
-            const uint i = lowest_bit(bits);
-            bits &= bits - 1;
-            const uint slot = row * 8 + lane + i;
-            if (ts[i] < t_best || (ts[i] == t_best && found && tie_is_before(tree, slot, instance, best_slot, best_instance))) {
-              t_best = ts[i];
-              best_slot = slot;
-              best_instance = instance;
-              best_side = sides[i];
-              found = 1;
-            }
-          } while (bits != 0);
-          if (any && found) {
-            hit.t = t_best;
-            hit.slot = best_slot;
-            hit.instance = best_instance;
-            return hit;
-          }
-        }
+        for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
+          test_leaf(tree, kind, row, lane, &shape, instance, &nearest);
+        if (any && nearest.found) return hit_record(&nearest);
       }
     }
-    while (!pop_entry(stack, &top, floor, t_best, &current)) {
-      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) {
-        if (found) {
-          hit.t = t_best;
-          hit.slot = best_slot;
-          hit.instance = best_instance;
-          hit.surface = (uint)best_side;
-        }
-        return hit;
-      }
+    while (!pop_entry(stack, &top, floor, nearest.t, &current)) {
+      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) return hit_record(&nearest);
       instance = CAPLET_NONE;
       floor = 0;
       slab = slab_ray(world_o, world_d);
