@@ -152,6 +152,7 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   };
   out.hits = hits();
   if (scene.has_camera_stage()) {
+    buffers.rays.path_hit.clear();  // what it leaves out is not what extend found
     scene.kernels().run(Stage::extend_camera, bindings, rays.size());
     out.camera_hits = hits();
   }
