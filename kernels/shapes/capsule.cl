@@ -93,8 +93,8 @@ static inline real_mask capsule_near(const NearRay* ray, __global const float* b
   const real qu = au + at * eu, qv = av + at * ev;
   const real reach = real_max(fabs(au), fabs(bu)) + real_max(fabs(av), fabs(bv)) + real_max(fabs(aw), fabs(bw));
   const real r = capsule_r_lanes(block, lane), outer = r + (0x1.8p-18f * (reach + r) + 1e-18f);
-  return (qu * qu + qv * qv <= outer * outer) & (real_min(aw, bw) - outer <= t_max * ray->length) &
-         (real_max(aw, bw) + outer >= t_min * ray->length);
+  const real begin = real_min(aw, bw) - outer, end = real_max(aw, bw) + outer;
+  return (qu * qu + qv * qv <= outer * outer) & (begin <= t_max * ray->length) & (end >= t_min * ray->length);
 }
 
 static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
