@@ -97,14 +97,8 @@ struct FamilyField {
 #define MATERIAL(name, traits) inline constexpr FamilyField name##_field_list[] = {
 #define LIGHT(name, way) inline constexpr FamilyField name##_field_list[] = {
 #define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
-#define MATERIAL_END(name) \
-  {}                       \
-  }                        \
-  ;
-#define LIGHT_END(name) \
-  {}                    \
-  }                     \
-  ;
+#define MATERIAL_END(name) {}};
+#define LIGHT_END(name) {}};
 #include "shared/materials.def"
 #define FIELD(kind, name, type) {#name, kind##_at_##name, CAPLET_FLOATS_OF_##type},
 #include "shared/lights.def"
@@ -112,10 +106,7 @@ struct FamilyField {
 #undef LIGHT
 #define TEXTURE(name) inline constexpr FamilyField name##_texture_field_list[] = {
 #define FIELD(kind, name, type) {#name, kind##_texture_at_##name, CAPLET_FLOATS_OF_##type},
-#define TEXTURE_END(name) \
-  {}                      \
-  }                       \
-  ;
+#define TEXTURE_END(name) {}};
 #include "shared/textures.def"
 #undef TEXTURE
 

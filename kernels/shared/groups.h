@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Every device buffer, in groups that live and are used together. Kernel signatures, the structs that kernel functions take,
-// allocation, byte counts and argument binding on the host all expand from these lists: define
+// Every device buffer, in groups that live and are used together. Kernel signatures, the structs that kernel functions take, allocation,
+// byte counts and argument binding on the host all expand from these lists: define
 //   GROUP_BEGIN(Type, group)      // Tree, tree: the struct of its buffers and the name that stages know it by
 //   BUFFER(name, type, access)    // access: ONE (a record, read only), IN (an array, read only) or STATE
 //   GROUP_END(Type)
@@ -13,24 +13,24 @@
 // --- The scene ---
 
 // What rays are traced through.
-#define GROUP_TREE                                           \
-  GROUP_BEGIN(Tree, tree)                                    \
-  BUFFER(world, WorldRecord, ONE)                            \
-  BUFFER(nodes, float, IN)  /* CAPLET_NODE_FLOATS a node */  \
-  BUFFER(leaves, float, IN) /* blocks of rows, shapes.def */ \
-  BUFFER(instances, InstanceRecord, IN)                      \
+#define GROUP_TREE                                               \
+  GROUP_BEGIN(Tree, tree)                                        \
+  BUFFER(world, WorldRecord, ONE)                                 \
+  BUFFER(nodes, float, IN)  /* CAPLET_NODE_FLOATS a node */      \
+  BUFFER(leaves, float, IN) /* blocks of rows, shapes.def */     \
+  BUFFER(instances, InstanceRecord, IN)                          \
   GROUP_END(Tree)
 
 // What is found out about a hit afterwards.
-#define GROUP_SURFACES                                                                 \
-  GROUP_BEGIN(Surfaces, surfaces)                                                      \
-  BUFFER(geometries, GeometryRecord, IN)                                               \
-  BUFFER(primitive_geometry, uint, IN) /* by primitive id */                           \
-  /* by GeometryRecord.surface_begin + surface: a material, and CAPLET_SURFACE_DARK */ \
-  BUFFER(surface_materials, uint, IN)                                                  \
-  BUFFER(mesh_indices, uint, IN) /* vertex numbers within the mesh */                  \
-  BUFFER(mesh_normals, float, IN)                                                      \
-  BUFFER(mesh_uvs, float, IN)                                                          \
+#define GROUP_SURFACES                                                                             \
+  GROUP_BEGIN(Surfaces, surfaces)                                                                  \
+  BUFFER(geometries, GeometryRecord, IN)                                                           \
+  BUFFER(primitive_geometry, uint, IN) /* by primitive id */                                       \
+  /* by GeometryRecord.surface_begin + surface: a material, and CAPLET_SURFACE_DARK */             \
+  BUFFER(surface_materials, uint, IN)                                                              \
+  BUFFER(mesh_indices, uint, IN) /* vertex numbers within the mesh */                              \
+  BUFFER(mesh_normals, float, IN)                                                                  \
+  BUFFER(mesh_uvs, float, IN)                                                                      \
   GROUP_END(Surfaces)
 
 #define GROUP_SPECTRA                                                  \
@@ -39,50 +39,49 @@
   BUFFER(spectrum_tables, float, IN) /* CAPLET_LAMBDA_COUNT a table */ \
   GROUP_END(Spectra)
 
-#define GROUP_MATERIALS                                \
-  GROUP_BEGIN(Materials, materials)                    \
-  BUFFER(materials, MaterialRecord, IN)                \
-  BUFFER(material_data, float, IN) /* materials.def */ \
-  BUFFER(textures, TextureRecord, IN)                  \
-  BUFFER(texture_data, float, IN) /* textures.def */   \
+#define GROUP_MATERIALS             \
+  GROUP_BEGIN(Materials, materials) \
+  BUFFER(materials, MaterialRecord, IN) \
+  BUFFER(material_data, float, IN)  /* materials.def */ \
+  BUFFER(textures, TextureRecord, IN) \
+  BUFFER(texture_data, float, IN)  /* textures.def */ \
   GROUP_END(Materials)
 
-#define GROUP_LIGHTS                                                                                                 \
-  GROUP_BEGIN(Lights, lights)                                                                                        \
-  BUFFER(lighting, LightingRecord, ONE)                                                                              \
-  BUFFER(lights, LightRecord, IN)                                                                                    \
-  BUFFER(light_data, float, IN) /* lights.def */                                                                     \
-  BUFFER(light_alias, AliasRecord, IN)                                                                               \
-  BUFFER(environment_texels, float, IN) /* 4 a texel: sigmoid c0 c1 c2, scale (times the illuminant) */              \
+#define GROUP_LIGHTS                                                                                            \
+  GROUP_BEGIN(Lights, lights)                                                                                   \
+  BUFFER(lighting, LightingRecord, ONE)                                                                          \
+  BUFFER(lights, LightRecord, IN)                                                                               \
+  BUFFER(light_data, float, IN) /* lights.def */                                                                \
+  BUFFER(light_alias, AliasRecord, IN)                                                                          \
+  BUFFER(environment_texels, float, IN) /* 4 a texel: sigmoid c0 c1 c2, scale (times the illuminant) */         \
   BUFFER(environment_cdf, float, IN)    /* rows: marginal (height + 1), then height times (width + 1) conditional */ \
   GROUP_END(Lights)
 
 // The same for every scene.
-#define GROUP_OBSERVER                                                                                                     \
-  GROUP_BEGIN(Observer, observer)                                                                                          \
-  BUFFER(observer, float, IN) /* CAPLET_LAMBDA_COUNT times x y z of the CIE 1931 observer over the integral of y, and 0 */ \
-  BUFFER(wavelength_table, float,                                                                                          \
-         IN) /* wavelength at u = i / CAPLET_WAVELENGTH_CELLS (inverse of the sampling CDF, linear between) */             \
+#define GROUP_OBSERVER                                                                                                    \
+  GROUP_BEGIN(Observer, observer)                                                                                         \
+  BUFFER(observer, float, IN)         /* CAPLET_LAMBDA_COUNT times x y z of the CIE 1931 observer over the integral of y, and 0 */ \
+  BUFFER(wavelength_table, float, IN) /* wavelength at u = i / CAPLET_WAVELENGTH_CELLS (inverse of the sampling CDF, linear between) */ \
   GROUP_END(Observer)
 
 // --- A view of it ---
 
-#define GROUP_VIEW              \
-  GROUP_BEGIN(View, view)       \
+#define GROUP_VIEW             \
+  GROUP_BEGIN(View, view)      \
   BUFFER(view, ViewRecord, ONE) \
   GROUP_END(View)
 
-#define GROUP_CAMERA                                                                                                   \
-  GROUP_BEGIN(Camera, camera)                                                                                          \
-  BUFFER(camera, CameraRecord, ONE)                                                                                    \
+#define GROUP_CAMERA                                                                                             \
+  GROUP_BEGIN(Camera, camera)                                                                                    \
+  BUFFER(camera, CameraRecord, ONE)                                                                               \
   /* an axis after the other: positions (n + 1), cdf of |f| (n + 1), values (n + 1), integral of |f| over that of f */ \
-  BUFFER(filter_table, float, IN)                                                                                      \
+  BUFFER(filter_table, float, IN)                                                                                \
   GROUP_END(Camera)
 
 // --- Paths under way ---
 
-#define GROUP_BATCH               \
-  GROUP_BEGIN(Batch, batch)       \
+#define GROUP_BATCH              \
+  GROUP_BEGIN(Batch, batch)      \
   BUFFER(batch, BatchRecord, ONE) \
   GROUP_END(Batch)
 
@@ -92,78 +91,78 @@
   BUFFER(path_hit, HitRecord, STATE) \
   GROUP_END(Rays)
 
-#define GROUP_RADIANCE                 \
-  GROUP_BEGIN(Radiance, radiance)      \
-  BUFFER(path_radiance, float4, STATE) \
+#define GROUP_RADIANCE                   \
+  GROUP_BEGIN(Radiance, radiance)        \
+  BUFFER(path_radiance, float4, STATE)   \
   GROUP_END(Radiance)
 
 // What a path carries from one scattering to the next.
-#define GROUP_CARRIED                                                                                              \
-  GROUP_BEGIN(Carried, carried)                                                                                    \
-  BUFFER(path_throughput, float4, STATE)      /* at the four wavelengths */                                        \
-  BUFFER(path_wavelengths, float4, STATE)     /* nm */                                                             \
-  BUFFER(path_wavelength_pdfs, float4, STATE) /* 1/nm; 0: wavelength dropped */                                    \
+#define GROUP_CARRIED                                                                                           \
+  GROUP_BEGIN(Carried, carried)                                                                                 \
+  BUFFER(path_throughput, float4, STATE)       /* at the four wavelengths */                                    \
+  BUFFER(path_wavelengths, float4, STATE)      /* nm */                                                         \
+  BUFFER(path_wavelength_pdfs, float4, STATE)  /* 1/nm; 0: wavelength dropped */                                \
   /* pdf of the last direction (solid angle), product of eta scales, bits of the light of the primitive that it */ \
-  /* refracted through (or CAPLET_NONE), filter weight */                                                          \
-  BUFFER(path_scatter, float4, STATE)                                                                              \
-  BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */              \
+  /* refracted through (or CAPLET_NONE), filter weight */                                                       \
+  BUFFER(path_scatter, float4, STATE)                                                                           \
+  BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 
-#define GROUP_LAYERS                                                                                            \
-  GROUP_BEGIN(Layers, layers)                                                                                   \
+#define GROUP_LAYERS                                                                            \
+  GROUP_BEGIN(Layers, layers)                                                                   \
   BUFFER(path_layers, float, STATE) /* BatchRecord.layer_floats a path: the HIT_ and ID_LAYERs of layers.def */ \
   GROUP_END(Layers)
 
-#define GROUP_SHADOWS                                                                                  \
-  GROUP_BEGIN(Shadows, shadows)                                                                        \
-  BUFFER(path_shadow, RayRecord, STATE)                                                                \
+#define GROUP_SHADOWS                                                                               \
+  GROUP_BEGIN(Shadows, shadows)                                                                     \
+  BUFFER(path_shadow, RayRecord, STATE)                                                             \
   BUFFER(path_shadow_radiance, float4, STATE) /* added to path_radiance when the shadow ray is free */ \
-  BUFFER(queue_shadow, uint, STATE)           /* paths with a shadow ray */                            \
+  BUFFER(queue_shadow, uint, STATE)           /* paths with a shadow ray */                         \
   GROUP_END(Shadows)
 
-#define GROUP_QUEUES                                                      \
-  GROUP_BEGIN(Queues, queues)                                             \
-  BUFFER(queue, uint, STATE)      /* paths whose ray is to be extended */ \
-  BUFFER(queue_next, uint, STATE) /* those of the round after */          \
+#define GROUP_QUEUES                                                        \
+  GROUP_BEGIN(Queues, queues)                                               \
+  BUFFER(queue, uint, STATE)      /* paths whose ray is to be extended */   \
+  BUFFER(queue_next, uint, STATE) /* those of the round after */            \
   GROUP_END(Queues)
 
-#define GROUP_SORT                                               \
-  GROUP_BEGIN(Sort, sort)                                        \
-  BUFFER(sort_keys, uint, STATE) /* by position in queue_next */ \
-  BUFFER(sort_bins, uint, STATE)                                 \
+#define GROUP_SORT                                                  \
+  GROUP_BEGIN(Sort, sort)                                           \
+  BUFFER(sort_keys, uint, STATE) /* by position in queue_next */    \
+  BUFFER(sort_bins, uint, STATE)                                    \
   GROUP_END(Sort)
 
-#define GROUP_COUNTERS                                             \
-  GROUP_BEGIN(Counters, counters)                                  \
+#define GROUP_COUNTERS                                            \
+  GROUP_BEGIN(Counters, counters)                                 \
   BUFFER(counters, uint, STATE) /* counter_next, ... (limits.h) */ \
   GROUP_END(Counters)
 
 // --- The film ---
 
-#define GROUP_FILM                                                           \
-  GROUP_BEGIN(Film, film)                                                    \
+#define GROUP_FILM               \
+  GROUP_BEGIN(Film, film)        \
   /* BatchRecord.film_words a pixel: samples, then the sums of layers.def */ \
-  BUFFER(film, ulong, STATE)                                                 \
+  BUFFER(film, ulong, STATE)                                                  \
   GROUP_END(Film)
 
 // --- Queries ---
 
 #define GROUP_QUERY                    \
   GROUP_BEGIN(Query, query)            \
-  BUFFER(query, QueryRecord, ONE)      \
+  BUFFER(query, QueryRecord, ONE)       \
   BUFFER(query_rays, RayRecord, STATE) \
   GROUP_END(Query)
 
-#define GROUP_CROSSINGS                                                                          \
-  GROUP_BEGIN(Crossings, crossings)                                                              \
-  BUFFER(query_hits, HitRecord, STATE) /* QueryRecord.capacity a ray */                          \
-  BUFFER(query_counts, uint, STATE)    /* hits of each ray; capacity + 1: more than were kept */ \
-  BUFFER(query_begin, uint, STATE)     /* first of each ray's records in `picks` */              \
+#define GROUP_CROSSINGS                                                                              \
+  GROUP_BEGIN(Crossings, crossings)                                                                  \
+  BUFFER(query_hits, HitRecord, STATE) /* QueryRecord.capacity a ray */                              \
+  BUFFER(query_counts, uint, STATE)    /* hits of each ray; capacity + 1: more than were kept */     \
+  BUFFER(query_begin, uint, STATE)     /* first of each ray's records in `picks` */                  \
   GROUP_END(Crossings)
 
-#define GROUP_PICKS                \
-  GROUP_BEGIN(Picks, picks)        \
-  BUFFER(picks, PickRecord, STATE) \
+#define GROUP_PICKS                 \
+  GROUP_BEGIN(Picks, picks)         \
+  BUFFER(picks, PickRecord, STATE)  \
   GROUP_END(Picks)
 
 #define SCENE_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER

@@ -20,12 +20,12 @@ enum {
 
 // Traits of shapes (shapes.def).
 enum {
-  trait_solid = 1,            // closed and convex: a line is in it once or not at all; may be an operand of csg
-  trait_sheet = 2,            // open: its two sides are told apart by a normal alone
-  trait_compound = 4,         // made of other shapes
-  trait_own_light = 8,        // as a light sampled by itself (lights/area.cl)
-  trait_ball_light = 16,      // as a light sampled by a ball around it (lights/ball.cl)
-  trait_kept_box = 32,        // its data do not tell its box: the host keeps it behind them
+  trait_solid = 1,     // closed and convex: a line is in it once or not at all; may be an operand of csg
+  trait_sheet = 2,     // open: its two sides are told apart by a normal alone
+  trait_compound = 4,  // made of other shapes
+  trait_own_light = 8,    // as a light sampled by itself (lights/area.cl)
+  trait_ball_light = 16,  // as a light sampled by a ball around it (lights/ball.cl)
+  trait_kept_box = 32,    // its data do not tell its box: the host keeps it behind them
   trait_stands_straight = 64  // its data do not hold a rotation: turned it is placed by an instance
 };
 
@@ -76,9 +76,9 @@ enum {
 // "None" for any index: instance of a world-space primitive, geometry without light, mesh without normals.
 #define CAPLET_NONE 0xffffffffu
 
-// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, then the shape kind in CAPLET_LEAF_KIND_BITS
-// bits, then the block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is
-// never entered. Scenes without kinds of high numbers keep more bits for rows: programs are told by the option of this name.
+// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, then the shape kind in CAPLET_LEAF_KIND_BITS bits,
+// then the block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
+// Scenes without kinds of high numbers keep more bits for rows: programs are told by the option of this name.
 #ifndef CAPLET_LEAF_KIND_BITS
 #define CAPLET_LEAF_KIND_BITS (shape_count <= 16 ? 4 : shape_count <= 32 ? 5 : 6)
 #endif
@@ -87,19 +87,19 @@ enum {
 #define CAPLET_LEAF_ROW(reference) ((uint)(reference) & ((1u << CAPLET_LEAF_ROW_BITS) - 1u))
 
 // GeometryRecord.flags
-#define CAPLET_GEOMETRY_FLIP_NORMAL 1u      // ReverseOrientation, for meshes xor a mirroring transform
-#define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u  // AreaLightSource "bool twosided"
+#define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
+#define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 // InstanceRecord.flags
-#define CAPLET_INSTANCE_MIRRORED 1u     // negative determinant
-#define CAPLET_INSTANCE_NO_LEAVING 2u   // leaving hits within are not seen ("onesided")
-#define CAPLET_INSTANCE_NO_ENTERING 4u  // entering ones (open shapes of reversed orientation)
+#define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
+#define CAPLET_INSTANCE_NO_LEAVING 2u      // leaving hits within are not seen ("onesided")
+#define CAPLET_INSTANCE_NO_ENTERING 4u     // entering ones (open shapes of reversed orientation)
 // HitRecord.surface
-#define CAPLET_LEAVING 0x10000  // seen from inside; open shapes: along the normal
+#define CAPLET_LEAVING 0x10000             // seen from inside; open shapes: along the normal
 #define CAPLET_SURFACE_MASK 0xffffu
 // surface_materials
-#define CAPLET_SURFACE_DARK 0x80000000u  // this surface of an emitting shape does not emit
+#define CAPLET_SURFACE_DARK 0x80000000u    // this surface of an emitting shape does not emit
 // Ends of cylinders and cones, as floats in their rows
 #define CAPLET_CAP_FLAT 0.0f
 #define CAPLET_CAP_ROUND 1.0f
@@ -109,12 +109,12 @@ enum {
 #define CAPLET_CSG_INTERSECTION 0x101u
 #define CAPLET_CSG_DIFFERENCE 0x102u
 #define CAPLET_CSG_SUBTRACTED 0x80000000u  // with an operand's first surface: its normals flip
-// GGX roughness (pbrt-v4's): below the first in both directions a surface is a perfect mirror or a clear interface, as its lobe
-// is narrower than the rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.
+// GGX roughness (pbrt-v4's): below the first in both directions a surface is a perfect mirror or a clear interface, as its lobe is
+// narrower than the rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.
 #define CAPLET_ALPHA_SMOOTH 1e-3f
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
-#define CAPLET_MATERIAL_DISPERSIVE 1u  // eta varies with wavelength: refraction keeps only the hero wavelength
+#define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
 
 #ifdef __cplusplus
 }
