@@ -14,7 +14,7 @@
 enum {
   // Whether the program has any.
   any_texture = 0
-#define TEXTURE(name) +1
+#define TEXTURE(name) || 1
 #include "rows/textures.def"
 #undef TEXTURE
 };

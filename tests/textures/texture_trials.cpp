@@ -86,6 +86,23 @@ TextureTrial mix_texture_trial() {
            {1.2, 0.5, 0.3125}}};  // 0.75 of 0.125 and 0.25 of 0.875
 }
 
+TextureTrial bilerp_texture_trial() {
+  BilerpTexture square;
+  square.v00 = 0.25;
+  square.v01 = 0.5;
+  square.v10 = 0.75;
+  square.v11 = operand_of(0);  // 0.5 where it counts
+  square.uscale = 2;
+  square.vdelta = 0.25;
+  return {{floats(board()), floats(square)},
+          {{0, -0.25, 0.25},  // the corners
+           {0, 0.75, 0.5},
+           {0.5, -0.25, 0.75},
+           {0.5, 0.75, 0.5},
+           {0.25, 0.25, 0.5},        // the middle: their mean
+           {0.125, 0.5, 0.46875}}};  // (0.25, 0.75): 0.75 (0.25 0.25 + 0.75 0.5) + 0.25 (0.25 0.75 + 0.75 0.5)
+}
+
 TextureTrial root_texture_trial() {
   RootTexture root;
   root.tex = operand_of(0);
