@@ -365,7 +365,8 @@ TEST(TexturedEdits, AreThoseOfTheEditedScene) {
   const std::string world =
       "WorldBegin\nLightSource \"infinite\"\nTexture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.8 .1 .1]\n"
       "\"float uscale\" 8\nMaterial \"diffuse\" \"texture reflectance\" \"c\" Shape \"sphere\"\n"
-      "Material \"diffuse\" Translate 2 0 0 Shape \"sphere\"";
+      "Material \"diffuse\" Translate 2 0 0 Shape \"sphere\" Shape \"sphere\" \"float radius\" 60 Shape \"sphere\" \"float "
+      "radius\" 50";
   const MaterialEdit grey{0, DiffuseMaterial{ConstantSpectrum{0.3}}};
   MaterialEdit checks = grey;
   checks.textures = {{"reflectance", 0}};

@@ -201,7 +201,7 @@ TEST(Textures, WhatIsUsedTwiceIsEvaluatedOnce) {
   }
   EXPECT_EQ(texture_steps(textures, 14), 31u);  // the checkerboard's three, and 14 times a mix and its amount
   const Scene scene = scene_of(DielectricMaterial{}, textures, {{"alpha_u", 14}, {"alpha_v", 0}});
-  EXPECT_EQ(lower(scene).textures.size(), 31u + 3u);
+  ASSERT_EQ(lower(scene).textures.size(), 31u + 3u);
   EXPECT_EQ(look_up(scene, 0.5, 0.5).alpha_u, 0.5f);
   EXPECT_EQ(look_up(scene, 1.5, 0.5).alpha_u, 0.25f);
   EXPECT_EQ(look_up(scene, 1.5, 0.5).alpha_v, 0.25f);
