@@ -184,7 +184,7 @@ TEST(BadInput, TexturesOfTexturesSayWhere) {
       ElementsAre(
           "scene.pbrt:4:23: Material \"dielectric\": \"roughness\" needs a float texture, not the spectrum texture \"c\""));
   EXPECT_THAT(of("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"texture alpha\" \"f\""),
-              testing::Contains("scene.pbrt:4:58: Shape \"trianglemesh\": \"alpha\" takes no texture other than constants here"));
+              testing::Contains("scene.pbrt:4:53: Shape \"trianglemesh\": \"alpha\" takes no texture other than constants here"));
   std::string deep = "Texture \"t0\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"float scale\" .5";
   for (int i = 1; i <= 14; ++i)
     deep += "\nTexture \"t" + std::to_string(i) + "\" \"spectrum\" \"scale\" \"texture tex\" \"t" + std::to_string(i - 1) +
