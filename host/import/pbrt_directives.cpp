@@ -278,7 +278,7 @@ void Parser::texture() {
       known = std::find(table.refused.begin(), table.refused.end(), texture_class) != table.refused.end() ||
               check_name("Texture", texture_class, class_place, diagnostics_);
   if (!known) return;
-  const TextureValue value = make_texture(kind, texture_class, given, textures_);
+  const TextureValue value = make_texture(name, kind, texture_class, given, textures_, scene_);
   if (!textures_.emplace(name, value).second) diagnostics_.error(where_, "the texture " + in_quotes(name) + " is defined twice");
 }
 
@@ -376,7 +376,7 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
       diagnostics.error(statement.where, statement.refusal, statement.refusal);
     } else {
       statement.parameters.report_to(diagnostics);
-      Material material = make_material(statement.type, statement.parameters, textures_);
+      Material material = make_material(statement.type, statement.parameters, textures_, scene_);
       material.name = statement.name;
       if (!aside.has_errors()) scene_.materials.push_back(std::move(material));
     }

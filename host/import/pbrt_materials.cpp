@@ -78,10 +78,20 @@ double alpha_from_roughness(Parameters& parameters, const char* name, double rou
   return remap ? std::sqrt(roughness) : roughness;
 }
 
+/// A square root of a texture of floats.
+std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene& scene) {
+  RootTexture root;
+  root.tex.texture = texture;
+  scene.textures.push_back({root, true, scene.textures[texture].name, where});
+  return static_cast<std::uint32_t>(scene.textures.size() - 1);
+}
+
 /// Reads what scene/materials.def visits.
 struct MaterialReader {
   Parameters& parameters;
   const TextureTable& textures;
+  Material& material;
+  Scene& scene;
 
   void albedo(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::albedo, value); }
   void unbounded(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::unbounded, value); }
@@ -95,21 +105,31 @@ struct MaterialReader {
       parameters.error(name, "must be positive");
   }
   void number(const char* name, double& value, double low, double high) {
+    if (textured(name, name, true)) return;
     value = parameters.number_or_texture(name, value, textures);
     if (!(value >= low && value <= high))
       parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
   }
   void roughness(double& alpha_u, double& alpha_v) {
-    const double both = parameters.number_or_texture("roughness", 0, textures);
+    const auto texture = parameters.texture("roughness", true, textures);
+    const double both = texture ? 0 : parameters.number_or_texture("roughness", 0, textures);
     const bool remap = parameters.boolean("remaproughness", true);
-    alpha_u = alpha_from_roughness(parameters, "uroughness", parameters.number_or_texture("uroughness", both, textures), remap);
-    alpha_v = alpha_from_roughness(parameters, "vroughness", parameters.number_or_texture("vroughness", both, textures), remap);
+    const auto alpha = [&](const char* name, const char* field, double& value) {
+      const auto own = parameters.texture(name, true, textures);
+      if (const auto used = own || parameters.has(name) ? own : texture)
+        material.textures.push_back({field, remap ? root_of(*used, parameters.where(own ? name : "roughness"), scene) : *used});
+      else
+        value = alpha_from_roughness(parameters, name, parameters.number_or_texture(name, both, textures), remap);
+    };
+    alpha("uroughness", "alpha_u", alpha_u);
+    alpha("vroughness", "alpha_v", alpha_v);
   }
   void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
     const bool has_indices = parameters.has("eta") || parameters.has("k");
     if (parameters.has("reflectance")) {
       if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
-      reflectance = parameters.spectrum("reflectance", SpectrumUse::albedo, &textures).value_or(ConstantSpectrum{0.5});
+      reflectance = ConstantSpectrum{0.5};
+      albedo("reflectance", *reflectance);
     } else {
       eta = named_spectrum("metal-Cu-eta").value_or(ConstantSpectrum{1});
       k = named_spectrum("metal-Cu-k").value_or(ConstantSpectrum{1});
@@ -119,51 +139,101 @@ struct MaterialReader {
   }
 
   void spectrum(const char* name, SpectrumUse use, Spectrum& value) {
+    if (textured(name, name, false)) return;
     if (auto given = parameters.spectrum(name, use, &textures)) value = *std::move(given);
+  }
+  bool textured(const char* name, const char* field, bool is_float) {
+    const auto texture = parameters.texture(name, is_float, textures);
+    if (texture) material.textures.push_back({field, *texture});
+    return texture.has_value();
   }
 };
 
+/// Reads what scene/textures.def visits.
+struct TextureReader {
+  Parameters& parameters;
+  const TextureTable& textures;
+  bool is_float;
+  std::string& refusal;
+
+  void operand(const char* name, TextureOperand& of) {
+    if (is_float) return factor(name, of);
+    const double fallback = std::get<ConstantSpectrum>(of.value).value;
+    if (of.texture = parameters.texture(name, false, textures); !of.texture)
+      of.value = texture_argument(parameters, name, fallback, textures, refusal);
+  }
+  void factor(const char* name, TextureOperand& of) {
+    const double fallback = std::get<ConstantSpectrum>(of.value).value;
+    if (of.texture = parameters.texture(name, true, textures); !of.texture)
+      of.value = ConstantSpectrum{float_argument(parameters, name, fallback, textures, refusal)};
+  }
+  void number(const char* name, double& value) { value = parameters.number(name, value); }
+  void fixed(const char* name, int value) {
+    if (parameters.integer(name, value) != value)
+      parameters.error(name, "is not rendered yet unless it is " + std::to_string(value), "not rendered: " + std::string(name));
+  }
+  void mapping(double& uscale, double& vscale, double& udelta, double& vdelta) {
+    if (const std::string name = parameters.text("mapping", "uv"); name != "uv")
+      parameters.error("mapping", "is " + in_quotes(name) + ", which is not rendered yet; only \"uv\" is", "mapping " + name);
+    number("uscale", uscale);
+    number("vscale", vscale);
+    number("udelta", udelta);
+    number("vdelta", vdelta);
+  }
+};
+
+/// A constant where all that a texture is made of is constant: no value of one that varies over the surface.
+std::optional<Spectrum> folded(const ScaleTexture& model) {
+  if (model.tex.texture || model.scale.texture) return std::nullopt;
+  const double scale = std::get<ConstantSpectrum>(model.scale.value).value;
+  return map_spectrum(model.tex.value, [=](double x) { return scale * x; });
+}
+std::optional<Spectrum> folded(const MixTexture& model) {
+  if (model.tex1.texture || model.tex2.texture || model.amount.texture) return std::nullopt;
+  return mix_spectra(model.tex1.value, model.tex2.value, std::get<ConstantSpectrum>(model.amount.value).value);
+}
+template <class Model>
+std::optional<Spectrum> folded(const Model&) {
+  return std::nullopt;
+}
+
 }  // namespace
 
-TextureValue make_texture(const std::string& kind, const std::string& texture_class, Parameters& parameters,
-                          const TextureTable& textures) {
+TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
+                          Parameters& parameters, const TextureTable& textures, Scene& scene) {
   TextureValue value;
   value.is_float = kind == "float";
   value.spectrum = ConstantSpectrum{1};
-  const auto spectrum = [&](const char* name, double fallback) {
-    return texture_argument(parameters, name, fallback, textures, value.refusal);
-  };
-  const auto number = [&](const char* name, double fallback) {
-    return float_argument(parameters, name, fallback, textures, value.refusal);
-  };
+  bool known = false;
   if (texture_class == "constant") {
+    known = true;
     if (value.is_float)
       value.number = parameters.number("value", 1);
     else
-      value.spectrum = spectrum("value", 1);
-  } else if (texture_class == "scale") {
-    const double scale = number("scale", 1);
-    if (value.is_float)
-      value.number = scale * number("tex", 1);
-    else if (const auto scaled = map_spectrum(spectrum("tex", 1), [=](double x) { return scale * x; }))
-      value.spectrum = *scaled;
-    else
-      value.refusal = "a scaled blackbody texture, which is not rendered yet";
-  } else if (texture_class == "mix") {
-    const double amount = number("amount", 0.5);
-    if (value.is_float)
-      value.number = (1 - amount) * number("tex1", 0) + amount * number("tex2", 1);
-    else if (const auto mixed = mix_spectra(spectrum("tex1", 0), spectrum("tex2", 1), amount))
-      value.spectrum = *mixed;
-    else
-      value.refusal = "a mix texture of different kinds of spectra, which is not rendered yet";
-  } else {
+      value.spectrum = texture_argument(parameters, "value", 1, textures, value.refusal);
+  }
+#define TEXTURE_MODEL(type, Type)                                                             \
+  if (texture_class == #type) {                                                               \
+    known = true;                                                                             \
+    Type model;                                                                               \
+    Type::fields(model, TextureReader{parameters, textures, value.is_float, value.refusal});  \
+    if (const auto constant = folded(model)) {                                                \
+      value.spectrum = *constant;                                                             \
+      if (value.is_float) value.number = std::get<ConstantSpectrum>(*constant).value;         \
+    } else if (value.refusal.empty()) {                                                       \
+      value.texture = static_cast<std::uint32_t>(scene.textures.size());                      \
+      scene.textures.push_back({std::move(model), value.is_float, name, parameters.where()}); \
+    }                                                                                         \
+  }
+#define OWN_TEXTURE_MODEL(name, Type)
+#include "scene/textures.def"
+  if (!known) {
     std::string missing;
     if (texture_class == "imagemap") {
-      const std::string name = parameters.text("filename", "");
-      const std::string file = resolve_file(name, parameters.where("filename"), parameters.main_file());
+      const std::string image = parameters.text("filename", "");
+      const std::string file = resolve_file(image, parameters.where("filename"), parameters.main_file());
       std::error_code ignored;
-      if (name.empty() && !parameters.has("filename"))
+      if (image.empty() && !parameters.has("filename"))
         parameters.error("\"filename\" is missing");
       else if (!std::filesystem::is_regular_file(file, ignored))
         missing = ", whose file " + in_quotes(file) + " does not exist";
@@ -176,16 +246,16 @@ TextureValue make_texture(const std::string& kind, const std::string& texture_cl
   return value;
 }
 
-Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures) {
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, Scene& scene) {
   Material material;
   material.where = parameters.where();
   parameters.refuse("displacement");
   parameters.refuse("normalmap");
-#define MATERIAL_MODEL(name, Type)                             \
-  if (type == #name) {                                         \
-    Type model;                                                \
-    Type::fields(model, MaterialReader{parameters, textures}); \
-    material.model = std::move(model);                         \
+#define MATERIAL_MODEL(name, Type)                                              \
+  if (type == #name) {                                                          \
+    Type model;                                                                 \
+    Type::fields(model, MaterialReader{parameters, textures, material, scene}); \
+    material.model = std::move(model);                                          \
   }
 #include "scene/materials.def"
   parameters.finish();

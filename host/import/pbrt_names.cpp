@@ -68,9 +68,14 @@ const std::vector<NameTable>& name_tables() {
       {"PixelFilter", {"box", "gaussian", "mitchell", "triangle"}, {"sinc"}},
       {"Sampler", {"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, {}},
       {"Shape", shape_types(), {"loopsubdiv"}},
-      {"Texture",
-       {"constant", "mix", "scale"},
-       {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble", "ptex", "windy", "wrinkled"}},
+      table_of("Texture",
+               {
+                   "constant",
+#define TEXTURE_MODEL(name, Type) #name,
+#define OWN_TEXTURE_MODEL(name, Type)
+#include "scene/textures.def"
+               },
+               {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble", "ptex", "windy", "wrinkled"}),
   };
   return tables;
 }

@@ -334,6 +334,7 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
       error(parameter.name, "uses " + found->second.refusal, kind_of(found->second.refusal));
       return std::nullopt;
     }
+    if (found->second.texture) return wrong("takes no texture other than constants here");
     return found->second.spectrum;
   }
   if (parameter.type == "rgb") {
@@ -385,9 +386,19 @@ double Parameters::number_or_texture(std::string_view name, double fallback, con
     error(name, "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
   else if (!found->second.refusal.empty())
     error(name, "uses " + found->second.refusal, kind_of(found->second.refusal));
+  else if (found->second.texture)
+    error(name, "takes no texture other than constants here");
   else
     return found->second.number;
   return fallback;
+}
+
+std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_float, const TextureTable& textures) {
+  const Parameter* parameter = find(name);
+  if (!parameter || parameter->type != "texture") return std::nullopt;
+  const auto found = textures.find(parameter->strings[0]);
+  return found != textures.end() && found->second.is_float == is_float && found->second.refusal.empty() ? found->second.texture
+                                                                                                        : std::nullopt;
 }
 
 void Parameters::refuse(std::string_view name) {

@@ -26,6 +26,8 @@ std::uint64_t kinds_of(const std::vector<Record>& records) {
 
 std::uint64_t FlatScene::material_kinds() const { return kinds_of(materials); }
 
+std::uint64_t FlatScene::texture_kinds() const { return kinds_of(textures); }
+
 std::uint64_t FlatScene::light_kinds() const { return kinds_of(lights); }
 
 std::uint64_t FlatScene::geometry_bytes() const {

@@ -26,7 +26,8 @@ struct FlatScene {
   // What kernels are built for (stage_options): the kinds of shapes there are (bit k: kind k), operands of csg among them, and
   // the bits of leaf references for them.
   std::uint64_t shapes = ~std::uint64_t{0};
-  std::uint64_t material_kinds() const;  // likewise, of `materials` and `lights` as they are
+  std::uint64_t material_kinds() const;  // likewise, of `materials`, `textures` and `lights` as they are
+  std::uint64_t texture_kinds() const;
   std::uint64_t light_kinds() const;
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
 

@@ -54,7 +54,10 @@ SceneEdit undo_of(const Scene& scene, const SceneEdit& edit) {
         if constexpr (std::is_same_v<Edit, EmissionEdit>) back.to = *shape_at(scene, one.at).emission;
         if constexpr (std::is_same_v<Edit, InstanceEdit>)
           back.world_from_object = scene.instances[one.instance].world_from_object;
-        if constexpr (std::is_same_v<Edit, MaterialEdit>) back.to = scene.materials[one.material].model;
+        if constexpr (std::is_same_v<Edit, MaterialEdit>) {
+          back.to = scene.materials[one.material].model;
+          back.textures = scene.materials[one.material].textures;
+        }
         if constexpr (std::is_same_v<Edit, LightEdit>) back.to = scene.lights[one.light];
         if constexpr (std::is_same_v<Edit, ViewEdit>) back = view_of(scene);
         return back;
@@ -198,8 +201,9 @@ struct LiveScene::State {
     return true;
   }
 
-  bool follow(const MaterialEdit& edit, const MaterialEdit&) {
-    flat().materials[edit.material] = lower_material(scene.materials[edit.material], edit.material, lowering->spectra, flat());
+  bool follow(const MaterialEdit& edit, const MaterialEdit& before) {
+    if (!edit.textures.empty() || !before.textures.empty()) return false;  // other steps, and perhaps other kinds of them
+    flat().materials[edit.material] = lower_material(scene, edit.material, lowering->spectra, flat());
     changes.materials.add(edit.material, 1);
     changes.material_data.add(flat().materials[edit.material].data, material_stride);
     return true;

@@ -15,8 +15,8 @@ namespace caplet {
 
 Lowering::Lowering(const Scene& scene) : spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
-  for (const Material& material : scene.materials)
-    flat.materials.push_back(lower_material(material, narrow<uint>(flat.materials.size()), spectra, flat));
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    flat.materials.push_back(lower_material(scene, narrow<uint>(i), spectra, flat));
   geometry = lower_geometry(scene, spectra, flat);
   lower_lights(scene, geometry.emitters, spectra, environment, flat);
   flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

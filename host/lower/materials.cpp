@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "lower/detail/family_data.h"
+#include "lower/detail/textures.h"
 
 namespace caplet {
 
@@ -27,32 +28,58 @@ static_assert(0
 #include "scene/materials.def"
               == material_count);
 
+static_assert(material_stride <= 32, "MaterialRecord.textured has a bit for each float");
+
 /// Writes what scene/materials.def visits.
 struct MaterialWriter {
   FamilyData& data;
   SpectrumTable& spectra;
   MaterialRecord& record;
+  const Scene& scene;
+  const Material& material;
+  FlatScene& out;
 
-  void albedo(const char* name, const Spectrum& value) { data.put_index(name, spectra.add_reflectance(value)); }
-  void unbounded(const char* name, const Spectrum& value) { data.put_index(name, spectra.add_unbounded(value)); }
+  /// Whether the scene's `parameter` is a texture: then field `name` is, with a last step of this kind if there is one.
+  bool textured(std::string_view parameter, std::string_view name, TextureUse use, std::optional<uint> last = {}) {
+    const auto texture = texture_of(material, parameter);
+    if (!texture) return false;
+    for (const FamilyField& field : material_fields[record.kind])
+      if (field.name == name) record.textured |= 1u << field.at;
+    data.put_index(name, lower_texture(scene, *texture, use, last, spectra, out));
+    return true;
+  }
+  bool textured(std::string_view name, TextureUse use) { return textured(name, name, use); }
+
+  void albedo(const char* name, const Spectrum& value) {
+    if (!textured(name, TextureUse::albedo)) data.put_index(name, spectra.add_reflectance(value));
+  }
+  void unbounded(const char* name, const Spectrum& value) {
+    if (!textured(name, TextureUse::unbounded)) data.put_index(name, spectra.add_unbounded(value));
+  }
   void index(const char* name, const Spectrum& value) {
-    unbounded(name, value);
+    data.put_index(name, spectra.add_unbounded(value));
     if ((material_traits[record.kind] & trait_dispersive) != 0 && !is_constant(value)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
   }
-  void number(const char* name, double value, double, double) { data.put(name, value); }
+  void number(const char* name, double value, double, double) {
+    if (!textured(name, TextureUse::number)) data.put(name, value);
+  }
   void roughness(double alpha_u, double alpha_v) {
-    data.put("alpha_u", alpha_u);
-    data.put("alpha_v", alpha_v);
+    number("alpha_u", alpha_u, 0, 0);
+    number("alpha_v", alpha_v, 0, 0);
   }
   void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
     unbounded("eta", reflectance ? ConstantSpectrum{1} : eta);
-    data.put_index("k", reflectance ? spectra.add_extinction(*reflectance) : spectra.add_unbounded(k));
+    if (!reflectance)
+      unbounded("k", k);
+    else if (!textured("reflectance", "k", TextureUse::albedo, texture_extinction))
+      data.put_index("k", spectra.add_extinction(*reflectance));
   }
 };
 
 }  // namespace
 
-MaterialRecord lower_material(const Material& material, std::uint32_t index, SpectrumTable& spectra, FlatScene& out) {
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumTable& spectra, FlatScene& out) {
+  const Material& material = scene.materials[index];
   MaterialRecord record{};
   record.data = index * material_stride;
   if (out.material_data.size() < record.data + material_stride) out.material_data.resize(record.data + material_stride);
@@ -60,7 +87,7 @@ MaterialRecord lower_material(const Material& material, std::uint32_t index, Spe
       [&](const auto& model) {
         record.kind = kind_of<std::decay_t<decltype(model)>>;
         FamilyData data(material_fields[record.kind], &out.material_data[record.data]);
-        model.fields(model, MaterialWriter{data, spectra, record});
+        model.fields(model, MaterialWriter{data, spectra, record, scene, material, out});
         data.finish();
       },
       material.model);

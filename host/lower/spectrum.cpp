@@ -135,6 +135,8 @@ std::uint32_t SpectrumTable::add_unbounded(const Spectrum& spectrum) {
   return add_samples(tabulate(sample(spectrum), positive));
 }
 
+std::uint32_t SpectrumTable::add_number(double value) { return add_record(constant_record(value)); }
+
 std::uint32_t SpectrumTable::add_extinction(const Spectrum& reflectance) {
   const auto k_of = [](double r) {
     r = std::clamp(r, 0.0, 0.9999);

@@ -26,6 +26,8 @@ class SpectrumTable {
   std::uint32_t add_reflectance(const Spectrum& spectrum);
   /// For eta and k: RGB scaled to a sigmoid times twice its maximum (as pbrt-v4's RGBUnboundedSpectrum).
   std::uint32_t add_unbounded(const Spectrum& spectrum);
+  /// The number at every wavelength.
+  std::uint32_t add_number(double value);
   /// The k at which a metal of eta = 1 reflects `reflectance` (as add_reflectance takes it) at normal incidence, wavelength by
   /// wavelength: r = k^2 / (4 + k^2), so k = 2 sqrt(r / (1 - r)); r is at most 0.9999 (as pbrt-v4's ConductorMaterial).
   std::uint32_t add_extinction(const Spectrum& reflectance);

@@ -33,7 +33,7 @@ std::size_t buffer_count(Stage stage);
 /// What stages are built for.
 struct StageOptions {
   std::string compiler;  // its options: how traversal is shaped (Device::encoding)
-  RowMasks rows;         // the kinds of shapes, materials and lights that there are
+  RowMasks rows;         // the kinds of shapes, materials, textures and lights that there are
 
   bool operator==(const StageOptions&) const = default;
   /// Options for these and `others`: kernels that were built for more kinds than there are do as well.

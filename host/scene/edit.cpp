@@ -103,7 +103,8 @@ void check(const Scene& scene, const InstanceEdit& edit) {
 void check(const Scene& scene, const MaterialEdit& edit) {
   const Material& material = at(scene.materials, edit.material, "material");
   Scene one;
-  one.materials.push_back({edit.to, material.name, material.where});
+  if (!edit.textures.empty()) one.textures = scene.textures;
+  one.materials.push_back({edit.to, material.name, material.where, edit.textures});
   check_alone(std::move(one), scene);
 }
 
@@ -141,7 +142,10 @@ void put(Scene& scene, const CapsuleEdit& edit) {
 void put(Scene& scene, const TransformEdit& edit) { shape_at(scene, edit.at).world_from_object = edit.world_from_object; }
 void put(Scene& scene, const EmissionEdit& edit) { shape_at(scene, edit.at).emission = edit.to; }
 void put(Scene& scene, const InstanceEdit& edit) { scene.instances[edit.instance].world_from_object = edit.world_from_object; }
-void put(Scene& scene, const MaterialEdit& edit) { scene.materials[edit.material].model = edit.to; }
+void put(Scene& scene, const MaterialEdit& edit) {
+  scene.materials[edit.material].model = edit.to;
+  scene.materials[edit.material].textures = edit.textures;
+}
 void put(Scene& scene, const LightEdit& edit) { scene.lights[edit.light] = edit.to; }
 
 }  // namespace

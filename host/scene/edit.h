@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -45,10 +46,11 @@ struct InstanceEdit {
   std::uint32_t instance = 0;
   glm::dmat4 world_from_object{1};
 };
-/// The material keeps its name and place.
+/// The material keeps its name and place, not its textures.
 struct MaterialEdit {
   std::uint32_t material = 0;
   decltype(Material::model) to;
+  std::vector<TexturedField> textures = {};
 };
 /// The light keeps its place.
 struct LightEdit {

@@ -4,11 +4,16 @@
 // What surfaces are made of (materials.def).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "base/error.h"
 #include "scene/materials.def"
+#include "scene/texture.h"
 
 namespace caplet {
 
@@ -23,6 +28,14 @@ struct Material {
       model;
   std::string name;
   SourceLocation where;
+  std::vector<TexturedField> textures = {};  // what of the model is replaced by textures
 };
+
+/// The texture that a field is, by its index in Scene::textures.
+inline std::optional<std::uint32_t> texture_of(const Material& material, std::string_view field) {
+  for (const TexturedField& one : material.textures)
+    if (one.field == field) return one.texture;
+  return std::nullopt;
+}
 
 }  // namespace caplet

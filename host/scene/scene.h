@@ -74,6 +74,7 @@ struct IntegratorSettings {
 };
 
 struct Scene {
+  std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Shape> shapes;  // world
   std::vector<Object> objects;

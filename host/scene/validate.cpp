@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <map>
 #include <set>
 
 #include "scene/scene.h"
@@ -29,8 +30,17 @@ class Validator {
 
   void run() {
     const SourceLocation file{scene_.source};
-    for (const Material& material : scene_.materials)
+    for (std::uint32_t i = 0; i < scene_.textures.size(); ++i)
+      std::visit(
+          [&](const auto& model) {
+            model.fields(model, TextureFields{*this, scene_.textures[i], i});
+          },
+          scene_.textures[i].model);
+    const bool textures_are_sound = said_.empty();
+    for (const Material& material : scene_.materials) {
       std::visit([&](const auto& m) { m.fields(m, Fields{*this, material.where}); }, material.model);
+      if (textures_are_sound && !material.textures.empty()) textured(material);
+    }
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
       for (const Shape& one : object.shapes) shape(one);
@@ -84,6 +94,70 @@ class Validator {
                (i == 0 || sampled->wavelengths[i] > sampled->wavelengths[i - 1]);
     }
     if (!good) error(where, what + " is not a spectrum of finite values from 0 up");
+  }
+
+  /// Of the calls of textures.def.
+  struct TextureFields {
+    Validator& validator;
+    const Texture& texture;
+    std::uint32_t index;
+
+    void operand(const char* name, const TextureOperand& of) { check(name, of, texture.is_float); }
+    void factor(const char* name, const TextureOperand& of) { check(name, of, true); }
+    void number(const char* name, double value) {
+      if (!std::isfinite(value)) validator.error(texture.where, std::string(name) + " is not finite");
+    }
+    void fixed(const char*, int) {}
+    void mapping(double uscale, double vscale, double udelta, double vdelta) {
+      for (const double value : {uscale, vscale, udelta, vdelta}) number("the mapping", value);
+    }
+    void check(const char* name, const TextureOperand& of, bool is_float) {
+      if (of.texture) {
+        if (*of.texture >= index || validator.scene_.textures[*of.texture].is_float != is_float)
+          validator.error(texture.where,
+                          std::string(name) + " is no texture of " + (is_float ? "floats" : "spectra") + " before");
+      } else if (!is_float) {
+        validator.spectrum(of.value, texture.where, name);
+      } else {
+        const auto* number_of = std::get_if<ConstantSpectrum>(&of.value);
+        if (!number_of || !std::isfinite(number_of->value))
+          validator.error(texture.where, std::string(name) + " is not a finite number");
+      }
+    }
+  };
+
+  /// Which parameters of a material may be textures, and whether of floats: of the calls of materials.def.
+  struct TexturedFields {
+    std::map<std::string, bool, std::less<>> is_float = {};
+
+    void albedo(const char* name, const Spectrum&) { is_float[name] = false; }
+    void unbounded(const char* name, const Spectrum&) { is_float[name] = false; }
+    void index(const char*, const Spectrum&) {}
+    void number(const char* name, double, double, double) { is_float[name] = true; }
+    void roughness(double, double) { is_float["alpha_u"] = is_float["alpha_v"] = true; }
+    void metal(const Spectrum&, const Spectrum&, const std::optional<Spectrum>& reflectance) {
+      if (reflectance)
+        is_float["reflectance"] = false;
+      else
+        is_float["eta"] = is_float["k"] = false;
+    }
+  };
+
+  void textured(const Material& material) {
+    TexturedFields fields;
+    std::visit([&](const auto& m) { m.fields(m, fields); }, material.model);
+    std::set<std::string> seen;
+    for (const TexturedField& one : material.textures) {
+      const auto found = fields.is_float.find(one.field);
+      if (found == fields.is_float.end() || !seen.insert(one.field).second)
+        error(material.where, "the material has no " + one.field + " that may be a texture, or has it twice");
+      else if (one.texture >= scene_.textures.size() || scene_.textures[one.texture].is_float != found->second)
+        error(material.where, "the " + one.field + " is not a texture of " + (found->second ? "floats" : "spectra"));
+      else if (texture_steps(scene_.textures, one.texture) > most_texture_steps)
+        error(scene_.textures[one.texture].where, "the texture \"" + scene_.textures[one.texture].name +
+                                                      "\" is made of more than " + std::to_string(most_texture_steps) +
+                                                      " textures and constants");
+    }
   }
 
   /// Of the calls of materials.def and lights.def.

@@ -6,7 +6,7 @@
 // and of their weights are 0. The caller makes up for them once a path, by 4 on component 0 (or by a quarter of its pdf).
 //
 // A material of materials.def is a file of this folder by its name, with
-//   void NAME_make(spectra, data, lambda, b)        its data (materials.def) at four wavelengths (nm)
+//   void NAME_make(m, b)                            its parameters (material_albedo and its like) at a point
 //   int NAME_is_specular(b)                         nothing but delta scattering
 //   float4 NAME_eval(b, inside, wo, wi, pdf)        f |cos wi| and its density; *pdf is 0 before. Not asked of what is specular
 //   int NAME_sample(b, inside, smooth, wo, u_component, u, s)   smooth: NAME_is_specular
@@ -18,19 +18,19 @@
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/{materials}.cl"
 
-// Material number `material` at four wavelengths (nm).
-static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, float4 lambda) {
+// Material number `material` where a surface has the coordinates uv, at four wavelengths (nm).
+static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, float2 uv, float4 lambda) {
   __global const MaterialRecord* record = materials->materials + material;
-  __global const float* data = materials->material_data + record->data;
+  const MaterialPoint m = {materials, materials->material_data + record->data, record->textured, {spectra, uv, lambda}};
   Bsdf b;
   b.kind = record->kind;
   b.flags = record->flags;
   b.reflectance = b.eta = b.k = (float4)(0.0f);
   b.alpha_u = b.alpha_v = 0.0f;
   switch (b.kind) {
-#define MATERIAL(name, traits)               \
-  case material_##name:                      \
-    name##_make(spectra, data, lambda, &b); \
+#define MATERIAL(name, traits) \
+  case material_##name:        \
+    name##_make(&m, &b);       \
     break;
 #include "rows/materials.def"
 #undef MATERIAL

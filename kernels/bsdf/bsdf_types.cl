@@ -9,6 +9,7 @@
 #include "math/spectrum.cl"
 #include "math/vector.cl"
 #include "shared/families.h"
+#include "textures/textures.cl"
 
 enum {
   // Whether some material of the program's may be dispersive.
@@ -40,6 +41,34 @@ typedef struct {
   int specular, transmitted;
   float eta_scale;
 } BsdfSample;
+
+// A material's data (materials.def) where it is looked at. textured: of its record.
+typedef struct {
+  const Materials* materials;
+  __global const float* data;
+  uint textured;
+  TexturePoint point;
+} MaterialPoint;
+
+// Whether float `at` of the data is a texture.
+static inline int material_is_textured(const MaterialPoint* m, int at) { return any_texture && (m->textured >> at & 1u) != 0; }
+static inline float4 material_texture(const MaterialPoint* m, int at) {
+  return texture_eval(m->materials, as_uint(m->data[at]), &m->point);
+}
+
+// A spectrum from 0 up; one of a reflectance; a number from 0 up. `at`: their place in the data (diffuse_at_reflectance).
+static inline float4 material_spectrum(const MaterialPoint* m, int at) {
+  if (material_is_textured(m, at)) return fmax(material_texture(m, at), 0.0f);
+  return spectrum_eval(m->point.spectra, as_uint(m->data[at]), m->point.lambda);
+}
+static inline float4 material_albedo(const MaterialPoint* m, int at) {
+  if (material_is_textured(m, at)) return clamp(material_texture(m, at), 0.0f, 1.0f);
+  return spectrum_eval(m->point.spectra, as_uint(m->data[at]), m->point.lambda);
+}
+static inline float material_number(const MaterialPoint* m, int at) {
+  if (material_is_textured(m, at)) return fmax(material_texture(m, at).x, 0.0f);
+  return m->data[at];
+}
 
 // Roughness as GGX takes it (kinds.h).
 static inline void bsdf_roughness(Bsdf* b, float alpha_u, float alpha_v) {

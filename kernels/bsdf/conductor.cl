@@ -9,11 +9,11 @@
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
 
-static inline void conductor_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
-  bsdf_roughness(b, conductor_alpha_u(data), conductor_alpha_v(data));
+static inline void conductor_make(const MaterialPoint* m, Bsdf* b) {
+  bsdf_roughness(b, material_number(m, conductor_at_alpha_u), material_number(m, conductor_at_alpha_v));
   // Beyond 1e4 the reflectance is 1 to 4e-4, and fourth powers stay finite.
-  b->eta = clamp(spectrum_eval(spectra, conductor_eta(data), lambda), 0.0f, 1e4f);
-  b->k = clamp(spectrum_eval(spectra, conductor_k(data), lambda), 0.0f, 1e4f);
+  b->eta = clamp(material_spectrum(m, conductor_at_eta), 0.0f, 1e4f);
+  b->k = clamp(material_spectrum(m, conductor_at_k), 0.0f, 1e4f);
 }
 
 static inline int conductor_is_specular(const Bsdf* b) { return bsdf_is_smooth(b); }

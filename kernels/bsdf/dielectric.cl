@@ -10,9 +10,9 @@
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
 
-static inline void dielectric_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
-  bsdf_roughness(b, dielectric_alpha_u(data), dielectric_alpha_v(data));
-  b->eta = clamp(spectrum_eval(spectra, dielectric_eta(data), lambda), 1e-2f, 1e2f);
+static inline void dielectric_make(const MaterialPoint* m, Bsdf* b) {
+  bsdf_roughness(b, material_number(m, dielectric_at_alpha_u), material_number(m, dielectric_at_alpha_v));
+  b->eta = clamp(material_spectrum(m, dielectric_at_eta), 1e-2f, 1e2f);
 }
 
 static inline int dielectric_is_specular(const Bsdf* b) { return fabs(b->eta.x - 1.0f) < CAPLET_ETA_MATCHED || bsdf_is_smooth(b); }

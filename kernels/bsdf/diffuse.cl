@@ -7,8 +7,8 @@
 
 #include "bsdf/bsdf_types.cl"
 
-static inline void diffuse_make(const Spectra* spectra, __global const float* data, float4 lambda, Bsdf* b) {
-  b->reflectance = spectrum_eval(spectra, diffuse_reflectance(data), lambda);
+static inline void diffuse_make(const MaterialPoint* m, Bsdf* b) {
+  b->reflectance = material_albedo(m, diffuse_at_reflectance);
 }
 
 static inline int diffuse_is_specular(const Bsdf* b) {

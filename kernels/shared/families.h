@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where the data of materials and lights lie in material_data and light_data, and what their lists say of them. Valid as OpenCL C 1.2
-// and as C++.
+// Where the data of materials, textures and lights lie in material_data, texture_data and light_data, and what their lists say of
+// them. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_FAMILIES_H
 #define CAPLET_SHARED_FAMILIES_H
 
@@ -20,14 +20,22 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_vector 3
 #define CAPLET_FLOATS_OF_turn 9
 #define CAPLET_FLOATS_OF_spectrum 1
+#define CAPLET_FLOATS_OF_texture 1
 
-// spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each.
+// spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
+// textures, which share names with lights: mix_texture_at_amount, mix_texture_floats.
 enum {
 #define MATERIAL(name, traits) name##_before_floats = -1,
 #define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
 #define MATERIAL_END(name) name##_floats,
 #include "shared/materials.def"
 #undef MATERIAL
+#define TEXTURE(name) name##_texture_before_floats = -1,
+#define FIELD(kind, name, type) \
+  kind##_texture_at_##name, kind##_texture_end_of_##name = kind##_texture_at_##name + CAPLET_FLOATS_OF_##type - 1,
+#define TEXTURE_END(name) name##_texture_floats,
+#include "shared/textures.def"
+#undef TEXTURE
 #define LIGHT(name, way) name##_before_floats = -1,
 #define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
 #define LIGHT_END(name) name##_floats,
@@ -55,10 +63,15 @@ enum {
 #define CAPLET_FIELD_turn(function, at) CAPLET_FIELD_vector(function, at)
 #define CAPLET_FIELD_spectrum(function, at) \
   CAPLET_ACCESSOR(CAPLET_UINT) function(CAPLET_DATA data) { return CAPLET_BITS(data[at]); }
+#define CAPLET_FIELD_texture(function, at) CAPLET_FIELD_spectrum(function, at)
 #define MATERIAL(name, traits)
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/materials.def"
 #undef MATERIAL
+#define TEXTURE(name)
+#define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_texture_##name, kind##_texture_at_##name)
+#include "shared/textures.def"
+#undef TEXTURE
 #define LIGHT(name, way)
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/lights.def"
@@ -71,10 +84,11 @@ enum {
 #undef CAPLET_FIELD_vector
 #undef CAPLET_FIELD_turn
 #undef CAPLET_FIELD_spectrum
+#undef CAPLET_FIELD_texture
 
 #ifdef __cplusplus
 
-/// A field of a material or light.
+/// A field of a material, texture or light.
 struct FamilyField {
   std::string_view name;
   std::uint32_t at, floats;
@@ -90,12 +104,22 @@ struct FamilyField {
 #include "shared/lights.def"
 #undef MATERIAL
 #undef LIGHT
+#define TEXTURE(name) inline constexpr FamilyField name##_texture_field_list[] = {
+#define FIELD(kind, name, type) {#name, kind##_texture_at_##name, CAPLET_FLOATS_OF_##type},
+#define TEXTURE_END(name) {}};
+#include "shared/textures.def"
+#undef TEXTURE
 
 /// A kind's fields; without the last of each list, which is empty.
 inline constexpr std::span<const FamilyField> material_fields[] = {
 #define MATERIAL(name, traits) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
 #include "shared/materials.def"
 #undef MATERIAL
+};
+inline constexpr std::span<const FamilyField> texture_fields[] = {
+#define TEXTURE(name) std::span<const FamilyField>(name##_texture_field_list).first(std::size(name##_texture_field_list) - 1),
+#include "shared/textures.def"
+#undef TEXTURE
 };
 inline constexpr std::span<const FamilyField> light_fields[] = {
 #define LIGHT(name, way) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
@@ -107,6 +131,11 @@ inline constexpr std::uint32_t material_floats[] = {
 #include "shared/materials.def"
 #undef MATERIAL
 };
+inline constexpr std::uint32_t texture_floats[] = {
+#define TEXTURE(name) name##_texture_floats,
+#include "shared/textures.def"
+#undef TEXTURE
+};
 inline constexpr std::uint32_t light_floats[] = {
 #define LIGHT(name, way) name##_floats,
 #include "shared/lights.def"
@@ -117,7 +146,7 @@ inline constexpr std::uint32_t material_traits[] = {
 #include "shared/materials.def"
 #undef MATERIAL
 };
-static_assert(material_count <= 64 && light_count <= 64, "masks have 64 bits");
+static_assert(material_count <= 64 && texture_count <= 64 && light_count <= 64, "masks have 64 bits");
 
 }  // namespace caplet
 #endif

@@ -43,6 +43,8 @@
   GROUP_BEGIN(Materials, materials) \
   BUFFER(materials, MaterialRecord, IN) \
   BUFFER(material_data, float, IN)  /* materials.def */ \
+  BUFFER(textures, TextureRecord, IN) \
+  BUFFER(texture_data, float, IN)  /* textures.def */ \
   GROUP_END(Materials)
 
 #define GROUP_LIGHTS                                                                                            \

@@ -42,6 +42,13 @@ enum {
 };
 
 enum {
+#define TEXTURE(name) texture_##name,
+#include "shared/textures.def"
+#undef TEXTURE
+  texture_count
+};
+
+enum {
 #define LIGHT(name, way) light_##name,
 #include "shared/lights.def"
 #undef LIGHT

@@ -18,6 +18,7 @@
 #define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
 #define CAPLET_CSG_MAX_OPERANDS 32
+#define CAPLET_TEXTURE_MAX_STEPS 32  // of a texture: itself, and the textures and constants that it is made of
 
 #ifdef __cplusplus
 namespace caplet {

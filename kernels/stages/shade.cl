@@ -111,7 +111,7 @@ static void stage_item(const Stage* g, uint item) {
 
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
-  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, wavelengths);
+  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, s.uv, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
   if (depth >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {

@@ -370,6 +370,31 @@ TEST_F(OneEdit, AMaterial) {
   expect_in_place(MaterialEdit{1, DielectricMaterial{*named_spectrum("glass-BK7"), 0.1, 0.1}}, "another kind");
 }
 
+TEST(TexturedEdits, AreThoseOfTheEditedScene) {
+  const std::string world =
+      "WorldBegin\nLightSource \"infinite\"\nTexture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.8 .1 .1]\n"
+      "\"float uscale\" 8\nMaterial \"diffuse\" \"texture reflectance\" \"c\" Shape \"sphere\"\n"
+      "Material \"diffuse\" Translate 2 0 0 Shape \"sphere\" Shape \"sphere\" \"float radius\" 60 Shape \"sphere\" \"float "
+      "radius\" 50";
+  const MaterialEdit grey{0, DiffuseMaterial{ConstantSpectrum{0.3}}};
+  MaterialEdit checks = grey;
+  checks.textures = {{"reflectance", 0}};
+  Edited edited(scene_of_text(world));
+  edited.edit(grey);
+  EXPECT_EQ(edited.live.lowerings(), 2u);
+  edited.expect_fresh("a texture goes");
+  EXPECT_TRUE(edited.live.scene().materials[0].textures.empty());
+  edited.edit(grey);
+  EXPECT_EQ(edited.live.lowerings(), 2u);  // no texture before or after: in place
+  checks.material = 1;
+  edited.edit(checks);
+  edited.expect_fresh("a texture comes, for another");
+  EXPECT_NE(edited.live.flat().materials[1].textured, 0u);
+  checks.textures[0].texture = 7;
+  EXPECT_THROW(edited.edit(checks), InputError);
+  edited.expect_fresh("what was refused");
+}
+
 TEST_F(OneEdit, WhatDoesNotFitIsLoweredAgain) {
   edited.edit(CapsuleEdit{capsules, 0, {{0, 0, 2}, {0, 0, 2}, 0.3f, 0.3f}});
   EXPECT_EQ(edited.live.lowerings(), 2u);

@@ -156,10 +156,43 @@ TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
 
 TEST(BadInput, ReferenceToARefusedTextureNamesIt) {
   const auto found = complaints(
-      "WorldBegin\nTexture \"t\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape "
+      "WorldBegin\nTexture \"t\" \"spectrum\" \"marble\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape "
       "\"sphere\"");
-  EXPECT_THAT(found, testing::ElementsAre("scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"checkerboard\" "
+  EXPECT_THAT(found, testing::ElementsAre("scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"marble\" "
                                           "(scene.pbrt:2:1), which is not rendered yet"));
+}
+
+TEST(BadInput, TexturesOfTexturesSayWhere) {
+  const std::string head = "WorldBegin\nTexture \"c\" \"spectrum\" \"checkerboard\"\nTexture \"f\" \"float\" \"checkerboard\"\n";
+  const auto of = [&](const std::string& texture) { return complaints(head + texture + "\nShape \"sphere\""); };
+  using testing::ElementsAre;
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"d\""),
+              ElementsAre("scene.pbrt:4:32: Texture \"t\": \"tex\" names an unknown texture, \"d\""));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\""),
+              ElementsAre("scene.pbrt:4:32: Texture \"t\": \"tex\" names an unknown texture, \"t\""));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"f\""),
+              ElementsAre("scene.pbrt:4:32: Texture \"t\": \"tex\" needs a spectrum texture, not the float texture \"f\""));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"mix\" \"texture amount\" \"c\""),
+              ElementsAre("scene.pbrt:4:30: Texture \"t\": \"amount\" needs a float texture, not the spectrum texture \"c\""));
+  EXPECT_THAT(
+      of("Texture \"t\" \"spectrum\" \"checkerboard\" \"string mapping\" \"planar\""),
+      ElementsAre("scene.pbrt:4:39: Texture \"t\": \"mapping\" is \"planar\", which is not rendered yet; only \"uv\" is"));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3"),
+              ElementsAre("scene.pbrt:4:39: Texture \"t\": \"dimension\" is not rendered yet unless it is 2"));
+  EXPECT_THAT(
+      of("Material \"dielectric\" \"texture roughness\" \"c\""),
+      ElementsAre(
+          "scene.pbrt:4:23: Material \"dielectric\": \"roughness\" needs a float texture, not the spectrum texture \"c\""));
+  EXPECT_THAT(of("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"texture alpha\" \"f\""),
+              testing::Contains("scene.pbrt:4:53: Shape \"trianglemesh\": \"alpha\" takes no texture other than constants here"));
+  std::string deep = "Texture \"t0\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"float scale\" .5";
+  for (int i = 1; i <= 14; ++i)
+    deep += "\nTexture \"t" + std::to_string(i) + "\" \"spectrum\" \"scale\" \"texture tex\" \"t" + std::to_string(i - 1) +
+            "\" \"float scale\" .5";
+  EXPECT_THAT(of(deep + "\nMaterial \"diffuse\" \"texture reflectance\" \"t13\""), ElementsAre());  // 3 + 2 * 14 steps
+  EXPECT_THAT(of(deep + "\nMaterial \"diffuse\" \"texture reflectance\" \"t14\""),
+              ElementsAre("scene.pbrt:18:1: the texture \"t14\" is made of more than 31 textures and constants"));
+  EXPECT_THAT(of(deep), ElementsAre());
 }
 
 TEST(BadInput, Files) {

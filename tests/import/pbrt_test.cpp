@@ -244,6 +244,58 @@ TEST(Textures, ConstantsScalesAndMixes) {
   EXPECT_EQ(model_of<DielectricMaterial>(scene, 2).alpha_u, .5);
 }
 
+TEST(Textures, ThatVaryAreOfTheScene) {
+  const Scene scene = world_of(
+      "Texture \"checks\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 4 \"float udelta\" .5 \"float "
+      "vdelta\" .25\n"
+      "\"rgb tex1\" [1 0 0] \"string mapping\" \"uv\" \"integer dimension\" 2\n"
+      "Texture \"rough\" \"float\" \"checkerboard\" \"float tex1\" .3 \"float tex2\" .1\n"
+      "Texture \"half\" \"float\" \"constant\" \"float value\" .5\n"
+      "Texture \"dim\" \"spectrum\" \"scale\" \"texture tex\" \"checks\" \"texture scale\" \"half\"\n"
+      "Texture \"blend\" \"spectrum\" \"mix\" \"texture tex1\" \"dim\" \"rgb tex2\" [0 0 1] \"texture amount\" \"rough\"\n"
+      "Texture \"glow\" \"spectrum\" \"constant\" \"blackbody value\" 3000\n"
+      "Texture \"glows\" \"spectrum\" \"scale\" \"texture tex\" \"glow\" \"float scale\" .25\n"
+      "Material \"diffuse\" \"texture reflectance\" \"blend\" Shape \"sphere\"\n"
+      "Material \"conductor\" \"texture k\" \"glows\" \"float roughness\" .25 \"texture vroughness\" \"rough\" Shape \"sphere\"\n"
+      "Material \"dielectric\" \"texture roughness\" \"rough\" \"float uroughness\" .5 \"bool remaproughness\" false Shape "
+      "\"sphere\"");
+  ASSERT_EQ(scene.textures.size(), 6u);
+  const auto& checks = std::get<CheckerboardTexture>(scene.textures[0].model);
+  EXPECT_EQ(scene.textures[0].name, "checks");
+  EXPECT_FALSE(scene.textures[0].is_float);
+  EXPECT_EQ(checks.uscale, 8);
+  EXPECT_EQ(checks.vscale, 4);
+  EXPECT_EQ(checks.udelta, .5);
+  EXPECT_EQ(checks.vdelta, .25);
+  EXPECT_EQ(std::get<RgbSpectrum>(checks.tex1.value).rgb, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(std::get<ConstantSpectrum>(checks.tex2.value).value, 0);  // pbrt-v4: 1 and 0 where nothing is given
+  const auto& rough = std::get<CheckerboardTexture>(scene.textures[1].model);
+  EXPECT_TRUE(scene.textures[1].is_float);
+  EXPECT_EQ(std::get<ConstantSpectrum>(rough.tex1.value).value, .3);
+  const auto& dim = std::get<ScaleTexture>(scene.textures[2].model);
+  EXPECT_EQ(dim.tex.texture, 0u);
+  EXPECT_EQ(dim.scale.texture, std::nullopt);
+  EXPECT_EQ(std::get<ConstantSpectrum>(dim.scale.value).value, .5);
+  const auto& blend = std::get<MixTexture>(scene.textures[3].model);
+  EXPECT_EQ(blend.tex1.texture, 2u);
+  EXPECT_EQ(blend.tex2.texture, std::nullopt);
+  EXPECT_EQ(blend.amount.texture, 1u);
+  // What cannot be one constant is a texture too.
+  EXPECT_TRUE(std::holds_alternative<BlackbodySpectrum>(std::get<ScaleTexture>(scene.textures[4].model).tex.value));
+  EXPECT_EQ(std::get<RootTexture>(scene.textures[5].model).tex.texture, 1u);
+  const auto fields = [&](std::size_t shape) {
+    std::vector<std::pair<std::string, std::uint32_t>> all;
+    for (const TexturedField& one : material_of(scene, scene.shapes[shape]).textures) all.emplace_back(one.field, one.texture);
+    return all;
+  };
+  using testing::ElementsAre, testing::Pair;
+  EXPECT_THAT(fields(0), ElementsAre(Pair("reflectance", 3u)));
+  EXPECT_THAT(fields(1), ElementsAre(Pair("k", 4u), Pair("alpha_v", 5u)));
+  EXPECT_THAT(fields(2), ElementsAre(Pair("alpha_v", 1u)));
+  EXPECT_EQ(model_of<ConductorMaterial>(scene, 1).alpha_u, .5);
+  EXPECT_EQ(model_of<DielectricMaterial>(scene, 2).alpha_u, .5);
+}
+
 TEST(Lights, PlacesAndDirectionsAreInWorldSpace) {
   const Scene scene = world_of(
       "Shape \"sphere\" Translate 1 0 0 Rotate 90 0 1 0\nLightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 60\n"

@@ -10,11 +10,11 @@
 
 namespace caplet::pbrt {
 
-/// What a Texture statement (`kind` "float" or "spectrum", a known class) comes to.
-TextureValue make_texture(const std::string& kind, const std::string& texture_class, Parameters& parameters,
-                          const TextureTable& textures);
+/// What a Texture statement (`kind` "float" or "spectrum", a known class) comes to. One that varies is added to the scene.
+TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
+                          Parameters& parameters, const TextureTable& textures, Scene& scene);
 
-/// The material of an accepted type.
-Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures);
+/// The material of an accepted type. The scene gets the textures that its remapped roughness takes.
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, Scene& scene);
 
 }  // namespace caplet::pbrt

@@ -42,12 +42,13 @@ std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnost
 
 enum class SpectrumUse { albedo, unbounded, illuminant };
 
-/// What a Texture statement was resolved to: a constant, or the reason why it cannot be rendered.
+/// What a Texture statement was resolved to: a constant, a texture of the scene, or the reason why it cannot be rendered.
 struct TextureValue {
   bool is_float = false;
   double number = 0;
   Spectrum spectrum;
-  std::string refusal;  // empty: a constant
+  std::optional<std::uint32_t> texture;  // index into Scene::textures
+  std::string refusal;
 };
 using TextureTable = std::map<std::string, TextureValue>;
 
@@ -79,6 +80,8 @@ class Parameters {
   /// All values of a parameter whose type is one of `types`; null when it is not there.
   const Parameter* values(std::string_view name, std::initializer_list<std::string_view> types);
   std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures = nullptr);
+  /// The texture that a parameter names, if it names one of the scene that is of floats or spectra as wanted.
+  std::optional<std::uint32_t> texture(std::string_view name, bool is_float, const TextureTable& textures);
   /// A float or a constant float texture.
   double number_or_texture(std::string_view name, double fallback, const TextureTable& textures);
   /// Reports that a parameter is known but not rendered yet, if it is there.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The floats of one material or light, by the names of their fields in materials.def and lights.def.
+// The floats of one material, texture or light, by the names of their fields in materials.def, textures.def and lights.def.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -20,7 +20,7 @@ class FamilyData {
   FamilyData(std::span<const FamilyField> fields, float* to) : fields_(fields), to_(to) {}
   void put(std::string_view name, double value);
   void put(std::string_view name, const glm::dvec3& v);
-  void put_index(std::string_view name, std::uint32_t index);          // a spectrum
+  void put_index(std::string_view name, std::uint32_t index);          // a spectrum, a step of a texture
   void put_rows(std::string_view name, const glm::dmat3& transposed);  // a turn, whose rows are the columns of `transposed`
   void finish() const;
 

@@ -6,14 +6,15 @@
 
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
-#include "scene/material.h"
+#include "scene/scene.h"
 
 namespace caplet {
 
 /// Floats in material_data for each material: room for any kind, so that a material may become one of another kind in its place.
 inline constexpr std::uint32_t material_stride = 16;
 
-/// The record of material number `index`, whose data it writes to out.material_data: made longer when that ends before.
-MaterialRecord lower_material(const Material& material, std::uint32_t index, SpectrumTable& spectra, FlatScene& out);
+/// The record of material number `index`, whose data it writes to out.material_data: made longer when that ends before. The steps
+/// of its textures are added.
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Textures of the model -> steps (records.def: TextureRecord) and their data.
+#pragma once
+
+#include <optional>
+
+#include "lower/flat_scene.h"
+#include "lower/spectrum.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// What spectra of a texture are: reflectances, spectra from 0 up, or numbers.
+enum class TextureUse { albedo, unbounded, number };
+
+/// Adds the steps of Scene::textures[texture] to out.textures, and one of kind `last` of it where there is one. Returns the
+/// number of the first.
+std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
+                            SpectrumTable& spectra, FlatScene& out);
+
+}  // namespace caplet

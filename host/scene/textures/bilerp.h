@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include "scene/texture_operand.h"
+
+namespace caplet {
+
+/// Bilinear in (s, t) = (uscale u + udelta, vscale v + vdelta): v01 at (0, 1), v10 at (1, 0).
+struct BilerpTexture {
+  TextureOperand v00 = 0, v01 = 1, v10 = 0, v11 = 1;
+  double uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.operand("v00", self.v00);
+    visit.operand("v01", self.v01);
+    visit.operand("v10", self.v10);
+    visit.operand("v11", self.v11);
+    visit.mapping(self.uscale, self.vscale, self.udelta, self.vdelta);
+  }
+};
+
+}  // namespace caplet

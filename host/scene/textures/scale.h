@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include "scene/texture_operand.h"
+
+namespace caplet {
+
+/// Their product.
+struct ScaleTexture {
+  TextureOperand tex = 1, scale = 1;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.operand("tex", self.tex);
+    visit.factor("scale", self.scale);
+  }
+};
+
+}  // namespace caplet

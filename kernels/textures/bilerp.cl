@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Bilinear between values at the corners of the unit square, and on beyond it.
+#ifndef CAPLET_TEXTURES_BILERP_CL
+#define CAPLET_TEXTURES_BILERP_CL
+
+#include "textures/texture_types.cl"
+
+static inline float4 bilerp_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+  const float s = bilerp_texture_uscale(data) * at->uv.x + bilerp_texture_udelta(data);
+  const float t = bilerp_texture_vscale(data) * at->uv.y + bilerp_texture_vdelta(data);
+  return (1.0f - s) * ((1.0f - t) * values[bilerp_texture_v00(data)] + t * values[bilerp_texture_v01(data)]) +
+         s * ((1.0f - t) * values[bilerp_texture_v10(data)] + t * values[bilerp_texture_v11(data)]);
+}
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The one door to all textures. A texture of textures.def is a file of this folder by its name, with
+//   float4 NAME_texture_at(at, data, values)
+// its value at the four wavelengths; that of a texture of floats is component 0. values: of the steps before, by the numbers that the
+// fields of type texture hold.
+#ifndef CAPLET_TEXTURES_TEXTURES_CL
+#define CAPLET_TEXTURES_TEXTURES_CL
+
+#include "textures/texture_types.cl"
+#include "textures/{textures}.cl"
+
+enum {
+  // Whether the program has any.
+  any_texture = 0
+#define TEXTURE(name) || 1
+#include "rows/textures.def"
+#undef TEXTURE
+};
+
+// The texture whose first step is number `first`: its steps in order, the last of which is its value.
+static inline float4 texture_eval(const Materials* materials, uint first, const TexturePoint* at) {
+  float4 values[CAPLET_TEXTURE_MAX_STEPS];
+  values[0] = (float4)(0.0f);
+  const uint steps = materials->textures[first].steps;
+  for (uint i = 0; i < steps; ++i) {
+    __global const TextureRecord* step = materials->textures + first + i;
+    __global const float* data = materials->texture_data + step->data;
+    (void)data;
+    switch (step->kind) {
+#define TEXTURE(name)                                      \
+  case texture_##name:                                     \
+    values[i] = name##_texture_at(at, data, values); \
+    break;
+#include "rows/textures.def"
+#undef TEXTURE
+      default: values[i] = (float4)(0.0f); break;
+    }
+  }
+  return values[steps - 1];
+}
+
+#endif

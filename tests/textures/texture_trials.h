@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What each texture of kernels/shared/textures.def brings to the tests that all of them pass: one function a texture, in
+// texture_trials.cpp. A row of the list without its function does not link.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace caplet::test {
+
+struct TextureTrial {
+  /// At (u, v), by hand.
+  struct Value {
+    double u, v, value;
+  };
+  /// Of floats, the last of them the one on trial. The test tries the same with spectra that are constant over wavelengths.
+  std::vector<Texture> textures;
+  std::vector<Value> values;
+  double tolerance = 4 * 0x1p-24;  // relative: products, a sum and a root
+  std::string field = "alpha_u";   // what of a material it is
+};
+
+struct TextureOnTrial {
+  int kind;
+  std::string name;
+  TextureTrial trial;
+};
+/// In the order of the list.
+const std::vector<TextureOnTrial>& textures_on_trial();
+
+#define TEXTURE(name) TextureTrial name##_texture_trial();
+#include "shared/textures.def"
+#undef TEXTURE
+
+/// A texture of the scene as an operand.
+TextureOperand operand_of(std::uint32_t texture);
+
+}  // namespace caplet::test
