@@ -103,6 +103,8 @@ struct Operands {
   void fixed(const char*, int) {}
   void mapping(double, double, double, double) {}
 };
+template <class Visit>
+Operands(Visit) -> Operands<Visit>;  // clang before 17 does not deduce aggregates
 
 std::uint32_t Steps::add(std::uint32_t texture, TextureUse use) {
   if (const auto found = done_.find(texture); found != done_.end()) return found->second;
