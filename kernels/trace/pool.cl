@@ -65,18 +65,11 @@ static inline int pool_begin(PooledRay* r, const Tree* tree, uint root, uint ite
 // The children of a node that the ray meets go on its stack, nearest on top by the octant that they lie in.
 static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   __global const float* node = nodes + (size_t)(uint)r->current * CAPLET_NODE_FLOATS;
-  const SlabRay* s = &r->slab;
-  const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
-  const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
-  const float8 nz = vload8(0, node + s->near_z) * s->near_iz - s->near_oz;
-  const float8 fx = vload8(0, node + s->far_x) * s->far_ix - s->far_ox;
-  const float8 fy = vload8(0, node + s->far_y) * s->far_iy - s->far_oy;
-  const float8 fz = vload8(0, node + s->far_z) * s->far_iz - s->far_oz;
-  const float8 near = real_max(real_max(nx, ny), real_max(nz, real_of(r->t_min)));
-  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(r->nearest.t)));
+  float8 near;
+  const int8 boxes = boxes_met(node, &r->slab, r->t_min, r->nearest.t, &near);
   // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in the order of k ^ flip.
   const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(r->flip);
-  const uint met = mask_bits(permuted(near <= far, lanes));
+  const uint met = mask_bits(permuted(boxes, lanes));
   const int8 order = convert_int8(as_uchar8(set_bits[met])) ^ (int8)(r->flip);
   vstore8(permuted(as_int8(near), order), 0, r->enter + r->top);
   vstore8(permuted(vload8(0, (__global const int*)(node + 48)), order), 0, r->child + r->top);

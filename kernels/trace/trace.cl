@@ -57,19 +57,28 @@ static inline SlabRay slab_ray(float3 o, float3 d) {
   return r;
 }
 
-// Children whose box the ray meets within [t_min, t_best], as bits, and where it enters them.
-static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
 #if CAPLET_REAL_WIDTH == 8
+// Lanes of the children whose box the ray meets within [t_min, t_best], and where it enters them.
+static inline int8 boxes_met(__global const float* node, const SlabRay* s, float t_min, float t_best, float8* enter) {
   const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
   const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
   const float8 nz = vload8(0, node + s->near_z) * s->near_iz - s->near_oz;
   const float8 fx = vload8(0, node + s->far_x) * s->far_ix - s->far_ox;
   const float8 fy = vload8(0, node + s->far_y) * s->far_iy - s->far_oy;
   const float8 fz = vload8(0, node + s->far_z) * s->far_iz - s->far_oz;
-  const float8 near = real_max(real_max(nx, ny), real_max(nz, real_of(t_min)));
-  const float8 far = real_min(real_min(fx, fy), real_min(fz, real_of(t_best)));
+  *enter = real_max(real_max(nx, ny), real_max(nz, real_of(t_min)));
+  const float8 leave = real_min(real_min(fx, fy), real_min(fz, real_of(t_best)));
+  return *enter <= leave;
+}
+#endif
+
+// The same as bits.
+static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
+#if CAPLET_REAL_WIDTH == 8
+  float8 near;
+  const int8 met = boxes_met(node, s, t_min, t_best, &near);
   vstore8(near, 0, enter);
-  return mask_bits(near <= far);
+  return mask_bits(met);
 #else
   uint bits = 0;
   for (uint i = 0; i < CAPLET_WIDTH; i++) {
