@@ -14,7 +14,9 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <utility>
@@ -319,6 +321,12 @@ TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
   other.resume(caplet::Film::load(folder_ / "film.exr", of));
   other.render(1);
   EXPECT_TRUE(same_pictures(other.film(), caplet::render(of, device)));
+  std::uint32_t next = 0;
+  for (const caplet::SampleRange& range : other.film().samples()) {
+    EXPECT_EQ(range.first, next);
+    next = range.first + range.count;
+  }
+  EXPECT_EQ(next, 4u);
   // Read, added to, and written over.
   caplet::Film loaded = caplet::Film::load(folder_ / "film.exr", of);
   EXPECT_TRUE(same_pictures(loaded, first));
@@ -333,6 +341,21 @@ TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
   caplet::Scene wide = of;
   wide.set_size(30, 16);
   EXPECT_THROW(caplet::Session(wide, device).resume(first), caplet::InputError);
+}
+
+TEST_F(LibraryEdits, ASessionTriesItsDeviceBeforeItRenders) {
+  namespace fs = std::filesystem;
+  fs::copy(fs::path(CAPLET_SCENES).parent_path() / "kernels", folder_ / "kernels", fs::copy_options::recursive);
+  const fs::path file = folder_ / "kernels" / "trace" / "trace.cl";
+  std::ifstream in(file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string right = "hit.t = nearest->t;";
+  const std::size_t at = text.find(right);
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(file) << text.replace(at, right.size(), "hit.t = 2.0f * nearest->t;");
+  ::setenv("CAPLET_KERNELS", (folder_ / "kernels").c_str(), 1);
+  EXPECT_THROW(caplet::Session(scene(), test_device()), caplet::RunError);
+  ::unsetenv("CAPLET_KERNELS");
 }
 
 TEST_F(LibraryEdits, ASessionIsCancelledFromAnotherThread) {
