@@ -31,6 +31,8 @@ void say(const Say& line, const std::string& name, double ours, double peer, con
   line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, {}, \"unit\": \"{}\"{}}}", name, ours, beside, unit, more));
 }
 
+enum class Question { closest, any };
+
 struct Bench {
   const Say& line;
   const Peer* peer;  // null: Embree has no such shape
@@ -40,33 +42,43 @@ struct Bench {
 
   /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
   void run(const std::string& name, DeviceTracer& tracer, const std::vector<RayRecord>& ours,
-           const std::vector<RayRecord>& theirs) {
+           const std::vector<RayRecord>& theirs, Question question = Question::closest) {
     if (ours.empty()) return;
+    const bool any = question == Question::any;
     std::vector<std::uint32_t> ids(theirs.size());
+    const auto ask = [&] { any ? tracer.run_any() : tracer.run_closest(); };
+    const auto ask_peer = [&] { return any ? peer->trace_any(theirs, ids) : peer->trace(theirs, ids); };
     tracer.set_rays(ours);
-    tracer.run_closest();
-    const std::size_t peer_hits = peer ? peer->trace(theirs, ids) : 0;
+    ask();
+    const std::size_t peer_hits = peer ? ask_peer() : 0;
     std::vector<double> a, b;
     const auto begin = Clock::now();
     while (a.size() < 3 || seconds_since(begin) < seconds) {
       auto start = Clock::now();
-      tracer.run_closest();
+      ask();
       a.push_back(static_cast<double>(ours.size()) / seconds_since(start) * 1e-6);
       if (peer == nullptr) continue;
       start = Clock::now();
-      peer->trace(theirs, ids);
+      ask_peer();
       b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
     }
-    const auto hits = tracer.hits();
-    const auto our_hits = std::count_if(hits.begin(), hits.end(), [](const HitRecord& h) { return h.slot != CAPLET_NONE; });
+    // Of each ray, in the peer's words.
+    std::vector<std::uint32_t> found;
+    if (any) {
+      for (const int one : tracer.any()) found.push_back(one != 0 ? 1 : 0);
+    } else {
+      for (const HitRecord& hit : tracer.hits())
+        found.push_back(hit.slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hit.slot]));
+    }
+    const auto our_hits =
+        std::count_if(found.begin(), found.end(), [&](std::uint32_t one) { return one != (any ? 0 : CAPLET_NONE); });
     std::string more = fmt::format(", \"rays\": {}, \"hits\": {}", ours.size(), our_hits);
     if (peer) more += fmt::format(", \"embree_hits\": {}", peer_hits);
-    if (peer && &ours == &theirs && !by_shape) {
+    if (peer && &ours == &theirs && (any || !by_shape)) {
       std::size_t same = 0;
-      for (std::size_t i = 0; i < hits.size(); i++)
-        same +=
-            ids[i] == (hits[i].slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hits[i].slot])) ? 1 : 0;
-      more += fmt::format(", \"same_primitive\": {:.6f}", static_cast<double>(same) / static_cast<double>(hits.size()));
+      for (std::size_t i = 0; i < found.size(); i++) same += ids[i] == found[i] ? 1 : 0;
+      more += fmt::format(", \"{}\": {:.6f}", any ? "same_answer" : "same_primitive",
+                          static_cast<double>(same) / static_cast<double>(found.size()));
     }
     say(line, name, median(a), peer ? median(b) : 0, "Mrays/s", more);
   }
@@ -109,6 +121,7 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   bench.run(kind + " camera", tracers.camera, camera, camera);
   const auto scattered = scattered_rays(camera, tracers.camera.closest(camera));
   bench.run(kind + " scattered", tracers.others, scattered, scattered);
+  bench.run(kind + " any", tracers.others, scattered, scattered, Question::any);
 }
 
 void run_walks(const Device& device, const Options& options, const Say& line) {
@@ -137,6 +150,7 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
   bench.run(kind + " camera", tracers.camera, camera, camera);
   auto bounce = bounce_rays(primitives, tree.slots, camera, tracers.camera.closest(camera));
   bench.run(kind + " bounce", tracers.others, bounce, bounce);
+  bench.run(kind + " any", tracers.others, bounce, bounce, Question::any);
   if (options.sorted) {
     auto in_order = bounce;
     sort_rays(in_order);

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Camera and bounce rays through the traversal kernels and through Embree, alternating, the same rays in the same order: medians
-// of Mrays/s.
+// of Mrays/s. "any" asks of the bounce rays whether they hit at all, as shadow rays do.
 #pragma once
 
 #include <cstddef>

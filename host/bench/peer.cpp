@@ -132,33 +132,42 @@ std::string Peer::version() {
 
 namespace {
 
-template <class Store>
-void trace_with(RTCScene scene, std::span<const RayRecord> rays, const Store& store) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+RTCRay ray_of(const RayRecord& r) {
+  RTCRay ray{};
+  ray.org_x = r.ox;
+  ray.org_y = r.oy;
+  ray.org_z = r.oz;
+  ray.tnear = r.t_min;
+  ray.dir_x = r.dx;
+  ray.dir_y = r.dy;
+  ray.dir_z = r.dz;
+  ray.tfar = r.t_max;
+  ray.mask = ~0u;
+  return ray;
+}
+
+/// Calls `ask(i, arguments...)` for every ray: Embree 3 takes a context between the scene and the ray.
+template <class Ask>
+void for_each_ray(std::size_t count, const Ask& ask) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const tbb::blocked_range<std::size_t>& range) {
 #if CAPLET_EMBREE_MAJOR == 3
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-#endif
-    for (std::size_t i = range.begin(); i < range.end(); i++) {
-      const RayRecord& r = rays[i];
-      RTCRayHit hit{};
-      hit.ray.org_x = r.ox;
-      hit.ray.org_y = r.oy;
-      hit.ray.org_z = r.oz;
-      hit.ray.tnear = r.t_min;
-      hit.ray.dir_x = r.dx;
-      hit.ray.dir_y = r.dy;
-      hit.ray.dir_z = r.dz;
-      hit.ray.tfar = r.t_max;
-      hit.ray.mask = ~0u;
-      hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if CAPLET_EMBREE_MAJOR == 3
-      rtcIntersect1(scene, &context, &hit);
+    for (std::size_t i = range.begin(); i < range.end(); i++) ask(i, &context);
 #else
-      rtcIntersect1(scene, &hit);
+    for (std::size_t i = range.begin(); i < range.end(); i++) ask(i);
 #endif
-      store(i, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PeerHit{} : PeerHit{hit.hit.primID, hit.ray.tfar});
-    }
+  });
+}
+
+template <class Store>
+void trace_with(RTCScene scene, std::span<const RayRecord> rays, const Store& store) {
+  for_each_ray(rays.size(), [&](std::size_t i, auto... context) {
+    RTCRayHit hit{};
+    hit.ray = ray_of(rays[i]);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, context..., &hit);
+    store(i, hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? PeerHit{} : PeerHit{hit.hit.primID, hit.ray.tfar});
   });
 }
 
@@ -173,6 +182,15 @@ std::vector<PeerHit> Peer::closest(std::span<const RayRecord> rays) const {
 std::size_t Peer::trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const {
   trace_with(scene_->handle, rays, [&](std::size_t i, const PeerHit& hit) { ids[i] = hit.id; });
   return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [](std::uint32_t id) { return id != CAPLET_NONE; }));
+}
+
+std::size_t Peer::trace_any(std::span<const RayRecord> rays, std::span<std::uint32_t> found) const {
+  for_each_ray(rays.size(), [&](std::size_t i, auto... context) {
+    RTCRay ray = ray_of(rays[i]);
+    rtcOccluded1(scene_->handle, context..., &ray);
+    found[i] = ray.tfar < 0 ? 1 : 0;
+  });
+  return static_cast<std::size_t>(std::count(found.begin(), found.end(), 1u));
 }
 
 }  // namespace caplet::bench

@@ -46,6 +46,8 @@ class Peer {
 
   /// Traces all rays; returns how many hit. `ids` (same length) receives the primitive hit, CAPLET_NONE: none.
   std::size_t trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const;
+  /// Whether each ray hits anything (rtcOccluded1), 1 or 0; returns how many do.
+  std::size_t trace_any(std::span<const RayRecord> rays, std::span<std::uint32_t> found) const;
   std::vector<PeerHit> closest(std::span<const RayRecord> rays) const;
   double build_seconds() const { return build_seconds_; }
 
