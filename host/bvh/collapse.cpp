@@ -28,16 +28,16 @@ class Collapser {
       : binary_(binary), choices_(std::make_unique_for_overwrite<Choice[]>(binary.node_count)) {}
 
   Tree run() {
-    scale_ = 1 / std::max(binary_.nodes[0].box.area(), std::numeric_limits<double>::min());
+    scale_ = 1 / std::max(binary_.nodes[0].box().area(), std::numeric_limits<double>::min());
     choose(0);
-    tree_.order.reserve(binary_.items.size());
-    for (const Reference& item : binary_.items) tree_.order.push_back(item.primitive);
+    tree_.order.reserve(binary_.count);
+    for (std::uint32_t i = 0; i < binary_.count; i++) tree_.order.push_back(binary_.items[i].primitive);
     emit(0, 1);
     return std::move(tree_);
   }
 
  private:
-  float relative_area(const BinaryNode& node) const { return static_cast<float>(node.box.area() * scale_); }
+  float relative_area(const BinaryNode& node) const { return static_cast<float>(node.box().area() * scale_); }
 
   void choose(std::uint32_t index) {
     const BinaryNode& node = binary_.nodes[index];
@@ -97,10 +97,10 @@ class Collapser {
   std::array<std::uint32_t, width> placed(std::uint32_t index, const std::vector<std::uint32_t>& roots) const {
     std::array<std::uint32_t, width> slots;
     slots.fill(no_root);
-    const Box& all = binary_.nodes[index].box;
+    const Box all = binary_.nodes[index].box();
     std::array<std::array<float, width>, width> gain{};  // root, slot
     for (std::size_t r = 0; r < roots.size(); r++) {
-      const Box& box = binary_.nodes[roots[r]].box;
+      const Box box = binary_.nodes[roots[r]].box();
       for (std::size_t s = 0; s < width; s++)
         for (std::size_t k = 0; k < 3; k++) {
           const float off = 0.5f * (box.min[k] - all.min[k]) + 0.5f * (box.max[k] - all.max[k]);
@@ -126,12 +126,12 @@ class Collapser {
     const std::int32_t at = narrow<std::int32_t>(tree_.nodes.size());
     tree_.nodes.emplace_back();
     tree_.depth = std::max(tree_.depth, depth);
-    tree_.sah += node_cost * binary_.nodes[index].box.area() * scale_;
+    tree_.sah += node_cost * binary_.nodes[index].box().area() * scale_;
     std::vector<std::uint32_t> roots;
     gather(index, width, true, roots);
     const std::array<std::uint32_t, width> slots = placed(index, roots);
     for (std::size_t i = 0; i < width; i++) {
-      const Box box = slots[i] != no_root ? binary_.nodes[slots[i]].box : Box{};
+      const Box box = slots[i] != no_root ? binary_.nodes[slots[i]].box() : Box{};
       for (std::size_t k = 0; k < 3; k++) {
         tree_.nodes[static_cast<std::size_t>(at)].min[k][i] = box.min[k];
         tree_.nodes[static_cast<std::size_t>(at)].max[k][i] = box.max[k];
@@ -145,7 +145,7 @@ class Collapser {
       if (root.left == 0) {
         child = ~narrow<std::int32_t>(tree_.leaves.size());
         tree_.leaves.push_back({root.first, root.count, binary_.items[root.first].group});
-        tree_.sah += leaf_cost * root.box.area() * scale_;
+        tree_.sah += leaf_cost * root.box().area() * scale_;
       } else {
         child = emit(slots[i], depth + 1);
       }

@@ -49,6 +49,13 @@ ExactBox exact_box(const FlatPrimitive& p) {
   return kept_box(p);
 }
 
+// Of a finite x; beyond the largest number comes infinity.
+float next_up(float x) {
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
+}
+float next_down(float x) { return -next_up(-x); }
+
 bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
   const ReferenceBox box = reference_box(p);
   bvh::Reference r{};
@@ -92,8 +99,8 @@ ReferenceBox reference_box(const FlatPrimitive& p) {
   ReferenceBox r{};
   const double largest = double(std::numeric_limits<float>::max());
   for (std::size_t k = 0; k < 3; k++) {
-    r.min[k] = std::nextafter(static_cast<float>(std::clamp(box.min[k] - pad, -largest, largest)), -inf);
-    r.max[k] = std::nextafter(static_cast<float>(std::clamp(box.max[k] + pad, -largest, largest)), inf);
+    r.min[k] = next_down(static_cast<float>(std::clamp(box.min[k] - pad, -largest, largest)));
+    r.max[k] = next_up(static_cast<float>(std::clamp(box.max[k] + pad, -largest, largest)));
     r.min[k] = std::max(r.min[k], -std::numeric_limits<float>::max());
     r.max[k] = std::min(r.max[k], std::numeric_limits<float>::max());
   }

@@ -21,12 +21,6 @@ struct Box {
   std::array<float, 3> min{inf, inf, inf}, max{-inf, -inf, -inf};
   static constexpr float inf = std::numeric_limits<float>::infinity();
 
-  void extend(const Reference& r) {
-    for (std::size_t k = 0; k < 3; k++) {
-      min[k] = std::min(min[k], r.min[k]);
-      max[k] = std::max(max[k], r.max[k]);
-    }
-  }
   void extend(const Box& b) {
     for (std::size_t k = 0; k < 3; k++) {
       min[k] = std::min(min[k], b.min[k]);
@@ -42,13 +36,15 @@ struct Box {
 };
 
 struct BinaryNode {
-  Box box;
-  std::uint32_t left = 0, right = 0;   // 0: leaf, since the root is nobody's child
-  std::uint32_t first = 0, count = 0;  // range of the ordered references
+  std::array<float, 3> min, max;
+  std::uint32_t left, right;   // 0: leaf, since the root is nobody's child
+  std::uint32_t first, count;  // range of the ordered references
+  Box box() const { return {min, max}; }
 };
 
 struct BinaryTree {
-  std::vector<Reference> items;  // in leaf order; `primitive` is the index into the references given
+  std::unique_ptr<Reference[]> items;  // in leaf order; `primitive` is the index into the references given
+  std::uint32_t count = 0;             // of them
   std::unique_ptr<BinaryNode[]> nodes;
   std::uint32_t node_count = 0;
 };
