@@ -140,6 +140,36 @@ TEST(Structure, SurfaceAreaCostBeatsSplittingByOrder) {
   check(same_centre);
 }
 
+// From 65,536 references on, the upper levels go by the cells of a grid.
+TEST(Structure, CellsFindNearlyTheTreeThatReferencesDo) {
+  for (const float size : {0.001f, 0.02f, 0.3f}) {
+    auto boxes = random_boxes(65536, 1, size);
+    const double by_cells = check(boxes).sah;
+    boxes.pop_back();
+    const double by_references = check(boxes).sah;
+    EXPECT_NEAR(by_cells / by_references, 1, 0.02) << size;
+  }
+}
+
+TEST(Structure, CellsOfSeveralGroupsAndLeavesOfOne) { check(random_boxes(150000, 4, 0.02f), 2); }
+
+TEST(Structure, CellsOfUnevenlySpreadReferences) {
+  // Nine in ten within one cell of the grid that all of them make, some at one place, and all of them on one line or in one plane.
+  auto boxes = random_boxes(100000, 2, 0.001f);
+  for (std::size_t i = 0; i < boxes.size(); i++) {
+    const float scale = i % 10 == 0 ? 1.0f : i % 3 == 0 ? 0.0f : 1e-4f;
+    for (int k = 0; k < 3; k++) {
+      boxes[i].min[k] *= scale;
+      boxes[i].max[k] *= scale;
+    }
+  }
+  check(boxes);
+  for (const int flat : {2, 1}) {
+    for (auto& r : boxes) r.min[flat] = r.max[flat] = 0.5f;
+    check(boxes);
+  }
+}
+
 TEST(Structure, AllBoxesEqual) {
   std::vector<Reference> boxes(5000, Reference{{1, 2, 3}, 0, {4, 5, 6}, 0});
   const Tree tree = check(boxes);
