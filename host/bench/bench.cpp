@@ -84,13 +84,12 @@ struct Bench {
   }
 };
 
-/// As a renderer traces: camera rays through a stage of their own where there are no instances.
+/// As a renderer traces: camera rays through a stage of their own.
 struct Tracers {
   DeviceTracer camera, others;
 
   Tracers(const Device& device, int width, std::uint64_t shapes, int kind_bits)
-      : camera(tracer_for(device, width, shapes, kind_bits,
-                          (shapes & shape_bit(shape_instance)) == 0 ? DeviceTracer::Manner::stream : DeviceTracer::Manner::pool)),
+      : camera(tracer_for(device, width, shapes, kind_bits, DeviceTracer::Manner::stream)),
         others(tracer_for(device, width, shapes, kind_bits, DeviceTracer::Manner::pool)) {}
 
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root) {

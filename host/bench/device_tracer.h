@@ -15,8 +15,8 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
-  /// How rays of width 8 go through the tree (kernels/trace/many.cl): many at once, as a renderer's do; as its camera rays, if
-  /// there are no instances; or one after the other, as on devices that are no good at the former.
+  /// How rays of width 8 go through the tree (kernels/trace/many.cl): many at once, as a renderer's do; as its camera rays; or
+  /// one after the other, as on devices that are no good at the former.
   enum class Manner { pool, stream, one_by_one };
 
   /// width: CAPLET_REAL_WIDTH, 8 or 1. For the shapes of `rows`.

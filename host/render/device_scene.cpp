@@ -4,17 +4,11 @@
 
 #include <utility>
 
-#include "render/detail/known_rays.h"
-#include "shared/shapes.h"
-
 namespace caplet {
 
 namespace {
 
-bool camera_stage_pays(const Device& device, const FlatScene& scene) {
-  // Its kernel is built for, and tried with, what shapes_on_trial names.
-  return device.encoding() == Encoding::wide && (shapes_on_trial(scene.shapes) & shape_bit(shape_instance)) == 0;
-}
+bool camera_stage_pays(const Device& device) { return device.encoding() == Encoding::wide; }
 
 }  // namespace
 
@@ -25,14 +19,13 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       kernels_(device, options_),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),
-      has_camera_stage_(camera_stage_pays(device, scene)),
+      has_camera_stage_(camera_stage_pays(device)),
       bvh_nodes_(scene.bvh_nodes) {}
 
 void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bytes_updated_ += buffers_.update(device_, scene, changes);
   world_ = scene.world;
   light_radiance_ = scene.lighting.radiance;
-  has_camera_stage_ = camera_stage_pays(device_, scene);
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has gone may come back: what knows it stays, and no picture waits for a compiler.
   if (StageOptions options = options_.together_with(stage_options(scene, device_)); options != options_) {

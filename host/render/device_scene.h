@@ -32,7 +32,7 @@ class DeviceScene {
   const WorldRecord& world() const { return world_; }
   /// LightingRecord.radiance.
   float light_radiance() const { return light_radiance_; }
-  /// Whether camera rays have a stage of their own: where eight lanes are tested at a time, and there are no instances.
+  /// Whether camera rays have a stage of their own: where eight lanes are tested at a time.
   bool has_camera_stage() const { return has_camera_stage_; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }

@@ -7,7 +7,7 @@
 //   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
 //   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
 //   TRACED_ANY                       // 1: any hit will do
-//   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them, and no instance is in the tree
+//   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them
 // Programs may be built with CAPLET_ONE_BY_ONE: a ray after the other; or CAPLET_PORTABLE: many at once, whatever the device.
 #ifndef CAPLET_TRACE_MANY_CL
 #define CAPLET_TRACE_MANY_CL

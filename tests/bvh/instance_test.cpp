@@ -4,11 +4,9 @@
 // Placed objects against the same primitives intersected in object space by brute force.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 
 #include "brute.h"
@@ -20,60 +18,15 @@
 namespace caplet::test {
 namespace {
 
-void store(const glm::dmat4& m, float* out) {
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) out[4 * row + column] = static_cast<float>(m[column][row]);
-}
-
-/// Rotated, stretched by up to 4 in each direction and, every other one, mirrored.
-glm::dmat4 random_placement(Random& random, unsigned i) {
-  const auto u = [&](float a, float b) { return double(random.uniform(a, b)); };
-  glm::dmat4 m = glm::translate(glm::dmat4(1), glm::dvec3(u(-3, 3), u(-3, 3), u(-3, 3)));
-  m = glm::rotate(m, u(0, 6), glm::normalize(glm::dvec3(u(-1, 1), u(-1, 1), u(0.1f, 1))));
-  return glm::scale(m, glm::dvec3(u(0.5f, 2), u(0.5f, 2), u(0.5f, 2) * (i % 2 == 0 ? 1 : -1)));
-}
-
 TEST(Instances, AgreeWithBruteForceInObjectSpace) {
-  constexpr unsigned instance_count = 40;
-  const auto primitives = random_scene(21, shape_instance, 60, 0.5f);
-  Encoded scene;
-  const EncodedTree object = encode_tree(primitives, scene.nodes, scene.leaves);
-
-  Random random(22);
-  std::vector<InstanceRecord> instances;
-  std::vector<FlatPrimitive> top = random_scene(23, shape_capsule, 30, 0.8f);
-  const auto world_primitives = top;
-  for (unsigned i = 0; i < instance_count; i++) {
-    const glm::dmat4 placement = random_placement(random, i);
-    InstanceRecord record{};
-    store(placement, record.world_from_object);
-    store(glm::inverse(placement), record.object_from_world);
-    record.root = object.root;
-    record.light_base = CAPLET_NONE;
-    instances.push_back(record);
-    FlatPrimitive box{shape_instance, i, {}};
-    for (int k = 0; k < 3; k++) {
-      box.data[k] = INFINITY;
-      box.data[3 + k] = -INFINITY;
-    }
-    for (unsigned corner = 0; corner < 8; corner++) {
-      const glm::dvec4 p = placement * glm::dvec4(double(corner & 1 ? object.max[0] : object.min[0]),
-                                                  double(corner & 2 ? object.max[1] : object.min[1]),
-                                                  double(corner & 4 ? object.max[2] : object.min[2]), 1);
-      for (int k = 0; k < 3; k++) {
-        box.data[k] = std::min(box.data[k], static_cast<float>(p[k]));
-        box.data[3 + k] = std::max(box.data[3 + k], static_cast<float>(p[k]));
-      }
-    }
-    top.push_back(box);
-  }
-  const EncodedTree world = encode_tree(top, scene.nodes, scene.leaves);
+  const PlacedScene scene = placed_scene(21, 40);
+  const auto& [nodes, leaves, primitives, world_primitives, object, world, instances] = scene;
   auto rays = random_rays(24, 600 * test_scale());
   for (RayRecord& r : rays) r.ox *= 2, r.oy *= 2, r.oz *= 2;
 
   for (const int width : {8, 1}) {
     DeviceTracer tracer(test_device(), width);
-    tracer.upload(scene.nodes, scene.leaves, instances, world.root);
+    tracer.upload(nodes, leaves, instances, world.root);
     const auto hits = tracer.closest(rays);
     const auto any = tracer.any(rays);
     unsigned in_instance = 0, in_world = 0;
@@ -84,8 +37,8 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
       in_instance += hit.slot != CAPLET_NONE && hit.instance != CAPLET_NONE ? 1 : 0;
       in_world += hit.slot != CAPLET_NONE && hit.instance == CAPLET_NONE ? 1 : 0;
       const DoubleRay ray = widen(rays[i]);
-      for (unsigned j = 0; j <= instance_count; j++) {
-        const bool placed = j < instance_count;
+      for (unsigned j = 0; j <= instances.size(); j++) {
+        const bool placed = j < instances.size();
         DoubleRay local = ray;
         double rounding = 0;  // of the ray's transform: 4 products and sums a component, each within eps of its terms
         if (placed) {
@@ -127,8 +80,7 @@ TEST(Instances, EqualHitsGoToTheWorldThenToTheFirstInstance) {
   std::vector<InstanceRecord> instances(5);
   std::vector<FlatPrimitive> top;
   for (unsigned i = 0; i < instances.size(); i++) {
-    store(glm::dmat4(1), instances[i].world_from_object);
-    store(glm::dmat4(1), instances[i].object_from_world);
+    place(instances[i], glm::dmat4(1));
     instances[i].root = object.root;
     instances[i].object = 9 - i;  // the last is the first of the scene
     FlatPrimitive box{shape_instance, i, {}};

@@ -72,6 +72,22 @@ TEST_P(Many, AreAsOneByOneOnAllKinds) {
   }
 }
 
+TEST_P(Many, AreAsOneByOneThroughInstances) {
+  PlacedScene scene = placed_scene(51, 60);
+  for (std::size_t i = 0; i < scene.instances.size(); i += 7) scene.instances[i].flags = CAPLET_INSTANCE_NO_ENTERING;
+  for (DeviceTracer* tracer : {&tracer_, &one_by_one_})
+    tracer->upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
+  auto rays = random_rays(52, 20001);
+  for (RayRecord& r : rays) r.ox *= 2, r.oy *= 2, r.oz *= 2;
+  EXPECT_GT(compare(rays), 1000);
+  // Side by side, as camera rays are: many of them meet the same instance.
+  for (std::size_t i = 0; i < rays.size(); i++) {
+    const float x = static_cast<float>(i % 128) / 64 - 1, y = static_cast<float>(i / 128) / 78 - 1;
+    rays[i] = {0.3f, -0.2f, -14, 0, 0.5f * x, 0.5f * y, 1, INFINITY};
+  }
+  EXPECT_GT(compare(rays), 1000);
+}
+
 TEST_P(Many, OfAnyNumberAndWithOnesThatAreNone) {
   const Encoded scene = encode(random_scene(44, shape_capsule, 500, 0.3f));
   upload(scene);

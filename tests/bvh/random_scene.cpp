@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <limits>
 
@@ -72,6 +73,61 @@ std::vector<RayRecord> random_rays(unsigned seed, int count) {
 Encoded encode(const std::vector<FlatPrimitive>& primitives, int kind_bits) {
   Encoded out;
   out.tree = encode_tree(primitives, out.nodes, out.leaves, kind_bits);
+  return out;
+}
+
+namespace {
+
+void store(const glm::dmat4& m, float* out) {
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) out[4 * row + column] = static_cast<float>(m[column][row]);
+}
+
+glm::dmat4 random_placement(Random& random, unsigned i) {
+  const auto u = [&](float a, float b) { return double(random.uniform(a, b)); };
+  glm::dmat4 m = glm::translate(glm::dmat4(1), glm::dvec3(u(-3, 3), u(-3, 3), u(-3, 3)));
+  m = glm::rotate(m, u(0, 6), glm::normalize(glm::dvec3(u(-1, 1), u(-1, 1), u(0.1f, 1))));
+  return glm::scale(m, glm::dvec3(u(0.5f, 2), u(0.5f, 2), u(0.5f, 2) * (i % 2 == 0 ? 1 : -1)));
+}
+
+}  // namespace
+
+void place(InstanceRecord& instance, const glm::dmat4& world_from_object) {
+  store(world_from_object, instance.world_from_object);
+  store(glm::inverse(world_from_object), instance.object_from_world);
+}
+
+PlacedScene placed_scene(unsigned seed, unsigned instance_count) {
+  PlacedScene out;
+  out.of_object = random_scene(seed, shape_instance, 60, 0.5f);
+  out.object = encode_tree(out.of_object, out.nodes, out.leaves);
+  Random random(seed + 1);
+  out.of_world = random_scene(seed + 2, shape_capsule, 30, 0.8f);
+  std::vector<FlatPrimitive> top = out.of_world;
+  for (unsigned i = 0; i < instance_count; i++) {
+    const glm::dmat4 placement = random_placement(random, i);
+    InstanceRecord record{};
+    place(record, placement);
+    record.root = out.object.root;
+    record.light_base = CAPLET_NONE;
+    out.instances.push_back(record);
+    FlatPrimitive box{shape_instance, i, {}};
+    for (int k = 0; k < 3; k++) {
+      box.data[k] = INFINITY;
+      box.data[3 + k] = -INFINITY;
+    }
+    for (unsigned corner = 0; corner < 8; corner++) {
+      const glm::dvec4 p = placement * glm::dvec4(double(corner & 1 ? out.object.max[0] : out.object.min[0]),
+                                                  double(corner & 2 ? out.object.max[1] : out.object.min[1]),
+                                                  double(corner & 4 ? out.object.max[2] : out.object.min[2]), 1);
+      for (int k = 0; k < 3; k++) {
+        box.data[k] = std::min(box.data[k], static_cast<float>(p[k]));
+        box.data[3 + k] = std::max(box.data[3 + k], static_cast<float>(p[k]));
+      }
+    }
+    top.push_back(box);
+  }
+  out.world = encode_tree(top, out.nodes, out.leaves);
   return out;
 }
 

@@ -4,6 +4,7 @@
 // Random primitives and rays from fixed seeds.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <random>
 #include <vector>
 
@@ -39,5 +40,18 @@ struct Encoded {
   EncodedTree tree;
 };
 Encoded encode(const std::vector<FlatPrimitive>& primitives, int kind_bits = CAPLET_LEAF_KIND_BITS);
+
+/// One object, placed many times among primitives of the world.
+struct PlacedScene {
+  std::vector<float> nodes, leaves;
+  std::vector<FlatPrimitive> of_object, of_world;
+  EncodedTree object, world;  // the world's slots: first those of of_world
+  std::vector<InstanceRecord> instances;
+};
+/// Its placement, and the inverse.
+void place(InstanceRecord& instance, const glm::dmat4& world_from_object);
+/// All kinds in the object, capsules in the world, within about [-6, 6]^3; turned, stretched by up to 4 in each direction and,
+/// every other one, mirrored.
+PlacedScene placed_scene(unsigned seed, unsigned instance_count);
 
 }  // namespace caplet::test

@@ -154,7 +154,8 @@ TEST(Structure, CellsFindNearlyTheTreeThatReferencesDo) {
 TEST(Structure, CellsOfSeveralGroupsAndLeavesOfOne) { check(random_boxes(150000, 4, 0.02f), 2); }
 
 TEST(Structure, CellsOfUnevenlySpreadReferences) {
-  // Nine in ten within one cell of the grid that all of them make, some at one place, and all of them on one line or in one plane.
+  // Nine in ten within one cell of the grid that all of them make, some at one place, and all of them on one line or in one
+  // plane.
   auto boxes = random_boxes(100000, 2, 0.001f);
   for (std::size_t i = 0; i < boxes.size(); i++) {
     const float scale = i % 10 == 0 ? 1.0f : i % 3 == 0 ? 0.0f : 1e-4f;
