@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "device/cl_error.h"
 #include "device/detail/accounting.h"
+#include "device/detail/huge_pages.h"
 #include "device/device.h"
 
 namespace caplet {
@@ -31,7 +32,8 @@ RawBuffer::RawBuffer(const Device& device, std::size_t bytes, bool read_only, co
   const std::size_t size = std::max(bytes, smallest_buffer);
   require_memory(device.info(), size, device.bytes_allocated());
   cl_call(fmt::format("buffer of {} bytes", bytes), device.info().name, [&] {
-    buffer_ = cl::Buffer(device.context(), read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE, size);
+    buffer_ = on_huge_pages(device, read_only, size);
+    if (!buffer_()) buffer_ = cl::Buffer(device.context(), read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE, size);
     if (contents && bytes > 0) device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, contents);
   });
   const std::shared_ptr<Device::Accounting> accounting = device.accounting_;

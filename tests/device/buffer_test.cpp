@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <numeric>
 
 #include "device/device.h"
+#include "environment.h"
 #include "support/test_device.h"
 
 namespace caplet {
@@ -49,6 +51,42 @@ TEST_F(BufferTest, GivesBackWhatWasWritten) {
   cl_uint one = 0;
   static_cast<const RawBuffer&>(buffer).read(&one, 16, 4);
   EXPECT_EQ(one, 5u);
+}
+
+// Those of processors are in huge pages from 8 MiB on.
+TEST_F(BufferTest, LargeOnesKeepWhatTheyAreGiven) {
+  std::vector<cl_uint> values((std::size_t{20} << 18) + 3);
+  std::iota(values.begin(), values.end(), 7u);
+  for (const char* const huge : {"1", "0"}) {
+    const test::ScopedVariable variable("CAPLET_HUGE_PAGES", huge);
+    Buffer<cl_uint> buffer(device_, std::span<const cl_uint>(values));
+    EXPECT_EQ(buffer.read(), values) << huge;
+    const cl_uint changed[] = {1, 2};
+    static_cast<RawBuffer&>(buffer).write(changed, buffer.size() * 4 - 8, 8);
+    const std::vector<cl_uint> read = buffer.read();
+    EXPECT_EQ(read[read.size() - 3], values[values.size() - 3]);
+    EXPECT_EQ(read[read.size() - 2], 1u);
+    EXPECT_EQ(read.back(), 2u);
+    buffer.clear();
+    EXPECT_EQ(buffer.read(), std::vector<cl_uint>(values.size(), 0u));
+  }
+}
+
+TEST_F(BufferTest, LargeOnesAreGivenBack) {
+  const auto pages = [] {  // of addresses in use
+    std::size_t count = 0;
+    std::ifstream("/proc/self/statm") >> count;
+    return count;
+  };
+  if (pages() == 0) GTEST_SKIP() << "no /proc/self/statm";
+  const auto use = [&] {
+    Buffer<cl_uchar>(device_, std::size_t{64} << 20).clear();
+    device_.finish();
+  };
+  use();
+  const std::size_t before = pages();
+  for (int i = 0; i < 20; ++i) use();
+  EXPECT_LT(pages(), before + (std::size_t{256} << 20) / 4096);
 }
 
 TEST_F(BufferTest, MayBeEmpty) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Large buffers of processors in pages of 2 MiB, where the system has such: rays that go through a tree at random otherwise miss the
+// processor's table of pages at nearly every node.
+#pragma once
+
+#include <cstddef>
+
+#include "device/device.h"
+
+namespace caplet {
+
+/// A buffer of `size` bytes in huge pages; an empty handle where that is not to be had or would not pay: on devices that are no
+/// processors or do not share the host's memory, on systems without, for buffers of a few pages. $CAPLET_HUGE_PAGES=0: never.
+/// Throws cl::Error.
+cl::Buffer on_huge_pages(const Device& device, bool read_only, std::size_t size);
+
+}  // namespace caplet
