@@ -17,7 +17,7 @@ namespace caplet {
 namespace {
 
 constexpr std::size_t page = std::size_t{2} << 20;
-constexpr std::size_t pays_from = 4 * page;
+constexpr std::size_t pays_from = page;
 
 /// Whole pages from the system, which gives addresses between them back.
 struct Pages {

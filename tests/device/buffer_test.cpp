@@ -53,7 +53,7 @@ TEST_F(BufferTest, GivesBackWhatWasWritten) {
   EXPECT_EQ(one, 5u);
 }
 
-// Those of processors are in huge pages from 8 MiB on.
+// Those of processors are in huge pages from 2 MiB on.
 TEST_F(BufferTest, LargeOnesKeepWhatTheyAreGiven) {
   std::vector<cl_uint> values((std::size_t{20} << 18) + 3);
   std::iota(values.begin(), values.end(), 7u);
