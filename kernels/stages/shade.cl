@@ -3,6 +3,7 @@
 //
 // What a ray hit: emission and environment weighted against light sampling (Veach 1997, chapter 9), then one light sample,
 // one BSDF sample and Russian roulette. Fills queue_shadow and queue_next.
+#include "math/ahead.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
 #include "shapes/surface.cl"
@@ -75,6 +76,33 @@ static inline void sample_light(const Stage* g, const Scene* scene, uint path, c
   g->shadows.path_shadow_radiance[path] = contribution;
   g->shadows.queue_shadow[atomic_inc(&g->counters.counters[counter_shadow])] = path;
 }
+
+#ifdef CAPLET_PREFETCH
+#define STAGE_LOOKS_AHEAD
+// Paths come in the order of their rays, so that everything of a path, of what it hit and of the object hit lies anywhere: each is asked
+// for when what leads to it has come.
+static inline void stage_ahead(const Stage* g, uint item, uint count) {
+  if (item + 24u < count) {
+    const uint path = g->queues.queue[item + 24u];
+    AHEAD(g->rays.path_hit + path);
+    AHEAD(g->rays.path_ray + path);
+    AHEAD(g->carried.path_throughput + path);
+    AHEAD(g->carried.path_wavelengths + path);
+    AHEAD(g->carried.path_wavelength_pdfs + path);
+    AHEAD(g->carried.path_scatter + path);
+    AHEAD(g->carried.path_flags + path);
+    AHEAD(g->radiance.path_radiance + path);
+  }
+  if (item + 16u < count) {
+    const uint slot = g->rays.path_hit[g->queues.queue[item + 16u]].slot;
+    if (slot != CAPLET_NONE) fetch_ahead(g->tree.leaves + (slot & ~7u));
+  }
+  if (item + 8u < count) {
+    const uint slot = g->rays.path_hit[g->queues.queue[item + 8u]].slot;
+    if (slot != CAPLET_NONE) AHEAD(g->surfaces.primitive_geometry + as_uint(g->tree.leaves[slot]));
+  }
+}
+#endif
 
 static void stage_item(const Stage* g, uint item) {
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};

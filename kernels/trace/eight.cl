@@ -6,17 +6,13 @@
 #ifndef CAPLET_TRACE_EIGHT_CL
 #define CAPLET_TRACE_EIGHT_CL
 
+#include "math/ahead.cl"
+
 #if defined(__has_builtin) && defined(__AVX2__) && !defined(CAPLET_PORTABLE)
 #if __has_builtin(__builtin_ia32_permvarsi256) && __has_builtin(__builtin_ia32_pshufb128)
 #define CAPLET_EIGHT_IS_FAST 1
 #endif
 #endif
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
-#define CAPLET_PREFETCH 1
-#endif
-#endif
-
 // Entry m: the numbers of the bits set in m from the highest down, a byte each, the highest in the least significant byte.
 __constant ulong set_bits[256] = {
     0x0UL, 0x0UL, 0x1UL, 0x1UL, 0x2UL, 0x2UL, 0x102UL, 0x102UL, 0x3UL, 0x3UL, 0x103UL, 0x103UL, 0x203UL, 0x203UL, 0x10203UL,
@@ -69,18 +65,5 @@ static inline uchar8 permuted_bytes(uchar8 x, uchar8 order) {
 
 // Bit i of the result: bit k of byte i. The products of bit 8 i with 2^(56 - 7 i) meet at 56 + i, and no others get there.
 static inline uint bit_column(ulong bytes, int k) { return (uint)(((bytes >> k & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56); }
-
-// Asks for 256 bytes that are read soon.
-static inline void fetch_ahead(__global const float* at) {
-#ifdef CAPLET_PREFETCH
-  const char* line = (const char*)(size_t)at;
-  __builtin_prefetch(line, 0, 3);
-  __builtin_prefetch(line + 64, 0, 3);
-  __builtin_prefetch(line + 128, 0, 3);
-  __builtin_prefetch(line + 192, 0, 3);
-#else
-  (void)at;
-#endif
-}
 
 #endif

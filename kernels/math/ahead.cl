@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Asks processors for what is read soon. GPUs have other work while they wait, and compilers that do not know how are not asked.
+#ifndef CAPLET_MATH_AHEAD_CL
+#define CAPLET_MATH_AHEAD_CL
+
+#if CAPLET_REAL_WIDTH == 8 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define CAPLET_PREFETCH 1
+#endif
+#endif
+
+// One line of the cache, 64 bytes.
+#ifdef CAPLET_PREFETCH
+#define AHEAD(at) __builtin_prefetch((const void*)(size_t)(at), 0, 3)
+#else
+#define AHEAD(at) (void)(at)
+#endif
+
+// Four of them.
+static inline void fetch_ahead(__global const float* at) {
+  AHEAD(at);
+  AHEAD(at + 16);
+  AHEAD(at + 32);
+  AHEAD(at + 48);
+}
+
+#endif
