@@ -112,7 +112,7 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   std::vector<FlatPrimitive> same;
   const FlatScene scene = lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
   std::optional<Peer> peer;
-  if (!same.empty() && Peer::is_there()) peer.emplace(same);
+  if (!same.empty() && Peer::is_there() && !options.alone) peer.emplace(same);
   Tracers tracers(device, width_for(device, options), scene.shapes, scene.leaf_kind_bits);
   tracers.upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
   Bench bench{line, peer ? &*peer : nullptr, scene.leaves, options.seconds, true};
@@ -133,7 +133,7 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
   const EncodedTree tree = encode_tree(primitives, nodes, leaves, leaf_kind_bits(shapes));
   const double build = seconds_since(start);
   std::optional<Peer> peer;
-  if (Peer::is_there()) peer.emplace(primitives);
+  if (Peer::is_there() && !options.alone) peer.emplace(primitives);
   say(line, kind + " build", build, peer ? peer->build_seconds() : 0, "s",
       fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth, tree.sah));
   const double n = static_cast<double>(options.count);

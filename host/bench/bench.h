@@ -19,6 +19,7 @@ struct Options {
   double seconds = 5;           // for each kind of ray
   int size = 1024;              // camera rays a side
   int width = 0;                // 8: eight primitives at a time, 1: one; 0: by device
+  bool alone = false;           // without Embree, which takes more memory than ours
   bool sorted = false;          // also bounce rays sorted by origin and octant, for ours alone
 };
 
