@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import sys
+import tempfile
 from typing import Callable
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -61,16 +62,18 @@ CHECKS = ("self-test", "verify", "hits", "tests", "pictures")
 class Trials:
     def __init__(self, options):
         self.options, self.cache, self.references = options, options.cache.resolve(), {}
+        self.cache.mkdir(parents=True, exist_ok=True)
+        self.own = tempfile.TemporaryDirectory(prefix="references-", dir=self.cache)
 
-    def tried(self, driver, encoding, folder="results"):
+    def tried(self, driver, encoding, folder=None):
         home = driver.home(self.cache, driver.name)
-        return checks.Tried(home, encoding, self.cache / folder / f"{driver.name}-{encoding}", self.options.limit)
+        return checks.Tried(home, encoding, folder or self.cache / "results" / f"{driver.name}-{encoding}", self.options.limit)
 
     def reference(self, ask, scene, what):
         """What the first driver says of a scene in its own encoding, asked once."""
         key = (ask.__name__, scene, what)
         if key not in self.references:
-            self.references[key] = ask(self.tried(DRIVERS[0], "wide", "references"), scene, what)
+            self.references[key] = ask(self.tried(DRIVERS[0], "wide", pathlib.Path(self.own.name)), scene, what)
         return self.references[key]
 
     def compared(self, tried, ask, scene, what, compare):
