@@ -83,8 +83,8 @@ class Trials:
             return {"fails": ours}
         return {"fails": f"nothing to compare with: {theirs}"} if isinstance(theirs, str) else compare(ours, theirs)
 
-    def one(self, driver, encoding, facts):
-        """Fills in the facts of a driver in an encoding, check by check."""
+    def one(self, driver, encoding, facts, keep):
+        """Fills in the facts of a driver in an encoding, and keeps them after each check: they take long."""
         tried = self.tried(driver, encoding)
         facts["device"], facts["package"] = checks.device(tried), tried.home.package
         if "fails" in facts["device"]:
@@ -92,15 +92,20 @@ class Trials:
         wants = self.options.checks
         if "self-test" in wants:
             facts["self-test"] = checks.self_test(tried)
+            keep()
         if "verify" in wants:
             rays = {"full": self.options.rays, "small": self.options.rays, "tiny": 500}[driver.size]
             facts["verify"] = checks.verify(tried, rays)
+            keep()
         if "hits" in wants:
             count = 100 if driver.size == "tiny" else self.options.hits
             facts["hits"] = {scene.name: self.compared(tried, checks.crossings, scene, count, checks.compare_crossings)
                              for scene in checks.scenes(("gallery", "instances.pbrt"), driver.size)}
+            keep()
         if "tests" in wants and driver.size != "tiny":
-            facts["tests"] = {name: checks.tests(tried, name) for name in ("render_tests", "trace_tests")}
+            for name in ("trace_tests", "render_tests"):
+                facts.setdefault("tests", {})[name] = checks.tests(tried, name)
+                keep()
         if "pictures" in wants:
             facts["size"] = driver.size
             facts["pictures"] = {scene.name: self.compared(tried, checks.picture, scene, driver.size, exr.difference)
@@ -115,11 +120,11 @@ class Trials:
                 about = {"name": driver.name, "title": driver.title, "origin": driver.origin, "encoding": encoding}
                 facts.update(about)
                 print(f"drivers: {driver.name}, {encoding}", file=sys.stderr, flush=True)
+                file.parent.mkdir(parents=True, exist_ok=True)
                 try:
-                    self.one(driver, encoding, facts)
+                    self.one(driver, encoding, facts, lambda: file.write_text(json.dumps(facts, indent=1)))
                 except homes.LeftOut as reason:
                     facts = {**about, "left out": str(reason)}
-                file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text(json.dumps(facts, indent=1))
                 print(page.row(facts), flush=True)
 

@@ -24,7 +24,8 @@ def driver_name(facts):
     title = facts["title"]
     if device:
         package = facts.get("package")
-        title = f"{title} {package or device['driver'].split()[0]}"
+        words = device["driver"].split()
+        title = f"{title} {package or next((word for word in words if word[0].isdigit()), words[0])}"
         if more := f"driver {device['driver'].split('_')[0]}" if package else compiler(device):
             title += f" ({more})"
     else:
