@@ -12,6 +12,7 @@ import functools
 import json
 import os
 import pathlib
+import signal
 import sys
 import tempfile
 from typing import Callable
@@ -169,7 +170,12 @@ def main(arguments):
     return 1 if any(page.is_wrong(facts) for facts in results) else 0
 
 
+def stop(*_):
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, stop)  # no program stays behind
     try:
         sys.exit(main(sys.argv[1:]))
     except KeyboardInterrupt:

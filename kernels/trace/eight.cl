@@ -11,7 +11,7 @@
 #define CAPLET_EIGHT_IS_FAST 1
 #endif
 #endif
-#if defined(__has_builtin)
+#if defined(__has_builtin) && !defined(CAPLET_PORTABLE)
 #if __has_builtin(__builtin_prefetch)
 #define CAPLET_PREFETCH 1
 #endif
