@@ -7,7 +7,8 @@
 namespace caplet::bench {
 namespace {
 
-// Stages as a renderer has them, with a struct of their own for what they take.
+// Stages as a renderer has them, with a struct of their own for what they take. Not several work-items in one vector
+// (kernels/stages/kernel.cl): Intel's compiler of 2025 crashes on this kernel without the hint.
 const char* const kernels = R"(
 #include "groups.cl"
 typedef struct {
@@ -25,7 +26,7 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->root)
 #include "trace/many.cl"
-__kernel void trace(__global const float* restrict nodes, __global const float* restrict leaves,
+__attribute__((vec_type_hint(float8))) __kernel void trace(__global const float* restrict nodes, __global const float* restrict leaves,
     __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays,
     __global HitRecord* restrict hits, __global int* restrict any, uint item_count) {
   const Stage stage = {{0, nodes, leaves, instances}, root, rays, hits, any};

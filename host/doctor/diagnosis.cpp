@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 #include "device/cache.h"
@@ -17,25 +20,79 @@ namespace caplet::doctor {
 
 namespace {
 
-/// A row: platforms whose name starts so, the driver's version (empty: any), what is known of them.
+/// A row: what is known of platforms with devices and drivers of these names and versions.
 struct Quirk {
-  const char* platform;
-  const char* driver;
+  const char* platform;  // how the platform's name begins
+  const char* device;    // how the device's name begins
+  const char* from;      // the first driver's version; empty: any
+  const char* before;    // the first one that is not; empty: there is none
   const char* what;
 };
 
 constexpr Quirk quirks[] = {
     // https://github.com/pocl/pocl/issues/1958 (compiled at the launch), https://github.com/pocl/pocl/pull/738 (small grids)
-    {"Portable Computing Language", "",
+    {"Portable Computing Language", "", "", "",
      "compiles a kernel when it is launched, not when the program is built, and again for 65536 work-items or more: the first "
      "render waits for it, later ones find it in PoCL's cache"},
     // host/device/program.cpp
-    {"Portable Computing Language", "", "keeps compiled kernels itself; Caplet's cache holds only what the self-test said"},
+    {"Portable Computing Language", "", "", "",
+     "keeps compiled kernels itself; Caplet's cache holds only what the self-test said"},
+    // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl
+    {"Portable Computing Language", "", "6.0", "6.1",
+     "has a compiler that may abort the process (\"Instruction Combining did not reach a fixpoint\"); Caplet's kernels are "
+     "written "
+     "so that it does not"},
+    // Seen with 2025.0.4 (which calls itself 2024.18.12) and later, not with 2024.2.1 (2024.18.7); kernels/stages/kernel.cl
+    {"Intel(R) OpenCL", "Intel(R)", "2024.18.8", "",
+     "may put several work-items into one vector, which is slow, and wrong where functions are called; Caplet's kernels ask it "
+     "not "
+     "to, others (CAPLET_KERNELS) must, too"},
+    // Seen with 2023.2.4, which calls itself 2024.16.
+    {"Intel(R) OpenCL", "Intel(R)", "2023", "2024.17",
+     "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide one, which is its own"},
     // https://docs.mesa3d.org/rusticl
-    {"rusticl", "", "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, iris, llvmpipe)"},
+    {"rusticl", "", "", "",
+     "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, iris, llvmpipe)"},
+    {"rusticl", "llvmpipe", "", "",
+     "runs a work-item in each lane of the processor's vectors: the wide encoding takes minutes to compile and is slower than "
+     "the "
+     "single one, which is its own"},
+    // Seen with 22.3 and 25.0: fma(-0, 0, +0) is -0.
+    {"rusticl", "", "", "", "may give a zero of fma() the wrong sign; no kernel of Caplet's takes it"},
     // Seen with Debian's oclgrind 21.10-3: the self-test's comparisons of float8.
-    {"Oclgrind", "Oclgrind 21.10", "is a simulator for debugging, and compares vectors wrongly: it cannot render"},
+    {"Oclgrind", "", "21.10", "21.11",
+     "is a simulator for debugging, and compares vectors wrongly: it cannot render (unless kernels are built as "
+     "tools/oclgrind.sh "
+     "does)"},
 };
+
+/// The numbers of the first version in a text: "Oclgrind 21.10" has 21 and 10, "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.
+std::vector<int> version_numbers(std::string_view text) {
+  std::vector<int> out;
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (!text.empty() && !digit(text.front())) text.remove_prefix(1);
+  while (!text.empty() && digit(text.front())) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) return out;
+    out.push_back(number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.size() < 2 || text.front() != '.') return out;
+    text.remove_prefix(1);
+  }
+  return out;
+}
+
+bool concerns(const Quirk& quirk, const PlatformFacts& platform) {
+  if (!platform.name.starts_with(quirk.platform)) return false;
+  const std::string_view device_name(quirk.device), from(quirk.from), before(quirk.before);
+  if (device_name.empty() && from.empty()) return true;
+  return std::ranges::any_of(platform.devices, [&](const DeviceFacts& device) {
+    const std::vector<int> version = version_numbers(device.info.driver);
+    return device.info.name.starts_with(device_name) && version >= version_numbers(from) &&
+           (before.empty() || version < version_numbers(before));
+  });
+}
 
 std::string printed(const ChildEnd& end) { return end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said); }
 
@@ -269,15 +326,9 @@ Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes) {
 
 Findings known_quirks(const std::vector<PlatformFacts>& platforms) {
   Findings out;
-  for (const Quirk& quirk : quirks) {
-    const bool here = std::any_of(platforms.begin(), platforms.end(), [&](const PlatformFacts& platform) {
-      if (!platform.name.starts_with(quirk.platform)) return false;
-      return quirk.driver[0] == '\0' ||
-             std::any_of(platform.devices.begin(), platform.devices.end(),
-                         [&](const DeviceFacts& device) { return device.info.driver == quirk.driver; });
-    });
-    if (here) out.push_back({State::note, quirk.platform, quirk.what, ""});
-  }
+  for (const Quirk& quirk : quirks)
+    if (std::ranges::any_of(platforms, [&](const PlatformFacts& platform) { return concerns(quirk, platform); }))
+      out.push_back({State::note, quirk.platform, quirk.what, ""});
   return out;
 }
 

@@ -5,7 +5,7 @@
 #ifndef CAPLET_MATH_AHEAD_CL
 #define CAPLET_MATH_AHEAD_CL
 
-#if CAPLET_REAL_WIDTH == 8 && defined(__has_builtin)
+#if CAPLET_REAL_WIDTH == 8 && defined(__has_builtin) && !defined(CAPLET_PORTABLE)
 #if __has_builtin(__builtin_prefetch)
 #define CAPLET_PREFETCH 1
 #endif

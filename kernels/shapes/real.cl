@@ -30,7 +30,7 @@ static inline real_mask lanes_filled(__global const float* row, uint lane) {
 static inline void real_store(real x, float* out) { vstore8(x, 0, out); }
 static inline void mask_store(real_mask m, int* out) { vstore8(m, 0, out); }
 
-#if defined(__has_builtin)
+#if defined(__has_builtin) && !defined(CAPLET_PORTABLE)
 #if __has_builtin(__builtin_ia32_movmskps256) && defined(__AVX__)
 #define CAPLET_MOVMSK 1
 #endif

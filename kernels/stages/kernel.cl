@@ -3,11 +3,10 @@
 //
 // The entry point of a stage: its groups' buffers are the arguments (arguments.cl). A work-item does one item, or its share of them.
 
-// Work-items compute with float8 where eight primitives are tested at once: compilers that run work-items side by side must not do so
-// on top of it. Without this hint Intel's of 2025 and later are slow, and wrong where functions are called (docs/drivers.md).
-#if CAPLET_REAL_WIDTH == 8
+// Work-items compute with float8 where eight primitives are tested at once, and go ways of their own where they are tested one by one:
+// compilers must not put several of them into one vector. Without this hint Intel's of 2025 and later do, which is slow in both
+// encodings, and wrong where functions are called (docs/drivers.md).
 __attribute__((vec_type_hint(float8)))
-#endif
 __kernel void STAGE_NAME(
 #define GROUP_BEGIN(Type, group)
 #define BUFFER(name, type, access) access(type) name,

@@ -13,6 +13,7 @@
 #define CAPLET_EIGHT_IS_FAST 1
 #endif
 #endif
+
 // Entry m: the numbers of the bits set in m from the highest down, a byte each, the highest in the least significant byte.
 __constant ulong set_bits[256] = {
     0x0UL, 0x0UL, 0x1UL, 0x1UL, 0x2UL, 0x2UL, 0x102UL, 0x102UL, 0x3UL, 0x3UL, 0x103UL, 0x103UL, 0x203UL, 0x203UL, 0x10203UL,

@@ -21,7 +21,7 @@ typedef struct {
   uint material;
 } CrossingSurface;
 
-__kernel void list_all(SCENE_PARAMETERS, __global const RayRecord* rays, uint capacity, __global HitRecord* closest,
+__attribute__((vec_type_hint(float8))) __kernel void list_all(SCENE_PARAMETERS, __global const RayRecord* rays, uint capacity, __global HitRecord* closest,
                        __global int* any, __global uint* counts, __global HitRecord* sorted, __global CrossingSurface* found,
                        uint ray_count) {
   const uint i = (uint)get_global_id(0);

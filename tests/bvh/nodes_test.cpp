@@ -26,7 +26,7 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 
 const char* const kernel = R"(
 #include "trace/trace.cl"
-__kernel void meet(__global const float* nodes, __global const RayRecord* rays, uint count, __global uint* out) {
+__attribute__((vec_type_hint(float8))) __kernel void meet(__global const float* nodes, __global const RayRecord* rays, uint count, __global uint* out) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const RayRecord r = rays[i];
@@ -34,7 +34,7 @@ __kernel void meet(__global const float* nodes, __global const RayRecord* rays, 
   float enter[8];
   out[i] = node_hits(nodes + (size_t)i * CAPLET_NODE_FLOATS, &slab, r.t_min, MAXFLOAT, enter);
 }
-__kernel void descend(__global const float* nodes, uint depth, uint spare, __global uint* out) {
+__attribute__((vec_type_hint(float8))) __kernel void descend(__global const float* nodes, uint depth, uint spare, __global uint* out) {
   ulong stack[CAPLET_STACK_SIZE + 16];
   for (int i = 0; i < CAPLET_STACK_SIZE + 16; ++i) stack[i] = ~0ul;
   const SlabRay slab = slab_ray((float3)(0.0f, 0.0f, 0.0f), (float3)(1.0f, 0.0f, 0.0f));

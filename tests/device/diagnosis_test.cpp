@@ -18,6 +18,7 @@ namespace caplet::doctor {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -269,18 +270,63 @@ TEST(Devices, WhatTheyMayLack) {
   EXPECT_EQ(judge_device(good, least).at(1).state, State::note);
 }
 
-TEST(Quirks, OfTheirPlatformsAndVersionsAlone) {
-  PlatformFacts platform;
-  platform.name = "Some other platform";
-  EXPECT_THAT(known_quirks({platform}), IsEmpty());
-  platform.name = "Portable Computing Language";
-  EXPECT_EQ(known_quirks({platform}).size(), 2u);
-  platform.name = "Oclgrind";
-  platform.devices.resize(1);
-  platform.devices[0].info.driver = "Oclgrind 22.0";
-  EXPECT_THAT(known_quirks({platform}), IsEmpty());
-  platform.devices[0].info.driver = "Oclgrind 21.10";
-  EXPECT_EQ(known_quirks({platform}).size(), 1u);
+/// What is known of a platform with one device, as the drivers themselves say.
+std::vector<std::string> known_of(const std::string& platform, const std::string& device, const std::string& driver) {
+  PlatformFacts facts;
+  facts.name = platform;
+  facts.devices.resize(1);
+  facts.devices[0].info.name = device;
+  facts.devices[0].info.driver = driver;
+  std::vector<std::string> out;
+  for (const Finding& finding : known_quirks({facts})) {
+    EXPECT_EQ(finding.state, State::note);
+    out.push_back(finding.what);
+  }
+  return out;
+}
+
+TEST(Quirks, OfPoclAndItsCompiler) {
+  const char* name = "Portable Computing Language";
+  const auto launch = HasSubstr("compiles a kernel when it is launched"), keeps = HasSubstr("keeps compiled kernels itself");
+  EXPECT_THAT(known_of(name, "pthread-skylake-avx512-Intel(R) Xeon(R) Processor", "3.1+debian"), ElementsAre(launch, keeps));
+  EXPECT_THAT(known_of(name, "cpu-haswell-Intel(R) Xeon(R) Processor", "7.1+debian"), ElementsAre(launch, keeps));
+  EXPECT_THAT(known_of(name, "cpu-haswell-Intel(R) Xeon(R) Processor", "6.0+debian"),
+              ElementsAre(launch, keeps, HasSubstr("did not reach a fixpoint")));
+}
+
+TEST(Quirks, OfIntelsCpuRuntime) {
+  const char *name = "Intel(R) OpenCL", *device = "Intel(R) Xeon(R) Processor";
+  const auto vectors = HasSubstr("several work-items into one vector");
+  EXPECT_THAT(known_of(name, device, "2026.22.10.0.01_160000"), ElementsAre(vectors));
+  EXPECT_THAT(known_of(name, device, "2026.20.3.0.19_160000.xmain-hotfix"), ElementsAre(vectors));
+  EXPECT_THAT(known_of(name, device, "2024.18.12.0.05_160000"), ElementsAre(vectors));
+  EXPECT_THAT(known_of(name, device, "2024.18.7.0.11_160000"), IsEmpty());
+  EXPECT_THAT(known_of(name, device, "2024.17.3.0.08_160000"), IsEmpty());
+  EXPECT_THAT(known_of(name, device, "2024.16.1.0.27_160000.xmain-hotfix"), ElementsAre(HasSubstr("crashed on earlier kernels")));
+  // The GPU's platform begins like the CPU's.
+  EXPECT_THAT(known_of("Intel(R) OpenCL Graphics", "Intel(R) UHD Graphics 770", "24.35.30872.22"), IsEmpty());
+}
+
+TEST(Quirks, OfMesasRusticl) {
+  const auto enable = HasSubstr("RUSTICL_ENABLE"), zero = HasSubstr("sign");
+  EXPECT_THAT(known_of("rusticl", "llvmpipe (LLVM 15.0.6, 256 bits)", "22.3.6"),
+              ElementsAre(enable, HasSubstr("a work-item in each lane"), zero));
+  EXPECT_THAT(known_of("rusticl", "AMD Radeon RX 6800 (radeonsi, navi21)", "25.0.7-2"), ElementsAre(enable, zero));
+  PlatformFacts without_devices;
+  without_devices.name = "rusticl";
+  EXPECT_THAT(known_quirks({without_devices}).at(0).what, enable);
+}
+
+TEST(Quirks, OfOclgrind) {
+  EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 21.10"), ElementsAre(HasSubstr("compares vectors wrongly")));
+  EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 21.1"), IsEmpty());
+  EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 22.0"), IsEmpty());
+}
+
+TEST(Quirks, OfNoOthers) {
+  EXPECT_THAT(known_of("Some other platform", "Intel(R) Xeon(R) Processor", "2026.22"), IsEmpty());
+  EXPECT_THAT(known_of("Intel(R) OpenCL", "Intel(R) Xeon(R) Processor", ""), IsEmpty());
+  EXPECT_THAT(known_of("Intel(R) OpenCL", "Intel(R) Xeon(R) Processor", "99999999999999999999.1"), IsEmpty());
 }
 
 }  // namespace

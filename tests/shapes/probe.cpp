@@ -28,7 +28,7 @@ typedef struct {
   uint geometry, primitive, surface, light, leaving, any, pad0, pad1;
 } SurfaceOut;
 
-__kernel void probe_trace(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+__attribute__((vec_type_hint(float8))) __kernel void probe_trace(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
                           __global const GeometryRecord* geometries, __global const uint* primitive_geometry,
                           __global const uint* mesh_indices, __global const float* mesh_uvs, __global const uint* roots,
                           __global const RayRecord* rays, __global HitRecord* hits, __global SurfaceOut* surfaces, uint count) {
@@ -57,7 +57,7 @@ __kernel void probe_trace(__global const float* nodes, __global const float* lea
   surfaces[i].leaving = (uint)s.leaving;
 }
 
-__kernel void probe_list(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+__attribute__((vec_type_hint(float8))) __kernel void probe_list(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
                          __global const uint* roots, __global const RayRecord* rays, __global HitRecord* hits, __global int* any,
                          __global uint* counts, __global HitRecord* sorted, uint capacity, uint count) {
   const uint i = (uint)get_global_id(0);
@@ -69,7 +69,7 @@ __kernel void probe_list(__global const float* nodes, __global const float* leav
   counts[i] = trace_list(&tree, roots[i], ray, capacity, sorted + (size_t)i * capacity);
 }
 
-__kernel void probe_leave(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
+__attribute__((vec_type_hint(float8))) __kernel void probe_leave(__global const float* nodes, __global const float* leaves, __global const InstanceRecord* instances,
                           __global const uint* roots, __global const SurfaceOut* surfaces, __global const float* directions,
                           __global float* origins, __global HitRecord* hits, uint count) {
   const uint i = (uint)get_global_id(0);

@@ -29,7 +29,7 @@ typedef struct {
   uint instance;
 } SceneHit;
 
-__kernel void scene_trace(SCENE_PARAMETERS, __global const RayRecord* rays, __global SceneHit* hits, uint count) {
+__attribute__((vec_type_hint(float8))) __kernel void scene_trace(SCENE_PARAMETERS, __global const RayRecord* rays, __global SceneHit* hits, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   SCENE_STRUCTS;
@@ -54,7 +54,7 @@ __kernel void scene_trace(SCENE_PARAMETERS, __global const RayRecord* rays, __gl
   out->instance = hit.instance;
 }
 
-__kernel void scene_walk(SCENE_PARAMETERS, __global const RayRecord* rays, __global float4* steps, __global uint* counts, uint most,
+__attribute__((vec_type_hint(float8))) __kernel void scene_walk(SCENE_PARAMETERS, __global const RayRecord* rays, __global float4* steps, __global uint* counts, uint most,
                          uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
