@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "lower/packed_nodes.h"
+
 namespace caplet::bench {
 namespace {
 
@@ -18,7 +20,7 @@ typedef struct {
   __global HitRecord* restrict hits;
   __global int* restrict any;
 } Stage;
-static RayRecord traced_ray(const Stage* g, uint item) { return g->rays[item]; }
+static __global const RayRecord* traced_ray_at(const Stage* g, uint item) { return g->rays + item; }
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   if (TRACED_ANY) g->any[item] = hit->slot != CAPLET_NONE;
   else g->hits[item] = *hit;
@@ -50,7 +52,7 @@ DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& o
 
 void DeviceTracer::upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances,
                           uint root) {
-  nodes_ = Buffer<float>(device_, nodes);
+  nodes_ = shares_ ? Buffer<float>(device_, nodes) : Buffer<float>(device_, std::span<const float>(packed_nodes(nodes)));
   leaves_ = Buffer<float>(device_, leaves);
   instances_ = Buffer<InstanceRecord>(device_, instances);
   root_ = root;

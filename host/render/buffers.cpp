@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "base/check.h"
+#include "lower/packed_nodes.h"
+
 namespace caplet {
 
 namespace {
@@ -51,17 +54,45 @@ std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRa
   return bytes;
 }
 
+/// The same for nodes that are sent packed.
+std::uint64_t send_packed(const Device& device, std::span<const float> nodes, const ChangedRanges& changed, bool all,
+                          Buffer<float>& to) {
+  constexpr std::size_t from_each = CAPLET_NODE_FLOATS, to_each = CAPLET_PACKED_NODE_FLOATS;
+  if (all || nodes.size() / from_each * to_each > to.size()) return send<float>(device, packed_nodes(nodes), {}, true, to);
+  std::uint64_t bytes = 0;
+  for (const ChangedRange& range : changed.joined(joined_bytes / sizeof(float))) {
+    const std::size_t first = range.begin / from_each, end = (range.end + from_each - 1) / from_each;
+    const std::vector<float> packed = packed_nodes(nodes.subspan(first * from_each, (end - first) * from_each));
+    to.RawBuffer::write(packed.data(), first * to_each * sizeof(float), packed.size() * sizeof(float));
+    bytes += packed.size() * sizeof(float);
+  }
+  return bytes;
+}
+
+/// What devices are sent of an array of a scene: itself, but of nodes that are to be packed.
+template <class T>
+const T& sent_of(const T& values, const FlatScene&, const std::vector<float>&) {
+  return values;
+}
+const std::vector<float>& sent_of(const std::vector<float>& values, const FlatScene& flat, const std::vector<float>& packed) {
+  return &values == &flat.nodes && !packed.empty() ? packed : values;
+}
+
 }  // namespace
 
 #define GROUP_BEGIN(Type, group) \
   {                              \
     auto& buffers = this->group;
-#define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(flat.name));
+#define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(sent_of(flat.name, flat, packed)));
 #define GROUP_END(Type) }
-SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat){
-    SCENE_GROUPS} SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat) {
-  VIEW_GROUPS
+SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
+    : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
+  const std::vector<float> packed = encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
+  SCENE_GROUPS
 }
+#undef BUFFER
+#define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(flat.name));
+SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat) { VIEW_GROUPS }
 #undef BUFFER
 
 // Every buffer of the paths has a place for each, but for these.
@@ -78,7 +109,11 @@ PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t so
 
 std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, const SceneChanges& changes) {
   std::uint64_t bytes = 0;
-#define BUFFER(name, type, access) bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
+  const bool packs = encoding_ == Encoding::single;
+  if (packs) bytes += send_packed(device, flat.nodes, changes.nodes, changes.all, tree.nodes);
+#define BUFFER(name, type, access)                                                      \
+  if (!packs || static_cast<const void*>(&flat.name) != static_cast<const void*>(&flat.nodes)) \
+    bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
   SCENE_GROUPS
 #undef BUFFER
   return bytes;

@@ -47,10 +47,14 @@ struct Bindings {
 struct SceneBuffers {
   SCENE_GROUPS
 
-  SceneBuffers(const Device& device, const FlatScene& scene);
+  /// `encoding`: what the nodes are for; automatic: the device's.
+  SceneBuffers(const Device& device, const FlatScene& scene, Encoding encoding = Encoding::automatic);
   /// Sends what has changed, and returns its bytes. Buffers that have grown are made anew, with some room to grow on.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
   void bind(Bindings& bindings) const;
+
+ private:
+  Encoding encoding_;
 };
 
 /// The groups of a view.

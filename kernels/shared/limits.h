@@ -15,6 +15,7 @@
 // The tree.
 #define CAPLET_WIDTH 8
 #define CAPLET_NODE_FLOATS 56     // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
+#define CAPLET_PACKED_NODE_FLOATS 24  // the same in bytes, for rays that are traced one at a time (kernels/trace/packed.cl)
 #define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
 #define CAPLET_CSG_MAX_OPERANDS 32

@@ -2,7 +2,9 @@
 // Copyright Caplet authors
 //
 // Shadow rays: what reaches the light adds its radiance.
-static RayRecord traced_ray(const Stage* g, uint item) { return g->shadows.path_shadow[g->shadows.queue_shadow[item]]; }
+static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
+  return g->shadows.path_shadow + g->shadows.queue_shadow[item];
+}
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const uint path = g->shadows.queue_shadow[item];
   if (hit->slot == CAPLET_NONE) g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];

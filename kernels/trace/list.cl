@@ -80,6 +80,22 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
   }
 }
 
+// Of a leaf block in the tree; not one of instances.
+static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, uint row, uint instance) {
+  __global const float* block = list->tree->leaves + (size_t)row * 8;
+  if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
+    list_add_csg(list, ray, block, row * 8, instance);
+  } else {
+    for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
+      list_add_spans(list, kind, ray, block, lane, row * 8 + lane, instance);
+  }
+}
+
+// How far the ray still counts: once it is known that some are left out, what lies behind the last one kept cannot matter.
+static inline float list_end(const HitList* list, float t_end) {
+  return list->more ? fmin(t_end, list->sorted[list->capacity - 1].t) : t_end;
+}
+
 // All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order (hit_is_before).
 // Writes the nearest `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. Neither the tree nor the order of
 // traversal can show.
@@ -96,11 +112,24 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
   list.more = 0;
   list.t_begin = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
   list.t_end = ray.t_max;
+  float t_best = fmin(ray.t_max, MAXFLOAT);
+#if CAPLET_REAL_WIDTH == 1
+  uint2 stack[CAPLET_WALK_ENTRIES];
+  Walk walk;
+  ShapeRay shape;
+  if (!walk_begin(tree, &ray, &walk, &shape, t_best)) return 0;
+  for (int visit = (int)root;; visit = -1) {
+    const int leaf = walk_next(tree, root, &ray, &walk, &shape, stack, t_best, visit);
+    if (leaf == CAPLET_WALK_ENDS) return list.more ? capacity + 1 : list.count;
+    list_add_leaf(&list, &shape, CAPLET_LEAF_KIND(leaf), CAPLET_LEAF_ROW(leaf), walk.instance);
+    if (list.more && capacity == 0) return 1;
+    t_best = list_end(&list, t_best);
+  }
+#else
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
   if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < ray.t_max)) return 0;
 
-  float t_best = fmin(ray.t_max, MAXFLOAT);
   uint instance = CAPLET_NONE;
   ulong stack[CAPLET_STACK_SIZE];
   int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
@@ -113,24 +142,17 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
-      __global const float* block = leaves + (size_t)row * 8;
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
-        instance = ((__global const uint*)block)[0];
+        instance = ((__global const uint*)leaves)[(size_t)row * 8];
         __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
         current = (int)placed->root;
         if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
-      } else if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
-        list_add_csg(&list, &shape, block, row * 8, instance);
       } else {
-        for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
-          list_add_spans(&list, kind, &shape, block, lane, row * 8 + lane, instance);
+        list_add_leaf(&list, &shape, kind, row, instance);
       }
-      // Once it is known that some are left out, what lies behind the last one kept cannot matter.
-      if (list.more) {
-        if (capacity == 0) return 1;
-        t_best = fmin(t_best, sorted[capacity - 1].t);
-      }
+      if (list.more && capacity == 0) return 1;
+      t_best = list_end(&list, t_best);
     }
     while (!pop_entry(stack, &top, floor, t_best, &current)) {
       if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) return list.more ? capacity + 1 : list.count;
@@ -140,6 +162,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       shape = shape_ray(world_o, world_d, t_min, leaves);
     }
   }
+#endif
 }
 
 // In the whole scene.

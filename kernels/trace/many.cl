@@ -3,7 +3,7 @@
 //
 // How a stage traces its rays: one a work-item, or, where eight lanes are tested at a time, an equal share of them a work-item, which
 // goes through the tree with many at once if the device is good at it. The including file has defined
-//   RayRecord traced_ray(const Stage* g, uint item)
+//   __global const RayRecord* traced_ray_at(const Stage* g, uint item)
 //   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
 //   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
 //   TRACED_ANY                       // 1: any hit will do
@@ -12,10 +12,14 @@
 #ifndef CAPLET_TRACE_MANY_CL
 #define CAPLET_TRACE_MANY_CL
 
+#if CAPLET_REAL_WIDTH != 8
+#define CAPLET_RAYS_ARE_GLOBAL
+#endif
 #include "trace/eight.cl"
 #include "trace/trace.cl"
 
 #if CAPLET_REAL_WIDTH == 8
+static inline RayRecord traced_ray(const Stage* g, uint item) { return *traced_ray_at(g, item); }
 // Work-items take shares of their rays (kernel.cl).
 #define STAGE_TAKES_SHARES
 #if defined(CAPLET_ONE_BY_ONE) || (!defined(CAPLET_EIGHT_IS_FAST) && !defined(CAPLET_PORTABLE))
@@ -36,7 +40,7 @@ static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, be
 #endif
 #else
 static void stage_item(const Stage* g, uint item) {
-  const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, item), TRACED_ANY);
+  const HitRecord hit = trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ANY);
   traced_hit(g, item, &hit);
 }
 #endif

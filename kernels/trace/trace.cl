@@ -2,13 +2,13 @@
 // Copyright Caplet authors
 //
 // Traversal of the 8-wide tree, closest and any hit from one text; all hits: list.cl.
-// One work-item is one ray. CAPLET_REAL_WIDTH 8: eight boxes and eight primitives at a time; 1: one after the other.
+// One work-item is one ray. CAPLET_REAL_WIDTH 8: eight boxes and eight primitives at a time, here; 1: one after the other, single.cl.
 #ifndef CAPLET_TRACE_TRACE_CL
 #define CAPLET_TRACE_TRACE_CL
 
-#include "groups.cl"
-#include "math/vector.cl"
-#include "shapes/shapes.cl"
+#include "trace/hits.cl"
+
+#if CAPLET_REAL_WIDTH == 8
 
 // A visited node leaves at most seven of its children on the stack, in both levels of trees, and has all eight there while it orders
 // them; the host checks the depth.
@@ -57,7 +57,6 @@ static inline SlabRay slab_ray(float3 o, float3 d) {
   return r;
 }
 
-#if CAPLET_REAL_WIDTH == 8
 // Lanes of the children whose box the ray meets within [t_min, t_best], and where it enters them.
 static inline int8 boxes_met(__global const float* node, const SlabRay* s, float t_min, float t_best, float8* enter) {
   const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
@@ -70,38 +69,17 @@ static inline int8 boxes_met(__global const float* node, const SlabRay* s, float
   const float8 leave = real_min(real_min(fx, fy), real_min(fz, real_of(t_best)));
   return *enter <= leave;
 }
-#endif
 
 // The same as bits.
 static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
-#if CAPLET_REAL_WIDTH == 8
   float8 near;
   const int8 met = boxes_met(node, s, t_min, t_best, &near);
   vstore8(near, 0, enter);
   return mask_bits(met);
-#else
-  uint bits = 0;
-  for (uint i = 0; i < CAPLET_WIDTH; i++) {
-    const float met = fmax(fmax(node[s->near_x + i] * s->near_ix - s->near_ox, node[s->near_y + i] * s->near_iy - s->near_oy),
-                           node[s->near_z + i] * s->near_iz - s->near_oz);
-    const float near = met > t_min ? met : t_min;  // fmax may make -0 of -0 and 0
-    const float far = fmin(fmin(node[s->far_x + i] * s->far_ix - s->far_ox, node[s->far_y + i] * s->far_iy - s->far_oy),
-                           fmin(node[s->far_z + i] * s->far_iz - s->far_oz, t_best));
-    enter[i] = near;
-    bits |= (near <= far ? 1u : 0u) << i;
-  }
-  return bits;
-#endif
 }
 
 // Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
 static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
-
-// With zero, infinite and NaN rays traversal would follow children that do not exist.
-static inline int line_is_valid(float3 o, float3 d) {
-  const float dd = dot(d, d), oo = fabs(o.x) + fabs(o.y) + fabs(o.z);
-  return dd > 0.0f && dd < INFINITY && oo < INFINITY;
-}
 
 // The child of a node that the ray enters first goes to `next`, its others in the way on the stack, nearest on top. 0: none is met.
 static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min, float t_best, ulong* stack, int* stack_top,
@@ -185,74 +163,6 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
   return line_is_valid(o, d);
 }
 
-// Of two hits at the same t the one that counts: of the world's shapes before those of the scene's instances, these in their order, then
-// of the smaller primitive. Slots and trees that were built otherwise, or moved, cannot show. Read at ties alone.
-static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot, uint other_instance) {
-  if (CAPLET_HAS_SHAPE(shape_instance) && instance != other_instance) {
-    // Trees of world shapes have no object number: CAPLET_NONE + 1 is 0.
-    const uint object = instance == CAPLET_NONE ? 0u : tree->instances[instance].object + 1u;
-    const uint other = other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
-    if (object != other) return object < other;
-  }
-  const uint primitive = as_uint(tree->leaves[slot]), other_primitive = as_uint(tree->leaves[other_slot]);
-  if (primitive != other_primitive) return primitive < other_primitive;
-  return instance < other_instance;
-}
-
-// The nearest hit that is found so far, and where there is none, how far a ray goes: a hit at exactly its end is none.
-typedef struct {
-  float t;
-  uint slot, instance;
-  int side, found;
-} NearestHit;
-
-static inline NearestHit nothing_before(float t_max) {
-  const NearestHit nothing = {fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 0, 0};
-  return nothing;
-}
-
-static inline HitRecord hit_record(const NearestHit* nearest) {
-  HitRecord hit = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
-  if (nearest->found) {
-    hit.t = nearest->t;
-    hit.slot = nearest->slot;
-    hit.instance = nearest->instance;
-    hit.surface = (uint)nearest->side;
-  }
-  return hit;
-}
-
-// What the ray hits of the lanes from `lane` on of the leaf block at `row`, whose shapes are of one kind. `instance`: that the ray is in.
-static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
-  __global const float* block = tree->leaves + (size_t)row * 8;
-  real t;
-  real_mask side;
-  real_mask ok = shape_hit(kind, shape, block, lane, &t, &side);
-  ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
-  // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
-  if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
-  if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
-  uint bits = mask_bits(ok);
-  if (bits == 0) return;
-  float ts[CAPLET_REAL_WIDTH];
-  real_store(t, ts);
-  int sides[CAPLET_REAL_WIDTH];
-  mask_store(side, sides);
-  do {
-    const uint i = lowest_bit(bits);
-    bits &= bits - 1;
-    const uint slot = row * 8 + lane + i;
-    if (ts[i] < nearest->t ||
-        (ts[i] == nearest->t && nearest->found && tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
-      nearest->t = ts[i];
-      nearest->slot = slot;
-      nearest->instance = instance;
-      nearest->side = sides[i];
-      nearest->found = 1;
-    }
-  } while (bits != 0);
-}
-
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
 // traversal can show. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
@@ -297,6 +207,19 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   }
 }
 
+#else
+
+#include "trace/single.cl"
+
+#endif
+
+#ifndef CAPLET_RAYS_ARE_GLOBAL
+#if CAPLET_REAL_WIDTH == 1
+static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
+  return trace_ray_at(tree, root, &ray, any);
+}
+#endif
+
 // The nearest hit with t in (t_min, t_max).
 static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
   return trace_ray(tree, tree->world->root, ray, 0);
@@ -306,5 +229,6 @@ static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
 static inline int trace_any(const Tree* tree, RayRecord ray) {
   return trace_ray(tree, tree->world->root, ray, 1).slot != CAPLET_NONE;
 }
+#endif
 
 #endif

@@ -51,13 +51,14 @@ std::uint32_t surface_number(const HitRecord& hit) { return hit.surface & CAPLET
 
 ListTracer::ListTracer(const Device& device, int width)
     : device_(device),
+      width_(width),
       kernel_(Program::from_source(device, "list test", flatten_kernels(std::string(scene_parameters) + kernel_text),
                                    fmt::format("-DCAPLET_REAL_WIDTH={}", width))
                   .kernel("list_all")) {}
 
 std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const RayRecord> rays, std::uint32_t capacity) const {
   const std::size_t places = rays.size() * capacity;
-  const SceneOnDevice buffers(device_, scene);
+  const SceneOnDevice buffers(device_, scene, width_);
   const Buffer<RayRecord> ray_buffer(device_, rays);
   const Buffer<HitRecord> closest(device_, rays.size()), sorted(device_, places);
   const Buffer<int> any(device_, rays.size());

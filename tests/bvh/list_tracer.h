@@ -42,6 +42,7 @@ class ListTracer {
 
  private:
   Device device_;
+  int width_;
   cl::Kernel kernel_;
 };
 

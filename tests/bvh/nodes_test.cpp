@@ -3,6 +3,7 @@
 //
 // The traversal's stack against the deepest trees that the host may hand it: 2 x CAPLET_TREE_DEPTH_MAX nodes, all eight children
 // of each met by the ray, the one that leads on first.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "lower/packed_nodes.h"
 #include "shared/kinds.h"
 #include "shared/records.h"
 #include "support/test_device.h"
@@ -30,10 +32,18 @@ __attribute__((vec_type_hint(float8))) __kernel void meet(__global const float* 
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const RayRecord r = rays[i];
+#if CAPLET_REAL_WIDTH == 8
   const SlabRay slab = slab_ray((float3)(r.ox, r.oy, r.oz), (float3)(r.dx, r.dy, r.dz));
   float enter[8];
   out[i] = node_hits(nodes + (size_t)i * CAPLET_NODE_FLOATS, &slab, r.t_min, MAXFLOAT, enter);
+#else
+  const BoxRay box = box_ray((float3)(r.ox, r.oy, r.oz), (float3)(r.dx, r.dy, r.dz));
+  const uint bits = packed_node_hits(nodes, i, &box, r.ox, r.oy, r.oz, r.t_min, MAXFLOAT);
+  out[i] = 0;
+  for (uint child = 0; child < CAPLET_WIDTH; ++child) out[i] |= (bits >> (child ^ box.octant) & 1u) << child;
+#endif
 }
+#if CAPLET_REAL_WIDTH == 8
 __attribute__((vec_type_hint(float8))) __kernel void descend(__global const float* nodes, uint depth, uint spare, __global uint* out) {
   ulong stack[CAPLET_STACK_SIZE + 16];
   for (int i = 0; i < CAPLET_STACK_SIZE + 16; ++i) stack[i] = ~0ul;
@@ -48,6 +58,7 @@ __attribute__((vec_type_hint(float8))) __kernel void descend(__global const floa
   for (uint i = 0; i < spare; ++i)
     if (stack[CAPLET_STACK_SIZE + i] != ~0ul) out[1] += 1;
 }
+#endif
 )";
 
 /// The deepest tree that the host may hand over, all eight children of each node met by the ray, the one that leads on first.
@@ -104,10 +115,12 @@ TEST(Slabs, BoxesThatARayMeetsAreMet) {
       }
     }
   }
-  const Buffer<float> boxes(device, std::span<const float>(nodes));
   const Buffer<RayRecord> in(device, std::span<const RayRecord>(rays));
-  for (const char* width : {"-DCAPLET_REAL_WIDTH=8", "-DCAPLET_REAL_WIDTH=1"}) {
-    const Program program = Program::from_source(device, "nodes_test", flatten_kernels(kernel), width);
+  for (const int width : {8, 1}) {
+    const std::vector<float> sent = width == 8 ? nodes : packed_nodes(nodes);
+    const Buffer<float> boxes(device, std::span<const float>(sent));
+    const Program program =
+        Program::from_source(device, "nodes_test", flatten_kernels(kernel), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
     Buffer<cl_uint> out(device, count);
     cl::Kernel meet = program.kernel("meet");
     set_arguments(device, meet, boxes, in, cl_uint(count), out);
@@ -126,15 +139,13 @@ TEST(Stack, HoldsWhatTheDeepestTreesLeave) {
   const Device& device = test_device();
   const std::vector<float> tree = deepest_tree();
   const Buffer<float> nodes(device, std::span<const float>(tree));
-  for (const char* width : {"-DCAPLET_REAL_WIDTH=8", "-DCAPLET_REAL_WIDTH=1"}) {
-    const Program program = Program::from_source(device, "nodes_test", flatten_kernels(kernel), width);
-    Buffer<cl_uint> out(device, std::span<const cl_uint>(std::vector<cl_uint>(3, 0)));
-    cl::Kernel descend = program.kernel("descend");
-    set_arguments(device, descend, nodes, cl_uint(CAPLET_TREE_DEPTH_MAX), cl_uint(spare), out);
-    launch(device, descend, 1, 1);
-    // Left behind at each of the nodes: seven; written beyond the stack: nothing; nodes without a child that is met: none.
-    EXPECT_THAT(out.read(), testing::ElementsAre(2 * 7 * CAPLET_TREE_DEPTH_MAX, 0, 0)) << width;
-  }
+  const Program program = Program::from_source(device, "nodes_test", flatten_kernels(kernel), "-DCAPLET_REAL_WIDTH=8");
+  Buffer<cl_uint> out(device, std::span<const cl_uint>(std::vector<cl_uint>(3, 0)));
+  cl::Kernel descend = program.kernel("descend");
+  set_arguments(device, descend, nodes, cl_uint(CAPLET_TREE_DEPTH_MAX), cl_uint(spare), out);
+  launch(device, descend, 1, 1);
+  // Left behind at each of the nodes: seven; written beyond the stack: nothing; nodes without a child that is met: none.
+  EXPECT_THAT(out.read(), testing::ElementsAre(2 * 7 * CAPLET_TREE_DEPTH_MAX, 0, 0));
 }
 
 }  // namespace

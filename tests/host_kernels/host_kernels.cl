@@ -20,6 +20,7 @@ typedef struct {
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+  __global const float* packed_nodes;  // of the tree, for width 1
 } HostGroups;
 
 #include "host_kernels.h"
@@ -28,19 +29,27 @@ typedef struct {
 #define HOST_NAME(name, width) HOST_JOIN(name, width)
 #define HOST(name) HOST_NAME(name, CAPLET_REAL_WIDTH)
 
+static Tree traced_tree(const HostGroups* g) {
+  Tree tree = g->tree;
+  if (CAPLET_REAL_WIDTH == 1) tree.nodes = g->packed_nodes;
+  return tree;
+}
 static float3 three(const float* p) { return (float3)(p[0], p[1], p[2]); }
 static float4 four(const float* p) { return (float4)(p[0], p[1], p[2], p[3]); }
 
 HitRecord HOST(trace_closest)(const HostGroups* g, const RayRecord* ray) {
-  return trace_closest(&g->tree, *ray);
+  const Tree tree = traced_tree(g);
+  return trace_closest(&tree, *ray);
 }
 
 int HOST(trace_any)(const HostGroups* g, const RayRecord* ray) {
-  return trace_any(&g->tree, *ray);
+  const Tree tree = traced_tree(g);
+  return trace_any(&tree, *ray);
 }
 
 uint HOST(trace_all)(const HostGroups* g, const RayRecord* ray, uint capacity, __global HitRecord* sorted) {
-  return trace_all(&g->tree, *ray, capacity, sorted);
+  const Tree tree = traced_tree(g);
+  return trace_all(&tree, *ray, capacity, sorted);
 }
 
 void HOST(surface_at)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, HostSurface* out) {

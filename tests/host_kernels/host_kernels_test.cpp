@@ -45,6 +45,7 @@ __kernel void answers(
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+      nodes
   };
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -74,10 +75,11 @@ Program device_program(int width) {
   return Program::from_source(test_device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
 }
 
-std::vector<HostAnswer> ask_device(Program& program, const LoweredModel& model, const std::vector<HostQuestion>& questions) {
+std::vector<HostAnswer> ask_device(Program& program, int width, const LoweredModel& model,
+                                   const std::vector<HostQuestion>& questions) {
   cl::Kernel kernel = program.kernel("answers");
   cl_uint index = 0;
-  const SceneBuffers scene(test_device(), model.scene);
+  const SceneBuffers scene(test_device(), model.scene, width == 1 ? Encoding::single : Encoding::wide);
   const SensorBuffers view(test_device(), model.view);
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
 #define GROUP_END(Type) }
@@ -223,7 +225,7 @@ TEST_P(HostKernels, SayWhatTheDeviceSays) {
       if (!scene) continue;
       ++scenes;
       const std::vector<HostQuestion> questions = rays_into(bounds, seed, 400);
-      const std::vector<HostAnswer> there = ask_device(program, *scene, questions);
+      const std::vector<HostAnswer> there = ask_device(program, width, *scene, questions);
       const SceneArrays arrays(*scene);
       for (std::size_t i = 0; i < questions.size(); ++i) {
         HostAnswer host;

@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "host_kernels/scene_arrays.h"
 
+#include "lower/packed_nodes.h"
+
 namespace caplet::test {
 
 namespace {
@@ -18,7 +20,8 @@ const T* first(const T& value) {
 }  // namespace
 
 // A copied vector has no room to spare.
-SceneArrays::SceneArrays(const LoweredModel& model) : model_(model) {
+SceneArrays::SceneArrays(const LoweredModel& model) : model_(model), packed_nodes_(packed_nodes(model.scene.nodes)) {
+  groups_.packed_nodes = packed_nodes_.data();
 #define GROUP_BEGIN(Type, group) \
   {                              \
     auto& arrays = groups_.group;

@@ -24,6 +24,7 @@ class SceneArrays {
 
  private:
   LoweredModel model_;
+  std::vector<float> packed_nodes_;
   HostGroups groups_;
 };
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "faced.h"
+#include "lower/packed_nodes.h"
 #include "shared/kinds.h"
 #include "support/scene_buffers.h"
 
@@ -270,7 +271,7 @@ Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& 
     : Probe(device, width, unplaced(primitives), leaves) {}
 
 Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives, const std::vector<float>& leaves)
-    : device_(device), leaves_(leaves) {
+    : device_(device), width_(width), leaves_(leaves) {
   const Program& program = program_of(device, width);
   trace_ = program.kernel("probe_trace");
   leave_ = program.kernel("probe_leave");
@@ -313,7 +314,7 @@ std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const 
   for (GeometryRecord& geometry : geometries) geometry.flags = flags;
   if (!mesh_uvs.empty())
     for (GeometryRecord& geometry : geometries) geometry.uv_begin = 0;
-  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
   const auto instances = upload(device_, instances_);
   const auto geometry_buffer = upload(device_, geometries);
   const auto primitive_geometry = upload(device_, primitive_geometry_), indices = upload(device_, mesh_indices_),
@@ -336,7 +337,7 @@ std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which, const s
                                 std::uint32_t capacity) const {
   std::vector<std::uint32_t> roots;
   for (const std::uint32_t i : which) roots.push_back(roots_[i]);
-  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_);
   const auto instances = upload(device_, instances_);
   const auto root_buffer = upload(device_, roots);
   const auto ray_buffer = upload(device_, rays);
@@ -366,7 +367,7 @@ std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const st
   for (const Probed& probed : from) surfaces.push_back(probed.surface);
   std::vector<float> flat;
   for (const auto& d : directions) flat.insert(flat.end(), d.begin(), d.end());
-  const auto nodes = upload(device_, nodes_), leaves = upload(device_, leaves_), direction_buffer = upload(device_, flat);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_), direction_buffer = upload(device_, flat);
   const auto instances = upload(device_, instances_);
   const auto root_buffer = upload(device_, roots);
   const auto surface_buffer = upload(device_, surfaces);

@@ -92,6 +92,7 @@ class Probe {
 
  private:
   Device device_;
+  int width_;
   cl::Kernel trace_, leave_, list_;
   std::vector<EncodedTree> trees_;
   std::vector<float> nodes_, leaves_;

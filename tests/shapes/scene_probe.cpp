@@ -111,7 +111,7 @@ cl::Kernel kernel_of(const char* name, int width) {
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
   cl::Kernel kernel = kernel_of("scene_trace", width);
   const Buffer<SceneHit> hits(test_device(), rays.size());
-  const SceneOnDevice buffers(test_device(), scene);
+  const SceneOnDevice buffers(test_device(), scene, width);
   const auto ray_buffer = upload(test_device(), rays);
   buffers.set_arguments(kernel, ray_buffer, hits, static_cast<cl_uint>(rays.size()));
   launch(test_device(), kernel, rays.size(), 16);
@@ -122,7 +122,7 @@ std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& ray
   cl::Kernel kernel = kernel_of("scene_walk", test_width());
   const Buffer<WalkStep> steps(test_device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(test_device(), rays.size());
-  const SceneOnDevice buffers(test_device(), scene);
+  const SceneOnDevice buffers(test_device(), scene, test_width());
   const auto ray_buffer = upload(test_device(), rays);
   buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most), static_cast<cl_uint>(rays.size()));
   launch(test_device(), kernel, rays.size(), 16);

@@ -34,7 +34,9 @@ Buffer<T> upload(const Device& device, const std::vector<T>& values) {
 /// Sets the arguments of a kernel with (SCENE_PARAMETERS, more...). The scene's buffers last as long as this.
 class SceneOnDevice {
  public:
-  SceneOnDevice(const Device& device, const FlatScene& scene) : device_(&device), buffers_(device, scene) {}
+  /// For kernels of this CAPLET_REAL_WIDTH.
+  SceneOnDevice(const Device& device, const FlatScene& scene, int width)
+      : device_(&device), buffers_(device, scene, width == 1 ? Encoding::single : Encoding::wide) {}
 
   template <class... More>
   void set_arguments(cl::Kernel& kernel, const More&... more) const {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What a ray hits of a leaf block, and which of two hits counts.
+#ifndef CAPLET_TRACE_HITS_CL
+#define CAPLET_TRACE_HITS_CL
+
+#include "groups.cl"
+#include "math/vector.cl"
+#include "shapes/shapes.cl"
+
+// With zero, infinite and NaN rays traversal would follow children that do not exist.
+static inline int line_is_valid(float3 o, float3 d) {
+  const float dd = dot(d, d), oo = fabs(o.x) + fabs(o.y) + fabs(o.z);
+  return dd > 0.0f && dd < INFINITY && oo < INFINITY;
+}
+
+// Of two hits at the same t the one that counts: of the world's shapes before those of the scene's instances, these in their order, then
+// of the smaller primitive. Slots and trees that were built otherwise, or moved, cannot show. Read at ties alone.
+static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot, uint other_instance) {
+  if (CAPLET_HAS_SHAPE(shape_instance) && instance != other_instance) {
+    // Trees of world shapes have no object number: CAPLET_NONE + 1 is 0.
+    const uint object = instance == CAPLET_NONE ? 0u : tree->instances[instance].object + 1u;
+    const uint other = other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
+    if (object != other) return object < other;
+  }
+  const uint primitive = as_uint(tree->leaves[slot]), other_primitive = as_uint(tree->leaves[other_slot]);
+  if (primitive != other_primitive) return primitive < other_primitive;
+  return instance < other_instance;
+}
+
+// The nearest hit that is found so far, and where there is none, how far a ray goes: a hit at exactly its end is none.
+typedef struct {
+  float t;
+  uint slot, instance;
+  int side, found;
+} NearestHit;
+
+static inline NearestHit nothing_before(float t_max) {
+  const NearestHit nothing = {fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 0, 0};
+  return nothing;
+}
+
+static inline HitRecord hit_record(const NearestHit* nearest) {
+  HitRecord hit = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
+  if (nearest->found) {
+    hit.t = nearest->t;
+    hit.slot = nearest->slot;
+    hit.instance = nearest->instance;
+    hit.surface = (uint)nearest->side;
+  }
+  return hit;
+}
+
+// What the ray hits of the lanes from `lane` on of the leaf block at `row`, whose shapes are of one kind. `instance`: that the ray is in.
+static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
+  __global const float* block = tree->leaves + (size_t)row * 8;
+  real t;
+  real_mask side;
+  real_mask ok = shape_hit(kind, shape, block, lane, &t, &side);
+  ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
+  // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
+  if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
+  if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
+  uint bits = mask_bits(ok);
+  if (bits == 0) return;
+  float ts[CAPLET_REAL_WIDTH];
+  real_store(t, ts);
+  int sides[CAPLET_REAL_WIDTH];
+  mask_store(side, sides);
+  do {
+    const uint i = lowest_bit(bits);
+    bits &= bits - 1;
+    const uint slot = row * 8 + lane + i;
+    if (ts[i] < nearest->t ||
+        (ts[i] == nearest->t && nearest->found && tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
+      nearest->t = ts[i];
+      nearest->slot = slot;
+      nearest->instance = instance;
+      nearest->side = sides[i];
+      nearest->found = 1;
+    }
+  } while (bits != 0);
+}
+
+#endif
