@@ -1,45 +1,118 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet devices`: the OpenCL devices there are.
+// `caplet devices`: the OpenCL devices there are, and how fast they are.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "base/clock.h"
 #include "cli/commands.h"
+#include "cli/trial.h"
 #include "device/device.h"
+#include "lower/lower.h"
+#include "present/present.h"
+#include "render/session.h"
 #include "report/device_json.h"
 
 namespace caplet::cli {
 
 namespace {
 
-void print_json(const std::vector<DeviceInfo>& devices) {
+/// 4,096 capsules in studio light.
+Scene measured_scene() {
+  CapsulesShape capsules;
+  for (int i = 0; i < 4096; ++i) {
+    const float x = static_cast<float>(i % 16), y = static_cast<float>(i / 16 % 16), z = static_cast<float>(i / 256);
+    capsules.p0.emplace_back(x - 0.3f, y - 0.2f, z);
+    capsules.p1.emplace_back(x + 0.3f, y + 0.2f, z);
+    capsules.radius0.push_back(0.15f);
+  }
+  Scene scene;
+  scene.materials.emplace_back();
+  Shape shape;
+  shape.geometry = std::move(capsules);
+  scene.shapes.push_back(std::move(shape));
+  scene.film.width = 512;
+  scene.film.height = 288;
+  add_presentation(scene);
+  return scene;
+}
+
+/// Rays a second, of all kinds, of a render of a second. Throws RunError.
+double measured_speed(int index) {
+  const Scene scene = measured_scene();
+  const FlatScene flat = lower(scene);
+  const Device device = Device::choose(std::to_string(index));
+  try_device_apart(device, {.shapes = flat.shapes, .render = true});
+  Session session(flat, lower_view(scene), {device}, {});
+  const auto all = [&] {
+    const RayCounts rays = session.rays();
+    return static_cast<double>(rays.camera + rays.bounce + rays.shadow);
+  };
+  session.render(1);  // what is done at the first time only
+  const double before = all();
+  const Clock::time_point start = Clock::now();
+  session.render(1u << 24, {}, 1.0);
+  return (all() - before) / seconds_since(start);
+}
+
+struct Listed {
+  DeviceInfo info;
+  double rays_a_second = 0;
+  std::string why_not;  // it could not be measured
+};
+
+std::vector<Listed> list(bool measure) {
+  std::vector<Listed> out;
+  for (const DeviceInfo& info : list_devices()) {
+    Listed& listed = out.emplace_back(Listed{info, 0, ""});
+    if (!measure) continue;
+    try {
+      listed.rays_a_second = measured_speed(info.index);
+    } catch (const RunError& error) {
+      listed.why_not = error.what();
+    }
+  }
+  return out;
+}
+
+void print_json(const std::vector<Listed>& devices, bool measured) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const DeviceInfo& device : devices) out.push_back(report::device_json(device));
+  for (const Listed& device : devices) {
+    out.push_back(report::device_json(device.info));
+    if (device.why_not.empty() && measured) out.back()["rays_per_second"] = device.rays_a_second;
+    if (!device.why_not.empty()) out.back()["not_measured"] = device.why_not;
+  }
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void print_table(const std::vector<DeviceInfo>& devices) {
+void print_table(const std::vector<Listed>& devices, bool measured) {
   if (devices.empty())
     fmt::print(stderr, "caplet: no OpenCL device (on Debian: apt-get install pocl-opencl-icd; `caplet doctor` tells more)\n");
-  for (const DeviceInfo& device : devices)
-    fmt::print("{}  {}  {}  ({}, {} compute units, {:.1f} GiB, {})\n", device.index, device.type, device.name, device.platform,
-               device.compute_units, static_cast<double>(device.global_bytes) / (1 << 30), device.driver);
+  for (const auto& [device, rays_a_second, why_not] : devices) {
+    const std::string speed = !measured         ? ""
+                              : why_not.empty() ? fmt::format(", {:.3g} Mrays/s", rays_a_second * 1e-6)
+                                                : ", not measured: " + why_not;
+    fmt::print("{}  {}  {}  ({}, {} compute units, {:.1f} GiB, {}){}\n", device.index, device.type, device.name, device.platform,
+               device.compute_units, static_cast<double>(device.global_bytes) / (1 << 30), device.driver, speed);
+  }
 }
 
 }  // namespace
 
 void add_devices(CLI::App& app) {
   CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices, as --device takes them");
-  const auto json = std::make_shared<bool>(false);
+  const auto json = std::make_shared<bool>(false), measure = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print a JSON array for machines");
-  command->callback([json] {
-    const std::vector<DeviceInfo> devices = list_devices();
-    *json ? print_json(devices) : print_table(devices);
+  command->add_flag("--measure", *measure, "Also how many rays a second each traces in a render, which takes seconds a device");
+  command->callback([json, measure] {
+    const std::vector<Listed> devices = list(*measure);
+    *json ? print_json(devices, *measure) : print_table(devices, *measure);
   });
 }
 

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <new>
@@ -20,6 +21,7 @@
 #include "base/log.h"
 #include "cli/commands.h"
 #include "device/second_try.h"
+#include "render/session.h"
 
 namespace {
 
@@ -82,9 +84,7 @@ int run(CLI::App& app, int argc, char** argv) {
   return exit_failed;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int whole_program(int argc, char** argv) {
   open_standard_streams();
   caplet::log::set_quiet(false);
   // A closed pipe and a file size limit shall be write errors, not signals: there are other outputs, and files to remove.
@@ -109,4 +109,12 @@ int main(int argc, char** argv) {
   caplet::cli::add_bench(app);
   caplet::cli::add_try_device(app);
   return end(run(app, argc, argv));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = whole_program(argc, argv);
+  if (caplet::any_thread_given_up()) std::_Exit(code);
+  return code;
 }

@@ -111,6 +111,10 @@ Device choose_device(const std::string& choice, Encoding encoding) {
   return with_device_flag([&] { return Device::choose(choice, encoding); });
 }
 
+std::vector<Device> choose_devices(const std::string& choice, Encoding encoding) {
+  return with_device_flag([&] { return Device::choose_several(choice, encoding); });
+}
+
 void add_encoding(CLI::App& command, Encoding& encoding) {
   command
       .add_option_function<std::string>(

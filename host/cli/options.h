@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "device/device.h"
 #include "film/layers.h"
@@ -63,8 +64,9 @@ auto with_device_flag(const Choose& choose) {
   }
 }
 
-/// Device::choose.
+/// Device::choose and choose_several.
 Device choose_device(const std::string& choice, Encoding encoding);
+std::vector<Device> choose_devices(const std::string& choice, Encoding encoding);
 
 /// Adds `--encoding`, which forces the way kernels go through the tree.
 void add_encoding(CLI::App& command, Encoding& encoding);

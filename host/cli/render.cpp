@@ -38,6 +38,7 @@ struct Options {
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
   std::optional<double> time_limit;
+  double patience = 60;
   std::size_t batch_paths = 0;
   bool variance = false, quiet = false;
 };
@@ -99,15 +100,25 @@ void check_outputs(const Options& options, const Scene& scene, Layers layers, Fi
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
 
-RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const Device& device,
+void guard(const std::vector<Device>& devices) {
+  for (const Device& device : devices) SecondTry::guard(device);
+}
+
+std::string names_of(const std::vector<Device>& devices) {
+  std::string out;
+  for (const Device& device : devices) out += (out.empty() ? "" : " and ") + device.info().name;
+  return out;
+}
+
+RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices,
                                   const RenderOptions& render_options, bool quiet) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
-    return render(flat, view, device, render_options, [&](const Progress& progress) {
+    return render(flat, view, devices, render_options, [&](const Progress& progress) {
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
-        SecondTry::guard(device);  // again: the kernels' compiler may have set signal handlers
+        guard(devices);  // again: the kernels' compiler may have set signal handlers
       reporter.update(progress.fraction, progress.samples_per_second,
                       fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
                                   render_options.samples_per_pixel));
@@ -127,7 +138,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   const Overrides overrides = check_options(options, files);
   const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
-  const Device device = choose_device(options.device, options.encoding);
+  std::vector<Device> devices = choose_devices(options.device, options.encoding);
 
   phase.lap();
   Scene scene = import_scene(options.scene, FileImageReader());
@@ -139,11 +150,11 @@ void run_render(const Options& options, const Invocation& invocation) {
   seconds.build = phase.lap();
   if (interrupt_requested()) throw RunError(interrupted_early);
 
-  try_device_apart(device, {.shapes = flat.shapes, .render = true});
-  SecondTry::guard(device);
+  devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
+  guard(devices);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
-              view.view.crop_width, view.view.crop_height, scene.sampler.samples_per_pixel, device.info().name);
+              view.view.crop_width, view.view.crop_height, scene.sampler.samples_per_pixel, names_of(devices));
   RenderOptions render_options;
   render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
   render_options.time_limit = options.time_limit;
@@ -152,19 +163,21 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.film_on_device = true;
   render_options.cancelled = interrupt_requested;
   render_options.layers = layers;
-  const RenderResult result = render_with_progress(flat, view, device, render_options, options.quiet);
+  render_options.patience = options.patience;
+  const RenderResult result = render_with_progress(flat, view, devices, render_options, options.quiet);
   seconds.compile = result.compile_seconds;
   seconds.render = result.render_seconds;
 
   NotFinite not_finite;
-  BandedImage picture = report::developed_in_bands(result.device_film, scene, layers, not_finite);
-  picture.whole.metadata = report::picture_metadata(scene, options.scene, invocation.command_line(), device, result);
+  BandedImage picture = result.device_film ? report::developed_in_bands(*result.device_film, scene, layers, not_finite)
+                                           : report::developed_in_bands(result.film, scene, layers, not_finite);
+  picture.whole.metadata = report::picture_metadata(scene, options.scene, invocation.command_line(), result);
   phase.lap();
   report::write_pictures(files.picture, files.preview, picture, layers.channels(), result.render_seconds);
   not_finite.warn();
   seconds.write = phase.lap();
   seconds.total = total.lap();
-  if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result, device)));
+  if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
   const fs::path& first = files.picture.empty() ? files.preview.empty() ? files.stats : files.preview : files.picture;
   if (result.interrupted)
     log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(), result.samples_per_pixel,
@@ -185,9 +198,16 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_option("--size", o->size, "Picture size in pixels; an automatic camera frames anew")->type_name("WxH");
   command->add_option("--crop", o->crop, "Render only these pixels (from the top left; x1, y1 excluded)")
       ->type_name("x0,y0,x1,y1");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+  command
+      ->add_option(
+          "--device", o->device,
+          "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`); some of these between commas, or all")
       ->type_name("D");
   add_encoding(*command, o->encoding);
+  command->add_option("--patience", o->patience, "Leave a device out that does not answer for so long, where there are others")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str()
+      ->type_name("SECONDS");
   command->add_option("--seed", o->seed, "Seed of the samples")->type_name("S");
   command->add_option("--max-depth", o->max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))

@@ -70,6 +70,18 @@ void try_device_apart(const Device& device, const Trial& trial) {
       device.info().name, device.info().driver, end.how, end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said)));
 }
 
+std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial) {
+  std::vector<Device> out;
+  for (const Device& device : devices) try {
+      try_device_apart(device, trial);
+      out.push_back(device);
+    } catch (const RunError& error) {
+      if (interrupt_requested() || (out.empty() && &device == &devices.back())) throw;
+      log::warn("device {} '{}' is left out: {}", device.info().index, device.info().name, error.what());
+    }
+  return out;
+}
+
 void add_try_device(CLI::App& app) {
   struct Options {
     std::string device;

@@ -4,6 +4,8 @@
 // The first use of a device: its self-test in a process of its own, so that a driver that crashes or hangs is told of.
 #pragma once
 
+#include <vector>
+
 #include "render/known_answers.h"
 
 namespace caplet::cli {
@@ -11,5 +13,7 @@ namespace caplet::cli {
 /// try_device (render/known_answers.h), when it is due, by running this program again. Throws WrongDevice with what the test
 /// says, or RunError with how the driver ended it; also when interrupted.
 void try_device_apart(const Device& device, const Trial& trial);
+/// Of several devices those that pass; the others are warned of. Throws what the last of them says where none passes.
+std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial);
 
 }  // namespace caplet::cli

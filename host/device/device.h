@@ -77,6 +77,9 @@ class Device {
   /// variable CAPLET_ENCODING says, else natural_encoding.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
+  /// Several: "all", or such choices between commas, none of them twice; errors as choose.
+  static std::vector<Device> choose_several(const std::string& choice, Encoding encoding = Encoding::automatic);
+
   /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver
   /// cannot divide it, or there are fewer units than parts.
   std::vector<Device> split(std::size_t parts) const;
@@ -101,6 +104,8 @@ class Device {
   struct Accounting;
   struct Programs;
   friend class Program;
+  static std::vector<Device> chosen(Encoding encoding,
+                                    const std::function<std::vector<std::size_t>(const std::vector<DeviceInfo>&)>& select);
   static Device open(const cl::Device& device, const DeviceInfo& info, Encoding encoding);
   DeviceInfo info_;
   Encoding encoding_ = Encoding::single;

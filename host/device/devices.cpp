@@ -96,6 +96,16 @@ std::string name_of(Encoding encoding) {
 }
 
 Device Device::choose(const std::string& choice, Encoding encoding) {
+  return chosen(encoding, [&](const std::vector<DeviceInfo>& infos) { return std::vector{select_device(infos, choice)}; })
+      .front();
+}
+
+std::vector<Device> Device::choose_several(const std::string& choice, Encoding encoding) {
+  return chosen(encoding, [&](const std::vector<DeviceInfo>& infos) { return select_devices(infos, choice); });
+}
+
+std::vector<Device> Device::chosen(Encoding encoding,
+                                   const std::function<std::vector<std::size_t>(const std::vector<DeviceInfo>&)>& select) {
   constexpr const char* variable = "CAPLET_ENCODING";
   if (const char* named = std::getenv(variable); encoding == Encoding::automatic && named && *named)
     encoding = parse_encoding(named, variable);
@@ -103,8 +113,12 @@ Device Device::choose(const std::string& choice, Encoding encoding) {
   std::vector<DeviceInfo> infos;
   infos.reserve(devices.size());
   for (const Found& candidate : devices) infos.push_back(candidate.info);
-  const Found& found = devices[select_device(infos, choice)];
-  return open(found.device, found.info, encoding == Encoding::automatic ? natural_encoding(found.info) : encoding);
+  std::vector<Device> out;
+  for (const std::size_t index : select(infos)) {
+    const Found& found = devices[index];
+    out.push_back(open(found.device, found.info, encoding == Encoding::automatic ? natural_encoding(found.info) : encoding));
+  }
+  return out;
 }
 
 Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding encoding) {

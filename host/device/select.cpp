@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <string_view>
 
 namespace caplet {
 
@@ -63,6 +64,31 @@ std::size_t select_device(const Devices& devices, const std::string& choice) {
   const std::size_t first = first_of_type(devices, type);
   if (first == devices.size()) refuse(fmt::format("no device of type '{}'", type), devices);
   return first;
+}
+
+std::vector<std::size_t> select_devices(const Devices& devices, const std::string& choice) {
+  std::vector<std::size_t> out;
+  if (lower_case(choice) == "all" && !devices.empty()) {
+    for (std::size_t i = 0; i < devices.size(); ++i) out.push_back(i);
+    return out;
+  }
+  // A name may have a comma in it.
+  const auto named = [&] {
+    return std::ranges::any_of(
+        devices, [&](const DeviceInfo& info) { return lower_case(info.name).find(lower_case(choice)) != std::string::npos; });
+  };
+  if (choice.find(',') == std::string::npos || named()) return {select_device(devices, choice)};
+  for (std::string_view rest = choice;;) {
+    const std::size_t comma = rest.find(',');
+    const std::string one(rest.substr(0, comma));
+    if (one.empty()) throw UnknownDevice(fmt::format("'{}' is no list of devices, like 0,1", choice));
+    const std::size_t index = select_device(devices, one);
+    if (std::ranges::find(out, index) != out.end())
+      refuse(fmt::format("device {} is named twice in '{}'", index, choice), devices);
+    out.push_back(index);
+    if (comma == std::string_view::npos) return out;
+    rest.remove_prefix(comma + 1);
+  }
 }
 
 }  // namespace caplet

@@ -14,5 +14,7 @@ namespace caplet {
 
 /// The number of the chosen device in `devices`; rules and errors as Device::choose.
 std::size_t select_device(const std::vector<DeviceInfo>& devices, const std::string& choice);
+/// Those of a list, as Device::choose_several.
+std::vector<std::size_t> select_devices(const std::vector<DeviceInfo>& devices, const std::string& choice);
 
 }  // namespace caplet

@@ -183,6 +183,16 @@ std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
   return static_cast<std::uint32_t>(~words_[pixel * words_per_pixel_ + first]);
 }
 
+Film Film::rows(int first, int count) const {
+  FilmLayout part = layout_;
+  part.window.y += first;
+  part.window.height = count;
+  const std::size_t row_words = static_cast<std::size_t>(part.window.width) * words_per_pixel_;
+  const auto begin = words_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(first) * row_words);
+  const auto end = begin + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(count) * row_words);
+  return Film(part, {begin, end}, {});
+}
+
 void Film::add(const Film& other) {
   if (!(layout_ == other.layout_)) throw InputError("films of different pictures, layers or scenes cannot be added");
   std::vector<FilmPart> parts = parts_;

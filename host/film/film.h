@@ -79,6 +79,9 @@ class Film {
   /// Of a layer of numbers: that of the sample with the lowest number; CAPLET_NONE: that hit nothing, or there is none.
   std::uint32_t number(Layer layer, std::size_t pixel) const;
 
+  /// `count` of its rows from `first` on, without the list of samples.
+  Film rows(int first, int count) const;
+
   /// Adds the samples of another film. Throws InputError, and changes nothing, when the two are not of one layout or have samples
   /// in common.
   void add(const Film& other);

@@ -18,7 +18,7 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   caplet::Session session(flat, lower_view(model), {on}, {.layers = Layers::all(), .most_samples = samples});
   SessionRuns runs;
   runs.render(session, samples, options);
-  return runs.film(session, model, on);
+  return runs.film(session, model);
 }
 
 }  // namespace caplet::v0

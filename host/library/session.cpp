@@ -33,9 +33,7 @@ const std::vector<caplet::Device>& tried(const std::vector<caplet::Device>& devi
 
 std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const auto told = [&](const SessionProgress& progress) {
-    options.progress({static_cast<double>(progress.samples_done) / progress.sample_count, progress.samples_per_second});
-  };
+  const auto told = [&](const SessionProgress& progress) { options.progress({progress.fraction, progress.samples_per_second}); };
   const std::uint32_t done =
       session.render(samples, options.progress ? told : std::function<void(const SessionProgress&)>(), options.time_limit);
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,14 +41,14 @@ std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t sample
   return done;
 }
 
-Film SessionRuns::film(const caplet::Session& session, const caplet::Scene& scene, const caplet::Device& device) const {
+Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene) const {
   caplet::Film film = session.film();
   RenderResult result;
   result.samples_per_pixel = static_cast<int>(film.samples(0));
   result.render_seconds = seconds;
   result.interrupted = interrupted;
-  return Inside::film(std::move(film), scene.film, report::picture_metadata(scene, scene.source, "libcaplet", device, result),
-                      seconds);
+  result.devices = session.work();
+  return Inside::film(std::move(film), scene.film, report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
 }
 
 struct Session::Data {
@@ -73,13 +71,17 @@ struct Session::Data {
   }
 
   Questions questions() {
-    if (!query) query.emplace(session.scene_on(0));
-    return {*query, live.scene(), live.flat().shapes, devices[0]};
+    if (const auto scene = session.scene_on(0); scene != asked) {  // another one, where the first device is gone
+      query.emplace(scene);
+      asked = scene;
+    }
+    return {*query, live.scene(), live.flat().shapes, session.device(0)};
   }
 
   std::vector<caplet::Device> devices;
   LiveScene live;
   caplet::Session session;
+  std::shared_ptr<DeviceScene> asked;
   std::optional<Query> query;
   std::uint64_t at;  // the state of the scene that it shows
   SessionRuns runs;
@@ -125,7 +127,7 @@ int Session::render(int samples, const RenderOptions& options) {
 
 void Session::cancel() { data_->session.cancel(); }
 
-Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene(), data_->devices[0]); }
+Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene()); }
 
 void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
 

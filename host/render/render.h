@@ -6,21 +6,26 @@
 
 #include <functional>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "device/device.h"
 #include "lower/flat_scene.h"
 #include "render/renderer.h"
+#include "render/session.h"
 
 namespace caplet {
 
 struct RenderOptions {
   int samples_per_pixel = 16;
   std::optional<double> time_limit;  // seconds; the pass under way is finished
-  std::function<bool()> cancelled;   // asked after each pass: no more of them when true
+  std::function<bool()> cancelled;   // asked after each batch: no more passes when true
   std::size_t batch_paths = 0;       // 0: chosen for the device
   bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
-  bool film_on_device = false;       // RenderResult::device_film in place of film
+  bool film_on_device = false;       // RenderResult::device_film in place of film, where it is on one device
+  double patience = 60;              // SessionOptions::patience
   Layers layers = Layers::all();     // of the film
 };
 
@@ -32,16 +37,20 @@ struct Progress {
 
 struct RenderResult {
   Film film;
-  DeviceFilm device_film;     // the same, to be read in parts
-  int samples_per_pixel = 0;  // finished
-  bool interrupted = false;   // cancelled
+  std::optional<DeviceFilm> device_film;  // the same, to be read in parts
+  int samples_per_pixel = 0;              // finished
+  bool interrupted = false;               // cancelled
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t peak_device_bytes = 0;
-  std::vector<std::pair<std::string, double>> stage_compile_seconds, stage_seconds;
+  StageSeconds stage_compile_seconds, stage_seconds;
+  std::vector<DeviceWork> devices;
 };
 
-/// Renders pass by pass; stops when it is cancelled or its time is over. Throws RunError.
+/// Renders on all of the devices together (Session); stops when it is cancelled or its time is over. `progress` is called on any
+/// thread, once at a time: before the first sample, and after each batch of paths. Throws RunError.
+RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices, const RenderOptions& options,
+                    const std::function<void(const Progress&)>& progress);
 RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 

@@ -175,6 +175,7 @@ void Renderer::batch(const BatchRecord& record) {
     extend = Stage::extend;
     kernels.run(Stage::shade, bindings, queued);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
+    ++beats_;
     const uint next = counters[counter_next], shadow = counters[counter_shadow];
     kernels.run(Stage::connect, bindings, shadow);
     if (!sorts) {
@@ -190,6 +191,7 @@ void Renderer::batch(const BatchRecord& record) {
   }
   kernels.run(Stage::resolve, bindings, record.pixel_count);
   paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
+  ++beats_;
   rays_.not_finite += counters[counter_not_finite];
 }
 

@@ -4,6 +4,7 @@
 // The wavefront path tracer's host side: passes over windows and samples of a view, into a film on the device.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -59,6 +60,8 @@ class Renderer {
   const FilmLayout& layout() const { return film_.layout; }
   std::size_t batch_paths() const { return batch_paths_; }
   const RayCounts& rays() const { return rays_; }
+  /// A number that grows whenever the device has answered in a pass. From any thread.
+  std::uint64_t beats() const { return beats_; }
 
  private:
   void batch(const BatchRecord& record);
@@ -74,6 +77,7 @@ class Renderer {
   mutable DeviceFilm film_;
   mutable bool is_old_ = true;  // the film's words are those of before a reset: they count as zeros
   RayCounts rays_;
+  std::atomic<std::uint64_t> beats_{0};
 };
 
 /// Bytes of the state of a full batch of paths, with all layers, on a CPU or another device (smaller renders take smaller

@@ -7,126 +7,342 @@
 #include <exception>
 #include <limits>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "base/check.h"
+#include "base/clock.h"
 #include "base/log.h"
+#include "render/detail/crew.h"
+#include "render/detail/shares.h"
 #include "render/renderer.h"
 
 namespace caplet {
 
+namespace {
+
+DeviceWork work_of(const DeviceInfo& info) {
+  DeviceWork out;
+  out.name = info.name;
+  out.driver = info.driver;
+  out.platform = info.platform;
+  return out;
+}
+
+}  // namespace
+
 struct Session::Worker {
-  Worker(const Device& device, const FlatScene& flat, const FlatView& of, const RendererOptions& options)
-      : scene(device, flat), view(of), renderer(scene, view, options) {}
-  DeviceScene scene;
+  Worker(const Device& on, const FlatScene& flat, const FlatView& of, const RendererOptions& options)
+      : device(on), scene(std::make_shared<DeviceScene>(on, flat)), view(of), renderer(*scene, view, options) {}
+  DeviceWork work() const {
+    DeviceWork out = work_of(device.info());
+    out.paths_a_second = speed.paths_a_second();
+    for (const FilmPart& part : had) out.paths += static_cast<double>(part.window.pixels()) * part.sample_count;
+    return out;
+  }
+  Device device;
+  std::shared_ptr<DeviceScene> scene;
   FlatView view;
   Renderer renderer;
+  Speed speed;
+  std::vector<FilmPart> had;  // what is in its film; unlike the renderer's own list, never changed while it hangs
+};
+
+namespace {
+
+std::string text_of(const std::exception_ptr& failure, double patience) {
+  try {
+    if (failure) std::rethrow_exception(failure);
+    return fmt::format("has given no answer for {:g} s", patience);
+  } catch (const std::exception& error) {
+    return fmt::format("has failed ({})", error.what());
+  }
+}
+
+void warn_of_lost(const Device& device, const std::exception_ptr& failure, double patience) {
+  log::warn("device {} '{}' {}: the others do its work again", device.info().index, device.info().name,
+            text_of(failure, patience));
+}
+
+StageSeconds& add(StageSeconds& to, const StageSeconds& more) {
+  for (const auto& [stage, seconds] : more) {
+    const auto there = std::ranges::find(to, stage, &StageSeconds::value_type::first);
+    if (there == to.end())
+      to.emplace_back(stage, seconds);
+    else
+      there->second += seconds;
+  }
+  return to;
+}
+
+}  // namespace
+
+bool any_thread_given_up() { return Crew::any_given_up(); }
+
+/// One undertaking of all workers, which those that hang keep alive.
+struct Session::Run {
+  Run(Workers of, Shares of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
+
+  void tell(std::size_t member, double paths) {
+    under_way[member] = paths;
+    if (!progress || fatal || asked == 0) return;
+    double done = shares.paths_done();
+    for (const double each : under_way) done += each;
+    const auto samples = std::min(shares.paths_done() / pixels, static_cast<double>(asked));
+    try {
+      progress({static_cast<std::uint32_t>(std::max(0.0, samples)), asked, std::clamp(done / pixels / asked, 0.0, 1.0),
+                done / std::max(1e-9, seconds_since(start))});
+    } catch (...) {
+      fatal = std::current_exception();
+    }
+  }
+
+  Workers workers;
+  Shares shares;
+  std::vector<double> under_way;  // paths of finished batches of unfinished parts
+  double pixels = 1;
+  std::uint32_t asked = 0;
+  Clock::time_point start = Clock::now();
+  std::function<void(const SessionProgress&)> progress;
+  std::exception_ptr fatal;  // of the caller's function
+  std::exception_ptr last_failure;
+  Workers gone;
+  std::vector<std::optional<Film>> films;
 };
 
 Session::Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options)
-    : options_(options), next_(options.sample_begin) {
+    : options_(options), first_(options.sample_begin), next_(options.sample_begin) {
   CHECK_LT_(std::size_t{0}, devices.size());
   RendererOptions each;
   each.layers = options.layers;
   each.batch_paths = options.batch_paths;
   if (options.most_samples > 0)
     each.most_paths = std::size_t{view.view.crop_width} * view.view.crop_height * std::size_t{options.most_samples};
-  for (const Device& device : devices) workers_.push_back(std::make_unique<Worker>(device, scene, view, each));
+  std::exception_ptr failure;
+  for (const Device& device : devices) try {
+      workers_.push_back(std::make_shared<Worker>(device, scene, view, each));
+      workers_.back()->scene->kernels().time_stages(options.time_stages);
+    } catch (const RunError&) {
+      if (failure || devices.size() > 1) warn_of_lost(device, std::current_exception(), options.patience);
+      failure = std::current_exception();
+      lost_.push_back(work_of(device.info()));
+      lost_.back().lost = true;
+    }
+  if (workers_.empty()) std::rethrow_exception(failure);
 }
 
 Session::~Session() = default;
 
-DeviceScene& Session::scene_on(std::size_t device) { return workers_[device]->scene; }
+const Device& Session::device(std::size_t number) const { return workers_[number]->device; }
+std::shared_ptr<DeviceScene> Session::scene_on(std::size_t device) const { return workers_[device]->scene; }
+FilmLayout Session::layout() const { return workers_.front()->renderer.layout(); }
+
+std::vector<DeviceWork> Session::work() const {
+  std::vector<DeviceWork> out;
+  for (const auto& worker : workers_) out.push_back(worker->work());
+  out.insert(out.end(), lost_.begin(), lost_.end());
+  return out;
+}
+
+RayCounts Session::rays() const {
+  RayCounts out;
+  for (const auto& worker : workers_) {
+    const RayCounts& its = worker->renderer.rays();
+    out.camera += its.camera;
+    out.bounce += its.bounce;
+    out.shadow += its.shadow;
+    out.not_finite += its.not_finite;
+  }
+  return out;
+}
+
+double Session::compile_seconds() const {
+  double out = 0;
+  for (const auto& worker : workers_) out += worker->scene->kernels().compile_seconds();
+  return out;
+}
+
+StageSeconds Session::compile_seconds_by_stage() const {
+  StageSeconds out;
+  for (const auto& worker : workers_) add(out, worker->scene->kernels().compile_seconds_by_stage());
+  return out;
+}
+
+StageSeconds Session::seconds_by_stage() const {
+  StageSeconds out;
+  for (const auto& worker : workers_) add(out, worker->scene->kernels().seconds_by_stage());
+  return out;
+}
 
 void Session::clear() {
-  for (const auto& worker : workers_) worker->renderer.reset(worker->view);
+  for (const auto& worker : workers_) {
+    worker->had.clear();
+    worker->renderer.reset(worker->view);
+  }
   before_.reset();
-  next_ = options_.sample_begin;
+  again_.clear();
+  first_ = next_ = options_.sample_begin;
+}
+
+/// Leaves them out, but for the last one there is: its failure is thrown, and it may be asked again.
+void Session::part_with(Workers gone, std::exception_ptr last_failure) {
+  const std::shared_ptr<Worker> last = gone.size() == workers_.size() && !gone.empty() ? gone.back() : nullptr;
+  for (const auto& worker : gone) {
+    if (worker == last) continue;
+    DeviceWork work = worker->work();
+    work.paths = 0;
+    work.lost = true;
+    lost_.push_back(std::move(work));
+    std::erase(workers_, worker);
+  }
+  if (!last) return;
+  try {
+    clear();
+  } catch (const RunError&) {  // the first failure is the one to tell of
+  }
+  std::rethrow_exception(last_failure);
 }
 
 void Session::update(const FlatScene& scene, const SceneChanges& changes, const FlatView& view) {
-  for (const auto& worker : workers_) {
-    worker->scene.update(scene, changes);
-    worker->view = view;
-  }
-  clear();
+  Workers gone;
+  std::exception_ptr failure;
+  for (const auto& worker : workers_) try {
+      worker->scene->update(scene, changes);
+      worker->view = view;
+      worker->had.clear();
+      worker->renderer.reset(view);
+    } catch (const RunError&) {
+      failure = std::current_exception();
+      gone.push_back(worker);
+      if (gone.size() < workers_.size()) warn_of_lost(worker->device, failure, options_.patience);
+    }
+  part_with(std::move(gone), failure);
+  before_.reset();
+  again_.clear();
+  first_ = next_ = options_.sample_begin;
 }
 
 void Session::resume(Film film) {
-  if (!(film.layout() == workers_.front()->renderer.layout()))
-    throw InputError("the film is one of another picture, other layers or another scene");
+  if (!(film.layout() == layout())) throw InputError("the film is one of another picture, other layers or another scene");
   clear();
   for (const FilmPart& part : film.parts()) next_ = std::max(next_, part.sample_begin + part.sample_count);
+  first_ = next_;
   before_ = std::move(film);
 }
 
 std::uint32_t Session::render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
                               std::optional<double> time_limit) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   sample_count = std::min(sample_count, std::numeric_limits<std::uint32_t>::max() - next_);
-  std::mutex mutex;  // of what follows
-  std::uint32_t given = 0, done = 0;
-  std::uint64_t not_finite = 0;
-  std::exception_ptr failure;
-
-  const auto work = [&](Renderer& renderer) {
-    const Window window = renderer.layout().window;
-    const auto fill = std::max<std::size_t>(1, renderer.batch_paths() / std::max<std::size_t>(1, window.pixels()));
-    const auto most = static_cast<std::uint32_t>(
-        std::min<std::size_t>(options_.pass_samples > 0 ? options_.pass_samples : fill, renderer.batch_paths()));
-    while (true) {
-      std::uint32_t first = 0, count = 0;
-      {
-        const std::lock_guard lock(mutex);
-        const bool late = time_limit && given > 0 && seconds() >= *time_limit;
-        if (failure || cancelled_ || late || given == sample_count) return;
-        first = given;
-        count = std::min(most, sample_count - given);
-        given += count;
-      }
-      const std::uint64_t before = renderer.rays().not_finite;
-      renderer.pass(window, next_ + first, count);
-      const std::lock_guard lock(mutex);
-      not_finite += renderer.rays().not_finite - before;
-      done += count;
-      if (!progress) continue;
-      const double samples = static_cast<double>(done) * static_cast<double>(window.pixels());
-      progress({done, sample_count, samples / std::max(1e-9, seconds())});
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (const auto& worker : workers_)
-      threads.emplace_back([&, renderer = &worker->renderer] {
-        try {
-          work(*renderer);
-        } catch (...) {
-          const std::lock_guard lock(mutex);
-          if (!failure) failure = std::current_exception();
-        }
-      });
-  }
-  cancelled_ = false;
-  if (not_finite > 0) log::warn("{} samples were not finite and count as black", not_finite);
-  if (failure) {
-    try {
-      clear();
-    } catch (const RunError&) {  // the first failure is the one to tell of
-    }
-    std::rethrow_exception(failure);
-  }
+  const std::uint64_t not_finite = rays().not_finite;
+  const std::uint32_t done = run(sample_count, progress, time_limit);
+  *cancelled_ = false;
+  if (rays().not_finite > not_finite) log::warn("{} samples were not finite and count as black", rays().not_finite - not_finite);
   next_ += done;
   return done;
 }
 
-Film Session::film() const {
-  Film film = workers_.front()->renderer.film().read();
-  for (std::size_t i = 1; i < workers_.size(); ++i) film.add(workers_[i]->renderer.film().read());
-  if (before_) film.add(*before_);
-  return film;
+std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
+                           std::optional<double> time_limit) {
+  const Window window = layout().window;
+  const std::size_t pixels = std::max<std::size_t>(1, window.pixels());
+  std::vector<Shares::Worker> members;
+  for (const auto& worker : workers_) {
+    const std::size_t batch = worker->renderer.batch_paths(), fill = std::max<std::size_t>(1, batch / pixels);
+    const std::size_t most = options_.pass_samples > 0 ? options_.pass_samples : workers_.size() > 1 ? batch : fill;
+    members.push_back({worker->speed, batch, static_cast<std::uint32_t>(std::min(most, batch))});
+  }
+  const auto run = std::make_shared<Run>(workers_, Shares(window, next_, sample_count, std::exchange(again_, {}), members));
+  run->pixels = static_cast<double>(pixels);
+  run->asked = sample_count;
+  run->progress = progress;
+  const auto beats = [run](std::size_t i) { return run->workers[i]->renderer.beats(); };
+  const auto lost = [run, patience = options_.patience](std::size_t i, std::exception_ptr failure) {
+    run->shares.lose(i, run->workers[i]->had);
+    run->under_way[i] = 0;
+    run->gone.push_back(run->workers[i]);
+    run->last_failure = failure;
+    if (run->shares.workers_there() > 0) warn_of_lost(run->workers[i]->device, failure, patience);
+  };
+  const auto crew = std::make_shared<Crew>(workers_.size(), Crew::Calls{beats, lost});
+  const std::weak_ptr<Crew> weak = crew;
+  crew->run(options_.patience, [run, weak, cancelled = cancelled_, time_limit](std::size_t i, Crew::Lock& lock) {
+    const std::shared_ptr<Crew> crew_of = weak.lock();
+    Worker& worker = *run->workers[i];
+    while (!crew_of->gone(i) && !run->fatal) {
+      const bool late = time_limit && run->shares.begun() && seconds_since(run->start) >= *time_limit;
+      if (*cancelled || late) run->shares.close();
+      const std::optional<FilmPart> part = run->shares.take(i);
+      if (!part) {
+        if (run->shares.complete() || run->shares.workers_there() == 0) break;
+        crew_of->wait(lock);
+        continue;
+      }
+      const Clock::time_point start = Clock::now();
+      const bool there = crew_of->attempt(i, lock, [&] {
+        worker.renderer.pass(part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
+          const Crew::Lock telling(crew_of->mutex());
+          if (!crew_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
+        });
+      });
+      if (!there) break;
+      run->shares.done(i, seconds_since(start));
+      worker.speed = run->shares.speed(i);
+      add_part(worker.had, *part);
+      run->tell(i, 0);
+      crew_of->notify();
+    }
+    crew_of->notify();
+  });
+  const Crew::Lock lock(crew->mutex());
+  run->progress = {};
+  if (run->fatal) {
+    const std::exception_ptr fatal = run->fatal;
+    std::erase_if(workers_, [&](const auto& worker) { return std::ranges::find(run->gone, worker) != run->gone.end(); });
+    clear();
+    std::rethrow_exception(fatal);
+  }
+  part_with(run->gone, run->last_failure);
+  return run->shares.samples();
+}
+
+/// The sum of the workers' films; nothing when one of them could not be read.
+std::optional<Film> Session::gather() {
+  const auto run = std::make_shared<Run>(workers_, Shares(layout().window, next_, 0, {}, {}));
+  run->films.resize(workers_.size());
+  const auto lost = [run, patience = options_.patience](std::size_t i, std::exception_ptr failure) {
+    run->gone.push_back(run->workers[i]);
+    run->last_failure = failure;
+    if (run->gone.size() < run->workers.size()) warn_of_lost(run->workers[i]->device, failure, patience);
+  };
+  const auto crew = std::make_shared<Crew>(workers_.size(), Crew::Calls{[](std::size_t) { return 0; }, lost});
+  const std::weak_ptr<Crew> weak = crew;
+  crew->run(options_.patience, [run, weak](std::size_t i, Crew::Lock& lock) {
+    Film film;
+    if (weak.lock()->attempt(i, lock, [&] { film = run->workers[i]->renderer.film().read(); })) run->films[i] = std::move(film);
+  });
+  const Crew::Lock lock(crew->mutex());
+  for (const auto& worker : run->gone) again_.insert(again_.end(), worker->had.begin(), worker->had.end());
+  part_with(run->gone, run->last_failure);
+  if (!run->gone.empty()) return {};
+  Film out = std::move(*run->films.front());
+  for (std::size_t i = 1; i < run->films.size(); ++i) out.add(*run->films[i]);
+  // Whoever rendered what, it is all samples of the window, though its parts may not have been such as join.
+  if (out.parts().size() < 2) return out;
+  return Film(out.layout(), {out.words().begin(), out.words().end()}, {{out.layout().window, first_, next_ - first_}});
+}
+
+Film Session::film() {
+  std::optional<Film> film = gather();
+  while (!film) {
+    run(0, {}, {});
+    film = gather();
+  }
+  if (before_) film->add(*before_);
+  return std::move(*film);
+}
+
+std::optional<DeviceFilm> Session::film_on_device() const {
+  if (workers_.size() > 1 || before_ || !again_.empty()) return {};
+  return workers_.front()->renderer.film();
 }
 
 }  // namespace caplet

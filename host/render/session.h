@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "device/device.h"
@@ -16,28 +18,43 @@
 #include "lower/changes.h"
 #include "lower/flat_scene.h"
 #include "render/device_scene.h"
+#include "render/renderer.h"
 
 namespace caplet {
 
 struct SessionOptions {
   std::uint32_t sample_begin = 0;  // the first that is rendered of every pixel
   Layers layers = Layers::usual();
-  std::uint32_t pass_samples = 0;  // of every pixel that a device takes at a time; 0: what fills its batches
+  std::uint32_t pass_samples = 0;  // of every pixel, that a device takes at a time at most; 0: by its speed
   std::size_t batch_paths = 0;     // 0: chosen for each device
   std::uint32_t most_samples = 0;  // of every pixel that will be rendered, for small batches of small renders; 0: unknown
+  bool time_stages = false;        // wait for each stage and add up its seconds
+  double patience = 60;            // seconds that a device may take for an answer, where there are others
 };
 
 struct SessionProgress {
   std::uint32_t samples_done = 0;  // of every pixel, by all devices
   std::uint32_t sample_count = 0;  // asked for
+  double fraction = 0;             // of all paths, those of batches that are done counted
   double samples_per_second = 0;   // of all pixels
 };
 
-/// Devices take passes of samples from a common list until there are no more. What comes out does not depend on which device did
-/// what, on their number or on their speed, as long as they compute alike (devices of one kind do).
+/// What a device of a session has done.
+struct DeviceWork {
+  std::string name, driver, platform;
+  double paths = 0, paths_a_second = 0;  // in the film; lately
+  bool lost = false;                     // failed or hung: others have its work
+};
+
+using StageSeconds = std::vector<std::pair<std::string, double>>;
+
+/// Devices take samples from a common list until there are no more, by the speed that they show, so that all are done at the same
+/// time. What comes out does not depend on which device did what, on their number or on their speed, as long as they compute
+/// alike (devices of one kind do). One that fails, or gives no answer for `patience` seconds, is left out with a warning, and its
+/// work, which is lost with its film, is done again by the others; the last one's failure is the session's.
 class Session {
  public:
-  /// Sends the scene to every device and compiles. Throws RunError.
+  /// Sends the scene to every device and compiles. Throws RunError when no device can do it.
   Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options);
   ~Session();
 
@@ -49,32 +66,55 @@ class Session {
   /// layout.
   void resume(Film film);
 
-  /// Adds the next `sample_count` samples of every pixel, on a thread a device, and returns how many of them were finished: fewer
-  /// when it is cancelled, or its time limit (seconds) is over, which one pass is always made before. `progress`, when there is
-  /// one, is called from these threads, one at a time, after each pass. Throws RunError when a device fails; the film is then
-  /// empty.
+  /// Adds the next `sample_count` samples of every pixel, on a thread a device (a device alone: on this one), and returns how
+  /// many of them were finished: fewer when it is cancelled, or its time limit (seconds) is over, which some are always begun
+  /// before. Samples that are begun are finished for every pixel. `progress`, when there is one, is called from these threads,
+  /// one at a time, after each batch. Throws RunError when the last device fails; the film is then empty.
   std::uint32_t render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress = {},
                        std::optional<double> time_limit = {});
 
-  /// All that was added up.
-  Film film() const;
+  /// All that was added up. A device that fails now is left out as well, and what it had done is rendered again. Throws RunError.
+  Film film();
+  /// The same where it lies on one device as a whole: nothing when there are others, or what it was resumed with.
+  std::optional<DeviceFilm> film_on_device() const;
+  FilmLayout layout() const;
 
-  /// The render under way finishes its passes and begins no more; where there is none, the next one does. From any thread, a
-  /// progress function included.
-  void cancel() { cancelled_ = true; }
+  /// The render under way finishes what it has begun and begins no more; where there is none, the next one does. From any thread,
+  /// a progress function included.
+  void cancel() { *cancelled_ = true; }
 
-  /// The scene on one of the devices, for queries while nothing is rendered.
-  DeviceScene& scene_on(std::size_t device);
+  /// Of all devices that were there in the beginning; what follows, of those that there are now.
+  std::vector<DeviceWork> work() const;
+  RayCounts rays() const;
+  double compile_seconds() const;
+  StageSeconds compile_seconds_by_stage() const, seconds_by_stage() const;
+
+  /// The devices that there are now, and the scene on them, for queries while nothing is rendered.
+  std::size_t device_count() const { return workers_.size(); }
+  const Device& device(std::size_t number) const;
+  std::shared_ptr<DeviceScene> scene_on(std::size_t device) const;
 
  private:
   struct Worker;
+  struct Run;
+  using Workers = std::vector<std::shared_ptr<Worker>>;
   void clear();
+  void part_with(Workers gone, std::exception_ptr last_failure);
+  std::uint32_t run(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
+                    std::optional<double> time_limit);
+  std::optional<Film> gather();
 
   SessionOptions options_;
-  std::vector<std::unique_ptr<Worker>> workers_;
-  std::optional<Film> before_;  // what it was resumed with
-  std::uint32_t next_;          // the first sample that is not there
-  std::atomic<bool> cancelled_{false};
+  Workers workers_;
+  std::vector<DeviceWork> lost_;
+  std::vector<FilmPart> again_;  // what was lost with devices and is in no film now
+  std::optional<Film> before_;   // what it was resumed with
+  std::uint32_t first_, next_;   // the samples that its devices have rendered: up to, and without, the latter
+  std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
+
+/// Whether a thread of a session that hangs in a driver was given up, and has not come back: a program then ends without the
+/// destructors of static objects, which such a thread may still use.
+bool any_thread_given_up();
 
 }  // namespace caplet

@@ -2,17 +2,33 @@
 // Copyright Caplet authors
 #include "report/bands.h"
 
+#include <utility>
+
 namespace caplet::report {
 
-BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
+namespace {
+
+/// rows(first, count): these rows of the film, as a film.
+template <class Rows>
+BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers, NotFinite& not_finite, Rows rows) {
   BandedImage out;
-  out.whole = image_of(film.layout);
+  out.whole = image_of(layout);
   out.whole.space = scene.film.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
-  out.band = [&film, &scene, &not_finite, layers](int first, int rows) {
-    return develop(film.read(first, rows), scene, layers, not_finite);
+  out.band = [&scene, &not_finite, layers, rows](int first, int count) {
+    return develop(rows(first, count), scene, layers, not_finite);
   };
   return out;
+}
+
+}  // namespace
+
+BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
+  return in_bands(film.layout, scene, layers, not_finite, [&film](int first, int count) { return film.read(first, count); });
+}
+
+BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
+  return in_bands(film.layout(), scene, layers, not_finite, [&film](int first, int count) { return film.rows(first, count); });
 }
 
 }  // namespace caplet::report

@@ -13,5 +13,7 @@ namespace caplet::report {
 
 /// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `scene` and `not_finite`.
 BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite);
+/// The same of a film in memory.
+BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
 }  // namespace caplet::report

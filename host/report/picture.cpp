@@ -12,8 +12,15 @@
 
 namespace caplet::report {
 
+std::string of_devices(const RenderResult& result, std::string DeviceWork::*what) {
+  std::string out;
+  for (const DeviceWork& device : result.devices)
+    if (!device.lost) out += (out.empty() ? "" : ", ") + device.*what;
+  return out;
+}
+
 std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
-                                                    const Device& device, const RenderResult& result) {
+                                                    const RenderResult& result) {
   return {{"software", "Caplet " CAPLET_VERSION},
           {"caplet.version", CAPLET_VERSION},
           {"caplet.scene", scene_file},
@@ -21,9 +28,9 @@ std::map<std::string, std::string> picture_metadata(const Scene& scene, const st
           {"caplet.samples_per_pixel", fmt::format("{}", result.samples_per_pixel)},
           {"caplet.seed", fmt::format("{}", scene.sampler.seed)},
           {"caplet.max_depth", fmt::format("{}", scene.integrator.max_depth)},
-          {"caplet.device", device.info().name},
-          {"caplet.driver", device.info().driver},
-          {"caplet.platform", device.info().platform},
+          {"caplet.device", of_devices(result, &DeviceWork::name)},
+          {"caplet.driver", of_devices(result, &DeviceWork::driver)},
+          {"caplet.platform", of_devices(result, &DeviceWork::platform)},
           {"caplet.render_seconds", fmt::format("{:.3f}", result.render_seconds)},
           {"caplet.interrupted", result.interrupted ? "yes" : "no"}};
 }

@@ -8,7 +8,6 @@
 #include <map>
 #include <string>
 
-#include "device/device.h"
 #include "film/image.h"
 #include "render/render.h"
 #include "scene/scene.h"
@@ -18,7 +17,10 @@ namespace caplet::report {
 /// Attributes of a picture (docs/output.md). `scene_file` and `command`: how the scene was named, and what made the picture (a
 /// command line, a program's name).
 std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
-                                                    const Device& device, const RenderResult& result);
+                                                    const RenderResult& result);
+
+/// Of the devices that have made it, with commas.
+std::string of_devices(const RenderResult& result, std::string DeviceWork::*what);
 
 /// The picture and its preview, developed once, band by band. An empty path: not written. `channels`: of 32 bits;
 /// `render_seconds` weighs how long packing may take. Throws RunError.

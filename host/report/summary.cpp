@@ -6,6 +6,8 @@
 
 #include <set>
 
+#include "report/picture.h"
+
 namespace caplet::report {
 
 namespace {
@@ -79,7 +81,7 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   return out;
 }
 
-nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result, const Device& device) {
+nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result) {
   nlohmann::ordered_json out;
   out["seconds"] = {{"load", seconds.load},     {"build", seconds.build}, {"compile", seconds.compile},
                     {"render", seconds.render}, {"write", seconds.write}, {"total", seconds.total}};
@@ -91,8 +93,15 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
   out["samples_per_pixel"] = result.samples_per_pixel;
   out["interrupted"] = result.interrupted;
   out["rays"] = {{"camera", result.camera_rays}, {"bounce", result.bounce_rays}, {"shadow", result.shadow_rays}};
-  out["device"] = device.info().name;
-  out["driver"] = device.info().driver;
+  out["device"] = of_devices(result, &DeviceWork::name);
+  out["driver"] = of_devices(result, &DeviceWork::driver);
+  out["devices"] = nlohmann::ordered_json::array();
+  for (const DeviceWork& device : result.devices)
+    out["devices"].push_back({{"name", device.name},
+                              {"driver", device.driver},
+                              {"paths", device.paths},
+                              {"paths_per_second", device.paths_a_second},
+                              {"lost", device.lost}});
   out["peak_bytes"] = peak_process_bytes();
   out["peak_device_bytes"] = result.peak_device_bytes;
   return out;

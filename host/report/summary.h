@@ -28,7 +28,7 @@ struct RunSeconds {
 };
 
 /// seconds, samples_per_pixel, rays, device, peak_bytes and more (docs/cli.md).
-nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result, const Device& device);
+nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result);
 
 /// Text of a JSON value for people's terminals and files; bytes that are no UTF-8 are replaced.
 std::string to_text(const nlohmann::ordered_json& json);

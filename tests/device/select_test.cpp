@@ -66,6 +66,31 @@ TEST(Select, RefusalsListTheDevices) {
   EXPECT_THAT(refusal(some_devices(), "-1"), HasSubstr("no device has '-1' in its name"));
 }
 
+TEST(Select, SeveralAreAListOrAll) {
+  using testing::ElementsAre;
+  EXPECT_THAT(select_devices(some_devices(), "all"), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(select_devices(some_devices(), "2,0"), ElementsAre(2, 0));
+  EXPECT_THAT(select_devices(some_devices(), "gpu,cpu,odd"), ElementsAre(1, 0, 3));
+  EXPECT_THAT(select_devices(some_devices(), "1"), ElementsAre(1));
+  EXPECT_THAT(select_devices(some_devices(), ""), ElementsAre(1));
+  std::vector<DeviceInfo> devices = some_devices();
+  devices[3].name = "Odd, but even";
+  EXPECT_THAT(select_devices(devices, "odd, but"), ElementsAre(3));
+  const auto refused = [](const std::string& choice) {
+    try {
+      select_devices(some_devices(), choice);
+    } catch (const UnknownDevice& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_THAT(refused("0,1,0"), HasSubstr("device 0 is named twice in '0,1,0'; the devices are 0 'pthread-EPYC'"));
+  EXPECT_THAT(refused("0,cpu"), HasSubstr("device 0 is named twice"));
+  EXPECT_THAT(refused("0,"), HasSubstr("'0,' is no list of devices"));
+  EXPECT_THAT(refused("0,4"), HasSubstr("no device has the index 4"));
+  EXPECT_THROW(select_devices({}, "all"), NoDevice);
+}
+
 TEST(Select, NothingToChooseFromNamesThePackage) {
   EXPECT_THAT(refusal({}, ""), AllOf(HasSubstr("failed: no OpenCL device"), HasSubstr("pocl-opencl-icd")));
   EXPECT_THAT(refusal({}, "0"), HasSubstr("pocl-opencl-icd"));

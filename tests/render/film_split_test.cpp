@@ -149,13 +149,17 @@ TEST(FilmSplit, DevicesShareTheSamples) {
     Session session(model().flat, model().view, devices, {.layers = Layers::all(), .pass_samples = 5});
     for (const std::uint32_t count : {samples / 4, samples - samples / 4}) {
       std::uint32_t told = 0;
+      double fraction = 0;
       EXPECT_EQ(session.render(count,
                                [&](const SessionProgress& progress) {
-                                 EXPECT_LT(told, progress.samples_done);
+                                 EXPECT_LE(told, progress.samples_done);
+                                 EXPECT_LE(fraction, progress.fraction);
                                  told = progress.samples_done;
+                                 fraction = progress.fraction;
                                }),
                 count);
       EXPECT_EQ(told, count);
+      EXPECT_EQ(fraction, 1);
     }
     EXPECT_TRUE(same(session.film(), whole())) << parts;
   }

@@ -8,7 +8,6 @@
 
 #include "caplet/film.h"
 #include "caplet/render.h"
-#include "device/device.h"
 #include "render/session.h"
 #include "scene/scene.h"
 
@@ -21,8 +20,8 @@ struct SessionRuns {
 
   /// Adds the next samples and returns how many were finished.
   std::uint32_t render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options);
-  /// What there is of `scene` now. `device`: that is named in its pictures.
-  Film film(const caplet::Session& session, const caplet::Scene& scene, const caplet::Device& device) const;
+  /// What there is of `scene` now.
+  Film film(caplet::Session& session, const caplet::Scene& scene) const;
 };
 
 }  // namespace caplet::v0

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "render/detail/shares.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace caplet {
+
+namespace {
+
+// Camera rays go through the picture in tiles of 8 x 8 pixels (kernels/stages/path.cl).
+constexpr int tile_rows = 8;
+
+double paths_of(const FilmPart& part) { return static_cast<double>(part.window.pixels()) * part.sample_count; }
+
+std::uint32_t end_of(const FilmPart& part) { return part.sample_begin + part.sample_count; }
+
+}  // namespace
+
+void Speed::measured(double paths, double seconds) {
+  paths_ = 0.5 * paths_ + paths;
+  seconds_ = 0.5 * seconds_ + seconds;
+}
+
+double part_paths(double open, double speed, double all_speed) {
+  return std::clamp(0.5 * open * speed / all_speed, least_part_seconds * speed, most_part_seconds * speed);
+}
+
+FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples, std::vector<FilmPart>& rest) {
+  FilmPart part = from;
+  const auto pixels = static_cast<double>(from.window.pixels());
+  const double samples = std::min(paths / pixels, static_cast<double>(std::min(most_samples, from.sample_count)));
+  if (samples >= 1) {
+    part.sample_count = static_cast<std::uint32_t>(samples);
+  } else {
+    part.sample_count = 1;
+    int rows = std::max(1, static_cast<int>(paths / from.window.width));
+    if (rows >= tile_rows) rows -= rows % tile_rows;
+    part.window.height = std::min(rows, from.window.height);
+  }
+  if (part.window.height < from.window.height) {
+    FilmPart below = from;
+    below.window.y += part.window.height;
+    below.window.height -= part.window.height;
+    below.sample_count = part.sample_count;
+    rest.push_back(below);
+  }
+  if (part.sample_count < from.sample_count) {
+    FilmPart later = from;
+    later.sample_begin += part.sample_count;
+    later.sample_count -= part.sample_count;
+    rest.push_back(later);
+  }
+  return part;
+}
+
+Shares::Shares(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
+               std::vector<Worker> workers)
+    : begin_(begin), end_(begin + count), begun_end_(begin), open_(again.begin(), again.end()), workers_(std::move(workers)) {
+  if (count > 0) open_.push_back({window, begin, count});
+}
+
+std::optional<FilmPart> Shares::take(std::size_t worker) {
+  Worker& to = workers_[worker];
+  if (open_.empty() || !to.there) return {};
+  const FilmPart from = open_.front();
+  std::uint32_t most_samples = to.most_samples;
+  double paths = paths_of(from);
+  if (workers_.size() > 1) {
+    double known = 0, there = 0, fastest = 0;
+    for (const Worker& each : workers_)
+      if (each.there && each.speed.paths_a_second() > 0) {
+        known += each.speed.paths_a_second();
+        fastest = std::max(fastest, each.speed.paths_a_second());
+        ++there;
+      }
+    const double speed = to.speed.paths_a_second();
+    if (speed > 0) {
+      // Those whose speed is not known count as the mean of the others.
+      const double all = known / there * static_cast<double>(workers_there());
+      paths = part_paths(open_paths(), speed, all);
+      // One that is so slow that the others would be done before it had a row.
+      const double least = from.window.width;
+      if (speed < fastest && least / speed > open_paths() / (known - speed) + least_part_seconds) return {};
+    } else {
+      paths = std::min(static_cast<double>(to.batch_paths), 0.5 * open_paths() / static_cast<double>(workers_there()));
+    }
+  }
+  std::vector<FilmPart> rest;
+  const FilmPart part = cut_part(from, paths, most_samples, rest);
+  open_.pop_front();
+  open_.insert(open_.begin(), rest.begin(), rest.end());
+  begun_end_ = std::max(begun_end_, std::min(end_of(part), end_));
+  to.under_way = part;
+  return part;
+}
+
+void Shares::done(std::size_t worker, double seconds) {
+  Worker& by = workers_[worker];
+  by.speed.measured(paths_of(*by.under_way), seconds);
+  paths_done_ += new_paths(*by.under_way);
+  by.under_way.reset();
+}
+
+void Shares::lose(std::size_t worker, std::span<const FilmPart> had) {
+  Worker& lost = workers_[worker];
+  lost.there = false;
+  for (const FilmPart& part : had) paths_done_ -= new_paths(part);
+  open_.insert(open_.begin(), had.begin(), had.end());
+  if (lost.under_way) open_.push_front(*lost.under_way);
+  lost.under_way.reset();
+  std::ranges::stable_sort(open_, {}, &FilmPart::sample_begin);
+}
+
+void Shares::close() {
+  end_ = begun_end_;
+  std::deque<FilmPart> left;
+  for (FilmPart part : open_) {
+    if (part.sample_begin >= end_) continue;
+    part.sample_count = std::min(part.sample_count, end_ - part.sample_begin);
+    left.push_back(part);
+  }
+  open_ = std::move(left);
+}
+
+bool Shares::complete() const {
+  return open_.empty() && std::ranges::none_of(workers_, [](const Worker& each) { return each.under_way.has_value(); });
+}
+
+std::size_t Shares::workers_there() const {
+  return static_cast<std::size_t>(std::ranges::count_if(workers_, [](const Worker& each) { return each.there; }));
+}
+
+double Shares::open_paths() const {
+  return std::accumulate(open_.begin(), open_.end(), 0.0, [](double sum, const FilmPart& part) { return sum + paths_of(part); });
+}
+
+double Shares::new_paths(const FilmPart& part) const {
+  const std::uint32_t end = end_of(part), first = std::min(end, std::max(part.sample_begin, begin_));
+  return static_cast<double>(part.window.pixels()) * (end - first);
+}
+
+}  // namespace caplet

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Who renders what, without devices: every path once, by speed, done at the same time, and again where a worker is lost.
+#include "render/detail/shares.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <tuple>
+
+namespace caplet::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Window picture{10, 20, 100, 60};
+
+Shares::Worker worker(std::size_t batch_paths = 1 << 12) { return {{}, batch_paths, 1 << 12}; }
+
+/// How often each pixel's samples were rendered.
+class Count {
+ public:
+  void add(const FilmPart& part, int times = 1) {
+    for (int y = part.window.y; y < part.window.y + part.window.height; ++y)
+      for (std::uint32_t s = part.sample_begin; s < part.sample_begin + part.sample_count; ++s) {
+        EXPECT_EQ(part.window.x, picture.x);
+        EXPECT_EQ(part.window.width, picture.width);
+        rows_[{y, s}] += times;
+      }
+  }
+  void expect_once(std::uint32_t begin, std::uint32_t end) const {
+    std::size_t found = 0;
+    for (const auto& [at, times] : rows_) {
+      if (times == 0) continue;
+      EXPECT_EQ(times, 1) << at.first << " " << at.second;
+      EXPECT_TRUE(at.first >= picture.y && at.first < picture.y + picture.height) << at.first;
+      EXPECT_TRUE(at.second >= begin && at.second < end) << at.second;
+      ++found;
+    }
+    EXPECT_EQ(found, std::size_t{picture.height} * (end - begin));
+  }
+
+ private:
+  std::map<std::pair<int, std::uint32_t>, int> rows_;
+};
+
+/// Workers of given speeds in a time of their own.
+class Simulation {
+ public:
+  Simulation(Shares& shares, std::vector<double> speeds) : shares_(shares), speeds_(std::move(speeds)), busy_(speeds_.size()) {
+    films_.resize(speeds_.size());
+    lost_.resize(speeds_.size());
+  }
+
+  /// Until all is done; the worker `loses` is lost at time `at`. Returns when the first and the last one ran out of work.
+  std::pair<double, double> run(std::size_t loses = SIZE_MAX, double at = 0) {
+    double time = 0, idle_since = 0;
+    while (true) {
+      bool any_idle = false;
+      for (std::size_t i = 0; i < speeds_.size(); ++i) {
+        if (lost_[i] || busy_[i].part) continue;
+        busy_[i].part = shares_.take(i);
+        if (!busy_[i].part) {
+          any_idle = true;
+          continue;
+        }
+        ++parts;
+        busy_[i].seconds = paths_of(*busy_[i].part) / speeds_[i];
+        busy_[i].until = time + busy_[i].seconds;
+      }
+      if (!any_idle) idle_since = 1e30;
+      if (any_idle && idle_since == 1e30) idle_since = time;
+      std::size_t next = SIZE_MAX;
+      for (std::size_t i = 0; i < busy_.size(); ++i)
+        if (!lost_[i] && busy_[i].part && (next == SIZE_MAX || busy_[i].until < busy_[next].until)) next = i;
+      if (loses < lost_.size() && !lost_[loses] && (next == SIZE_MAX || busy_[next].until >= at)) {
+        time = at;
+        lost_[loses] = true;
+        shares_.lose(loses, films_[loses]);
+        for (const FilmPart& part : films_[loses]) count.add(part, -1);
+        continue;
+      }
+      if (next == SIZE_MAX) return {idle_since, time};
+      time = busy_[next].until;
+      shares_.done(next, busy_[next].seconds);
+      count.add(*busy_[next].part);
+      films_[next].push_back(*busy_[next].part);
+      done[next] += paths_of(*busy_[next].part);
+      busy_[next].part.reset();
+    }
+  }
+
+  Count count;
+  std::map<std::size_t, double> done;
+  int parts = 0;
+
+ private:
+  static double paths_of(const FilmPart& part) { return static_cast<double>(part.window.pixels()) * part.sample_count; }
+  struct Busy {
+    std::optional<FilmPart> part;
+    double seconds = 0, until = 0;
+  };
+  Shares& shares_;
+  std::vector<double> speeds_;
+  std::vector<Busy> busy_;
+  std::vector<std::vector<FilmPart>> films_;
+  std::vector<bool> lost_;
+};
+
+TEST(Shares, PartsAreCutInSamplesOrRowsOfTiles) {
+  const FilmPart all{{0, 0, 100, 60}, 4, 10};
+  std::vector<FilmPart> rest;
+  EXPECT_EQ(cut_part(all, 18500, 100, rest), (FilmPart{{0, 0, 100, 60}, 4, 3}));
+  EXPECT_THAT(rest, ElementsAre(FilmPart{{0, 0, 100, 60}, 7, 7}));
+  rest.clear();
+  EXPECT_EQ(cut_part(all, 1e9, 4, rest), (FilmPart{{0, 0, 100, 60}, 4, 4}));  // no more samples than a batch takes
+  rest.clear();
+  EXPECT_EQ(cut_part(all, 1e9, 100, rest), all);
+  EXPECT_THAT(rest, IsEmpty());
+  EXPECT_EQ(cut_part(all, 1950, 100, rest), (FilmPart{{0, 0, 100, 16}, 4, 1}));  // 19 rows: two rows of tiles
+  EXPECT_THAT(rest, ElementsAre(FilmPart{{0, 16, 100, 44}, 4, 1}, FilmPart{{0, 0, 100, 60}, 5, 9}));
+  rest.clear();
+  EXPECT_EQ(cut_part(all, 350, 100, rest), (FilmPart{{0, 0, 100, 3}, 4, 1}));
+  rest.clear();
+  EXPECT_EQ(cut_part(all, 1, 100, rest), (FilmPart{{0, 0, 100, 1}, 4, 1}));
+  rest.clear();
+  EXPECT_EQ(cut_part({{0, 56, 100, 4}, 9, 1}, 399, 100, rest), (FilmPart{{0, 56, 100, 3}, 9, 1}));
+  EXPECT_THAT(rest, ElementsAre(FilmPart{{0, 59, 100, 1}, 9, 1}));
+}
+
+// Half of what a worker's speed makes its share, within bounds in seconds.
+TEST(Shares, SizesAreHalfOfWhatIsLeftBySpeed) {
+  EXPECT_DOUBLE_EQ(part_paths(1000, 300, 1000), 150);
+  EXPECT_DOUBLE_EQ(part_paths(1000, 300, 600), 250);
+  EXPECT_DOUBLE_EQ(part_paths(1e6, 300, 600), 300);  // a second
+  EXPECT_DOUBLE_EQ(part_paths(1, 300, 600), 6);      // a fiftieth
+}
+
+TEST(Shares, SpeedsForgetWhatWas) {
+  Speed speed;
+  EXPECT_EQ(speed.paths_a_second(), 0);
+  speed.measured(1000, 1);
+  EXPECT_DOUBLE_EQ(speed.paths_a_second(), 1000);
+  speed.measured(1000, 4);
+  EXPECT_DOUBLE_EQ(speed.paths_a_second(), 1500 / 4.5);
+  for (int i = 0; i < 20; ++i) speed.measured(10, 1);
+  EXPECT_NEAR(speed.paths_a_second(), 10, 1e-2);
+}
+
+TEST(Shares, AWorkerAloneTakesWholePasses) {
+  Shares shares(picture, 5, 10, {}, {{{}, 1 << 17, 4}});
+  EXPECT_EQ(shares.take(0), (FilmPart{picture, 5, 4}));
+  EXPECT_FALSE(shares.complete());
+  shares.done(0, 1);
+  EXPECT_EQ(shares.paths_done(), 4.0 * picture.width * picture.height);
+  EXPECT_EQ(shares.take(0), (FilmPart{picture, 9, 4}));
+  shares.done(0, 1);
+  EXPECT_EQ(shares.take(0), (FilmPart{picture, 13, 2}));
+  shares.done(0, 1);
+  EXPECT_EQ(shares.take(0), std::nullopt);
+  EXPECT_TRUE(shares.complete());
+  EXPECT_EQ(shares.samples(), 10u);
+}
+
+// Of any speeds all are done together, and each has done what its speed makes of the whole.
+TEST(Shares, AreBySpeedAndEndTogether) {
+  for (const std::vector<double>& speeds : std::vector<std::vector<double>>{
+           {1e5, 1e5}, {1e5, 3e5}, {2e4, 1e6}, {1e5, 1e5, 1e5, 1e5}, {3e5, 1e5, 2e5}, {1e3, 1e6, 2e6}}) {
+    constexpr std::uint32_t samples = 4000;
+    Shares shares(picture, 3, samples, {}, std::vector<Shares::Worker>(speeds.size(), worker()));
+    Simulation simulation(shares, speeds);
+    const auto [first, last] = simulation.run();
+    EXPECT_TRUE(shares.complete());
+    simulation.count.expect_once(3, 3 + samples);
+    double all = 0;
+    for (const double speed : speeds) all += speed;
+    const double whole = static_cast<double>(picture.pixels()) * samples;
+    // A worker may begin its last part, of a fiftieth of a second or a row, just before the others have none; and the first
+    // parts, before speeds are known, are a batch.
+    const double slowest = *std::ranges::min_element(speeds);
+    EXPECT_LT(last - first, std::max(0.02, picture.width / slowest) + 1e-9) << testing::PrintToString(speeds);
+    EXPECT_LT(last, whole / all * 1.02 + 0.05) << testing::PrintToString(speeds);
+    EXPECT_LT(simulation.parts, 40 * static_cast<int>(speeds.size()) + 2 * last * static_cast<double>(speeds.size()));
+  }
+}
+
+TEST(Shares, WhatALostWorkerHadIsDoneAgain) {
+  for (int seed = 0; seed < 40; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const auto draw = [&](unsigned most) { return static_cast<double>(1 + random() % most); };
+    const std::vector<double> speeds{1e5 * draw(5), 1e5 * draw(5), 1e5};
+    constexpr std::uint32_t samples = 300;
+    Shares shares(picture, 7, samples, {}, std::vector<Shares::Worker>(3, worker()));
+    Simulation simulation(shares, speeds);
+    simulation.run(random() % 3, 0.01 * draw(400));
+    EXPECT_TRUE(shares.complete());
+    EXPECT_EQ(shares.workers_there(), 2u);
+    simulation.count.expect_once(7, 7 + samples);
+    EXPECT_DOUBLE_EQ(shares.paths_done(), static_cast<double>(picture.pixels()) * samples);
+    EXPECT_EQ(shares.samples(), samples);
+  }
+}
+
+// Samples of earlier renders, which a lost worker's film had, come back as well; they do not count as this render's.
+TEST(Shares, WhatIsToBeDoneAgainComesFirst) {
+  Shares shares(picture, 20, 1, {{picture, 3, 2}}, {worker(), worker()});
+  Simulation simulation(shares, {1e5, 1e5});
+  simulation.run();
+  EXPECT_DOUBLE_EQ(shares.paths_done(), static_cast<double>(picture.pixels()));
+  Count again;
+  Shares others(picture, 20, 0, {{picture, 3, 2}}, {worker()});
+  while (const auto part = others.take(0)) {
+    again.add(*part);
+    others.done(0, 1);
+  }
+  again.expect_once(3, 5);
+  EXPECT_EQ(others.samples(), 0u);
+  EXPECT_EQ(others.paths_done(), 0);
+}
+
+// What is begun is finished for every pixel, and nothing else.
+TEST(Shares, ClosedOnesFinishWhatIsBegun) {
+  Shares shares(picture, 7, 100, {}, {worker(1000), worker(1000)});
+  EXPECT_FALSE(shares.begun());
+  const FilmPart first = *shares.take(0);
+  EXPECT_TRUE(shares.begun());
+  EXPECT_EQ(first.sample_count, 1u);
+  EXPECT_LT(first.window.height, picture.height);
+  shares.close();
+  EXPECT_EQ(shares.samples(), 1u);
+  Count count;
+  count.add(first);
+  shares.done(0, 0.1);
+  while (const auto part = shares.take(0)) {
+    count.add(*part);
+    shares.done(0, 0.1);
+  }
+  EXPECT_TRUE(shares.complete());
+  count.expect_once(7, 8);
+  Shares none(picture, 7, 100, {}, {worker()});
+  none.close();
+  EXPECT_EQ(none.take(0), std::nullopt);
+  EXPECT_EQ(none.samples(), 0u);
+}
+
+// One that needs longer for a row than the others for everything leaves it to them, until they are lost.
+TEST(Shares, TheSlowLeaveTheEndToOthers) {
+  Shares::Worker slow = worker(), fast = worker();
+  slow.speed.measured(10, 1);
+  fast.speed.measured(1e6, 1);
+  Shares shares(picture, 0, 2, {}, {slow, fast});
+  EXPECT_EQ(shares.take(0), std::nullopt);
+  EXPECT_FALSE(shares.complete());
+  EXPECT_TRUE(shares.take(1).has_value());
+  shares.lose(1, {});
+  EXPECT_TRUE(shares.take(0).has_value());
+}
+
+}  // namespace
+}  // namespace caplet::test
