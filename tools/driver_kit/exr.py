@@ -99,8 +99,8 @@ def difference(one, other):
     """None where all channels are equal to the bit; else a dictionary:
 
     rms: of the differences of R, G, B, in units of the mean of `other`; noise: that in units of the noise that both pictures state
-    (variance.R ...: 1.41 for pictures of other seeds is impossible to miss, as independent ones have 1); shift: the difference of
-    the means in units of its standard error; pixels: with another object.id or primitive.id; of: pixels in all.
+    (variance.R ...; independent pictures have 1); shift: the difference of the means in units of its standard error; pixels: with
+    another object.id or primitive.id; of: pixels in all.
     """
     if one.channels.keys() != other.channels.keys() or (one.width, one.height) != (other.width, other.height):
         raise ValueError("pictures of different channels or sizes")
