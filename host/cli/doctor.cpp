@@ -68,7 +68,7 @@ void add_doctor(CLI::App& app) {
   command->add_flag("--json", chosen->json, "Print a JSON object for machines");
   command->footer("Exit codes: 0 nothing is wrong, 1 something is, 2 the usage is.");
   command->callback([chosen] {
-    chosen->options.least_bytes = batch_bytes;
+    chosen->options.least_bytes = [](bool) { return least_batch_bytes(); };
     chosen->options.test = [](const Device& device) { try_device(device, whole_trial); };
     const bool json = chosen->json;
     const doctor::Diagnosis diagnosis = with_device_flag([&] {

@@ -69,12 +69,20 @@ std::string name_of(Encoding encoding);
 /// each lane itself.
 Encoding natural_encoding(const DeviceInfo& info);
 
+/// How a device is kept busy: as processors are, or as GPUs, with larger batches of work and without the host between their
+/// parts.
+enum class Profile { cpu, gpu };
+
+/// What the environment variable CAPLET_PROFILE says, "cpu" or "gpu", else what the device is. Throws InputError for any other
+/// text.
+Profile profile_of(const DeviceInfo& info);
+
 /// A chosen device with its context and in-order queue. Copies share them.
 class Device {
  public:
   /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
   /// Throws UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment
-  /// variable CAPLET_ENCODING says, else natural_encoding.
+  /// variable CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
   /// Several: "all", or such choices between commas, none of them twice; errors as choose.
@@ -88,6 +96,7 @@ class Device {
   bool is_cpu() const { return info_.type == "cpu"; }
   /// Wide or single.
   Encoding encoding() const { return encoding_; }
+  Profile profile() const { return profile_; }
   /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
   /// keeps the results on disk itself.
   bool is_pocl() const { return info_.platform.starts_with("Portable Computing Language"); }
@@ -109,6 +118,7 @@ class Device {
   static Device open(const cl::Device& device, const DeviceInfo& info, Encoding encoding);
   DeviceInfo info_;
   Encoding encoding_ = Encoding::single;
+  Profile profile_ = Profile::cpu;
   cl::Device device_;
   cl::Context context_;
   std::shared_ptr<cl::CommandQueue> queue_;
@@ -216,9 +226,12 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
   (detail::set_argument(device, kernel, index++, values), ...);
 }
 
-/// Enqueues `kernel` over `count` work-items (rounded up to `local`; the kernel checks its index). Throws RunError naming the
-/// kernel.
-void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
+/// Enqueues `kernel` over work-items `first` to `first` + `count` (which is rounded up to `local`; the kernel checks its index).
+/// Throws RunError naming the kernel.
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local, std::size_t first = 0);
+
+/// The most work-items of a group, up to `wanted`, in halves of it, with which the device can run the kernel.
+std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::size_t wanted);
 
 /// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep
 /// the device's units busy to the end. Throws RunError naming the kernel.

@@ -85,6 +85,15 @@ Encoding natural_encoding(const DeviceInfo& info) {
   return info.type == "cpu" && info.native_float_width > 1 ? Encoding::wide : Encoding::single;
 }
 
+Profile profile_of(const DeviceInfo& info) {
+  constexpr const char* variable = "CAPLET_PROFILE";
+  const char* named = std::getenv(variable);
+  const std::string text = named ? named : "";
+  if (text == "cpu" || text == "gpu") return text == "cpu" ? Profile::cpu : Profile::gpu;
+  if (!text.empty()) throw InputError(SourceLocation{variable}, "'" + text + "' is not cpu or gpu");
+  return info.type == "cpu" ? Profile::cpu : Profile::gpu;
+}
+
 Encoding parse_encoding(const std::string& text, const char* place) {
   for (const Encoding encoding : {Encoding::automatic, Encoding::wide, Encoding::single})
     if (text == name_of(encoding)) return encoding;
@@ -116,7 +125,8 @@ std::vector<Device> Device::chosen(Encoding encoding,
   std::vector<Device> out;
   for (const std::size_t index : select(infos)) {
     const Found& found = devices[index];
-    out.push_back(open(found.device, found.info, encoding == Encoding::automatic ? natural_encoding(found.info) : encoding));
+    const Encoding natural = profile_of(found.info) == Profile::gpu ? Encoding::single : natural_encoding(found.info);
+    out.push_back(open(found.device, found.info, encoding == Encoding::automatic ? natural : encoding));
   }
   return out;
 }
@@ -125,6 +135,7 @@ Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding e
   Device out;
   out.info_ = info;
   out.encoding_ = encoding;
+  out.profile_ = profile_of(info);
   out.device_ = device;
   cl_call("opening the device", info.name, [&] {
     out.context_ = cl::Context(device);

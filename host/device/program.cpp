@@ -159,14 +159,23 @@ void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint inde
   cl_call(fmt::format("argument {} of kernel '{}'", index, name), device_name, [&] { kernel.setArg(index, bytes, value); });
 }
 
-void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local) {
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local, std::size_t first) {
   if (count == 0) return;
   CHECK_LT_(std::size_t{0}, local);
   const std::string& device_name = device.info().name;
   const std::string name = cl_call("a kernel's name", device_name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
   const std::size_t global = (count + local - 1) / local * local;
-  cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local), device_name,
-          [&] { device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(global), cl::NDRange(local)); });
+  cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local), device_name, [&] {
+    device.queue().enqueueNDRangeKernel(kernel, first > 0 ? cl::NDRange(first) : cl::NullRange, cl::NDRange(global),
+                                        cl::NDRange(local));
+  });
+}
+
+std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::size_t wanted) {
+  const std::size_t most = cl_call("a kernel's work-group size", device.info().name,
+                                   [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle()); });
+  while (wanted > 1 && wanted > most) wanted /= 2;
+  return wanted;
 }
 
 std::size_t share_count(const Device& device, std::size_t count) {

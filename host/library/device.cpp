@@ -32,4 +32,13 @@ Device choose_device(const std::string& choice) {
   return Inside::device(std::move(device), std::move(info));
 }
 
+std::vector<Device> choose_devices(const std::string& choice) {
+  std::vector<Device> out;
+  for (caplet::Device& device : caplet::Device::choose_several(choice)) {
+    DeviceInfo info = to_public(device.info());
+    out.push_back(Inside::device(std::move(device), std::move(info)));
+  }
+  return out;
+}
+
 }  // namespace caplet::v0

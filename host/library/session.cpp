@@ -72,7 +72,7 @@ struct Session::Data {
 
   Questions questions() {
     if (const auto scene = session.scene_on(0); scene != asked) {  // another one, where the first device is gone
-      query.emplace(scene);
+      query.emplace(*scene);
       asked = scene;
     }
     return {*query, live.scene(), live.flat().shapes, session.device(0)};

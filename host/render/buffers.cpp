@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "render/buffers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/check.h"
@@ -78,6 +80,34 @@ const std::vector<float>& sent_of(const std::vector<float>& values, const FlatSc
   return &values == &flat.nodes && !packed.empty() ? packed : values;
 }
 
+/// Throws RunError that names what is too large.
+void require_fit(const Device& device, const FlatScene& flat, const std::vector<float>& packed) {
+  const DeviceInfo& info = device.info();
+  constexpr double megabytes = 1e-6;
+  const char* largest = "";
+  std::uint64_t largest_bytes = 0, all_bytes = 0;
+  const auto add = [&](const char* name, std::uint64_t bytes) {
+    all_bytes += bytes;
+    if (bytes <= largest_bytes) return;
+    largest = name;
+    largest_bytes = bytes;
+  };
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) add(#name, contents(sent_of(flat.name, flat, packed)).size_bytes());
+  SCENE_GROUPS
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+  const std::uint64_t left = info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
+  if (all_bytes <= left && largest_bytes <= info.max_allocation_bytes) return;
+  throw RunError(fmt::format(
+      "the scene takes {:.0f} MB on a device, {:.0f} MB of them in one buffer ({}); device '{}' has {:.0f} MB left, and allows "
+      "{:.0f} MB in one buffer",
+      static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes, largest, info.name,
+      static_cast<double>(left) * megabytes, static_cast<double>(info.max_allocation_bytes) * megabytes));
+}
+
 }  // namespace
 
 #define GROUP_BEGIN(Type, group) \
@@ -88,6 +118,7 @@ const std::vector<float>& sent_of(const std::vector<float>& values, const FlatSc
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
   const std::vector<float> packed = encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
+  require_fit(device, flat, packed);
   SCENE_GROUPS
 }
 #undef BUFFER
@@ -130,6 +161,19 @@ void PathBuffers::bind(Bindings& bindings) const {PATH_GROUPS}
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+
+std::uint64_t PathBuffers::largest_bytes_per_path(Layers of_film) {
+  std::uint64_t bytes = floats_per_path(of_film) * sizeof(float);
+#define GROUP_BEGIN(Type, group)
+#define BUFFER(name, type, access) bytes = std::max<std::uint64_t>(bytes, bytes_##access * sizeof(type));
+#define GROUP_END(Type)
+  constexpr std::uint64_t bytes_ONE = 0, bytes_STATE = 1;
+  PATH_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+  return bytes;
+}
 
 std::uint64_t PathBuffers::bytes_per_path(Layers of_film) {
   std::uint64_t bytes = (floats_per_path(of_film) - 1) * sizeof(float);

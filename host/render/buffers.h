@@ -47,7 +47,7 @@ struct Bindings {
 struct SceneBuffers {
   SCENE_GROUPS
 
-  /// `encoding`: what the nodes are for; automatic: the device's.
+  /// `encoding`: what the nodes are for; automatic: the device's. Throws RunError, before anything is allocated, when it does not fit.
   SceneBuffers(const Device& device, const FlatScene& scene, Encoding encoding = Encoding::automatic);
   /// Sends what has changed, and returns its bytes. Buffers that have grown are made anew, with some room to grow on.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
@@ -66,14 +66,15 @@ struct SensorBuffers {
   void bind(Bindings& bindings) const;
 };
 
-/// Those of paths under way, which have `paths` places and `sort_bins` bins, for a film of such layers.
+/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them, for a film of such layers.
 struct PathBuffers {
   PATH_GROUPS
 
   PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film);
   void bind(Bindings& bindings) const;
-  /// Bytes on the device of each path.
+  /// Bytes on the device of each path, in all buffers or in the largest one.
   static std::uint64_t bytes_per_path(Layers of_film);
+  static std::uint64_t largest_bytes_per_path(Layers of_film);
 };
 
 #undef GROUP_BEGIN

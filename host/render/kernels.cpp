@@ -6,16 +6,16 @@
 
 #include <chrono>
 
+#include <algorithm>
+#include <string_view>
+
 #include "base/check.h"
+#include "render/detail/drive.h"
 #include "render/detail/known_rays.h"
 
 namespace caplet {
 
 namespace {
-
-// One work-item at a time suits PoCL's tracing (docs/performance.md); GPUs need whole wavefronts.
-constexpr std::size_t cpu_local_size = 64;
-constexpr std::size_t gpu_local_size = 64;
 
 constexpr const char* stage_names[] = {
 #define STAGE(name, groups) #name,
@@ -97,10 +97,11 @@ std::size_t buffer_count(Stage stage) {
 }
 
 std::string stage_source(Stage stage, const RowMasks& rows) {
+  const std::string_view groups = stage_groups[static_cast<std::size_t>(stage)];
   return flatten_kernels(
-      fmt::format("#define STAGE_NAME {0}\n#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
+      fmt::format("#define STAGE_NAME {0}\n{2}#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
                   "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
-                  name_of(stage), stage_groups[static_cast<std::size_t>(stage)]),
+                  name_of(stage), groups, groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
       rows);
 }
 
@@ -124,7 +125,7 @@ StageOptions StageOptions::together_with(const StageOptions& others) const {
 }
 
 Kernels::Kernels(const Device& device, StageOptions options)
-    : device_(device), options_(std::move(options)), local_size_(device.is_cpu() ? cpu_local_size : gpu_local_size) {}
+    : device_(device), options_(std::move(options)), local_size_(drive_of(device.profile()).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
   return stage_traces[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;
@@ -136,32 +137,29 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
     if (compiled) continue;
     const std::string name = name_of(stage);
     Program program = Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
-    program.prepare(name, local_size_of(stage),
-                    stage == Stage::sort_prefix ? 1
-                    : takes_shares(stage)       ? share_count(device_, most)
-                                                : most);
+    cl::Kernel kernel = program.kernel(name);
+    const bool is_one = stage == Stage::advance || (stage == Stage::sort_prefix && device_.profile() == Profile::cpu);
+    const std::size_t local = is_one || takes_shares(stage) ? 1 : local_size_for(device_, kernel, local_size_);
+    program.prepare(name, local, is_one ? 1 : takes_shares(stage) ? share_count(device_, most) : most);
     compile_seconds_ += program.build_seconds();
     compile_seconds_by_stage_.emplace_back(name, program.build_seconds());
-    cl::Kernel kernel = program.kernel(name);
-    compiled = Compiled{std::move(program), std::move(kernel)};
+    compiled = Compiled{std::move(program), std::move(kernel), local};
   }
 }
 
-std::size_t Kernels::local_size_of(Stage stage) const {
-  return stage == Stage::sort_prefix || takes_shares(stage) ? 1 : local_size_;
-}
-
-void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count) {
+void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first, cl_uint counter) {
   if (count == 0) return;
   auto& compiled = compiled_[static_cast<std::size_t>(stage)];
   CHECK_EQ_(compiled.has_value(), true);
   const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
-  compiled->kernel.setArg(index, narrow<cl_uint>(count));
+  compiled->kernel.setArg(index, narrow<cl_uint>(first + count));
+  compiled->kernel.setArg(index + 1, counter);
   const auto start = std::chrono::steady_clock::now();
   if (takes_shares(stage))
     launch_shares(device_, compiled->kernel, count);
   else
-    launch(device_, compiled->kernel, count, local_size_of(stage));
+    for (const std::size_t end = first + count, most = chunk_ > 0 ? chunk_ : count; first < end; first += most)
+      launch(device_, compiled->kernel, std::min(most, end - first), compiled->local_size, first);
   if (!timed_) return;
   device_.finish();
   compiled->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

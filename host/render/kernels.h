@@ -51,8 +51,11 @@ class Kernels {
 
   /// Compiles those that are not compiled yet, for launches of at most `most` work-items. Throws RunError.
   void compile(std::span<const Stage> stages, std::size_t most);
-  /// Enqueues a stage, which is compiled, over `count` work-items. With timing on, waits for it and adds its seconds.
-  void run(Stage stage, const Bindings& bindings, std::size_t count);
+  /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`: of these, where `counter` is the number of one
+  /// (limits.h), as many as it says. With timing on, waits for it and adds its seconds.
+  void run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first = 0, cl_uint counter = ~cl_uint{0});
+  /// Most work-items of one launch, of stages that take one item each; 0: any number.
+  void set_chunk(std::size_t chunk) { chunk_ = chunk; }
 
   void time_stages(bool on) { timed_ = on; }
   /// Seconds that each stage took so far, when timing is on.
@@ -62,18 +65,18 @@ class Kernels {
 
  private:
   bool takes_shares(Stage stage) const;  // its work-items do several items each
-  std::size_t local_size_of(Stage stage) const;
 
   struct Compiled {
     Program program;
     cl::Kernel kernel;
+    std::size_t local_size = 1;
     double seconds = 0;  // of its launches
   };
   Device device_;
   StageOptions options_;
   std::array<std::optional<Compiled>, static_cast<std::size_t>(Stage::count)> compiled_;
   bool timed_ = false;
-  std::size_t local_size_ = 1;
+  std::size_t local_size_ = 1, chunk_ = 0;
   double compile_seconds_ = 0;
   std::vector<std::pair<std::string, double>> compile_seconds_by_stage_;
 };

@@ -22,7 +22,7 @@ std::size_t chosen(std::size_t wanted, std::size_t otherwise) { return wanted ? 
 
 Query::Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options)
     : scene_(std::move(scene)),
-      batch_rays_(chosen(options.batch_rays, scene_->device().is_cpu() ? cpu_batch_rays : gpu_batch_rays)),
+      batch_rays_(chosen(options.batch_rays, scene_->device().profile() == Profile::cpu ? cpu_batch_rays : gpu_batch_rays)),
       batch_hits_(chosen(options.batch_hits, batch_hits)) {
   query_.query = Buffer<QueryRecord>(scene_->device(), 1);
 }

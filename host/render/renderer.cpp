@@ -4,23 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
 #include "base/check.h"
+#include "base/clock.h"
+#include "render/detail/drive.h"
 
 namespace caplet {
 
 namespace {
 
-// 2^17 paths: enough rays for sorting to find neighbours, 30 MB of state (docs/performance.md).
-constexpr std::size_t cpu_batch_paths = std::size_t{1} << 17;
-constexpr std::size_t gpu_batch_paths = std::size_t{1} << 20;
-
 // A tree of fewer nodes (224 bytes each) and their leaves stays in a processor's cache however rays are ordered.
 constexpr std::uint64_t sorting_pays_from_nodes = 1024;
-
-std::size_t default_batch_paths(bool cpu) { return cpu ? cpu_batch_paths : gpu_batch_paths; }
 
 /// Morton bits per axis so that a bin holds a few rays on average.
 uint sort_bits_for(std::size_t rays) {
@@ -52,8 +49,34 @@ double extent_of(const WorldRecord& world, const CameraRecord& camera) {
          double{world.radius};
 }
 
-std::size_t chosen_batch_paths(const Device& device, std::size_t wanted, std::size_t most) {
-  return std::clamp<std::size_t>(wanted ? wanted : default_batch_paths(device.is_cpu()), 1, std::max<std::size_t>(most, 1));
+std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
+  const Device& device = scene.device();
+  const Drive& drive = drive_of(device.profile());
+  const std::size_t wanted = std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : drive.batch_paths, 1,
+                                                     std::max<std::size_t>(options.most_paths, 1));
+  FilmLayout layout;
+  layout.layers = options.layers;
+  const std::uint64_t film =
+      std::uint64_t{view.view.crop_width} * view.view.crop_height * layout.words_per_pixel() * sizeof(ulong);
+  const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), drive.sort_fan) * sizeof(uint);
+  // Drivers keep some for themselves: what kernels hold privately, for one.
+  const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
+  return fitting_batch(wanted, PathBuffers::bytes_per_path(options.layers), PathBuffers::largest_bytes_per_path(options.layers),
+                       all - std::min(all, taken), device.info().max_allocation_bytes);
+}
+
+/// Of `paths` paths, or of fewer where the device turns out to have less memory than it says.
+PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
+  const auto made = [&] {
+    const std::size_t bins = bins_of(sort_bits_of(scene, paths));
+    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan), layers);
+  };
+  while (paths > least_batch_paths) try {
+      return made();
+    } catch (const DriverError&) {
+      paths = (paths + 1) / 2;
+    }
+  return made();
 }
 
 }  // namespace
@@ -72,17 +95,19 @@ Film DeviceFilm::read(int first, int rows) const {
 
 Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options)
     : scene_(scene),
-      batch_paths_(chosen_batch_paths(scene.device(), options.batch_paths, options.most_paths)),
-      sort_bits_(sort_bits_of(scene, batch_paths_)),
+      batch_paths_(chosen_batch_paths(scene, view, options)),
       layers_(options.layers),
-      paths_(scene.device(), batch_paths_, bins_of(sort_bits_), layers_) {
+      paths_(path_buffers(scene, batch_paths_, layers_)),
+      sort_bits_(sort_bits_of(scene, batch_paths_)),
+      chunk_(drive_of(scene.device().profile()).first_chunk) {
   reset(view);
 }
 
 void Renderer::reset(const FlatView& view) {
   if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
     sort_bits_ = sort_bits;
-    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), bins_of(sort_bits_));
+    const Drive& drive = drive_of(scene_.device().profile());
+    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), drive.sort_fan));
   }
   sensor_ = SensorBuffers(scene_.device(), view);
   FilmLayout layout;
@@ -116,11 +141,6 @@ const DeviceFilm& Renderer::film() const {
   return film_;
 }
 
-void Renderer::clear_counters() {
-  const std::array<uint, counter_count> zeros{};
-  paths_.counters.counters.write(zeros);
-}
-
 void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
                     const std::function<void(std::size_t)>& batch_done) {
   CHECK_EQ_(film_.layout.window.holds(window), true);
@@ -129,6 +149,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   add_part(film_.parts, {window, sample_begin, sample_count});
   if (window != film_.layout.window) clear_film();
   const bool first_pass = std::exchange(is_old_, false);
+  const Drive& drive = drive_of(scene_.device().profile());
   const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
@@ -149,6 +170,9 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
     record.color_exponent = film_.layout.color_exponent;
     record.length_exponent = film_.layout.length_exponent;
     record.first = first_pass ? 1 : 0;
+    record.by_sample = drive.by_sample ? 1 : 0;
+    record.layers_apart = drive.layers_apart ? 1 : 0;
+    record.sort_fan = drive.sort_fan;
     batch(record);
     if (batch_done) batch_done(first + count);
   }
@@ -157,44 +181,92 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
 // The algorithm: see kernels/stages/path.cl.
 void Renderer::batch(const BatchRecord& record) {
   Kernels& kernels = scene_.kernels();
+  const Drive& drive = drive_of(scene_.device().profile());
   Bindings bindings = scene_.bindings();
   sensor_.bind(bindings);
   paths_.bind(bindings);
   const FilmBuffers film{film_.words};
   bindings.film = &film;
-  const bool sorts = sort_bits_ != CAPLET_NONE;
   paths_.batch.batch.write({&record, 1});
-  clear_counters();
+  std::array<uint, counter_count> counters{};
+  counters[counter_queued] = record.path_count;
+  paths_.counters.counters.write(counters);
+  kernels.set_chunk(chunk_);
   kernels.run(Stage::generate, bindings, record.path_count);
   rays_.camera += record.path_count;
-  std::array<uint, counter_count> counters{};
-  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
-  for (std::size_t queued = record.path_count; queued > 0;) {
-    if (sorts) paths_.sort.sort_bins.clear();
-    kernels.run(extend, bindings, queued);
-    extend = Stage::extend;
-    kernels.run(Stage::shade, bindings, queued);
-    paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
-    ++beats_;
-    const uint next = counters[counter_next], shadow = counters[counter_shadow];
-    kernels.run(Stage::connect, bindings, shadow);
-    if (!sorts) {
-      std::swap(paths_.queues.queue, paths_.queues.queue_next);
-    } else if (next > 0) {
-      kernels.run(Stage::sort_prefix, bindings, 1);
-      kernels.run(Stage::sort_scatter, bindings, next);
-    }
-    clear_counters();
-    rays_.bounce += next;
-    rays_.shadow += shadow;
-    queued = next;
-  }
-  kernels.run(Stage::resolve, bindings, record.pixel_count);
+  drive.counts_on_device ? rounds_on_device(bindings, record.path_count) : rounds_by_host(bindings, record.path_count);
+  const auto layers = static_cast<std::size_t>(std::popcount(layers_.bits()));
+  kernels.run(Stage::resolve, bindings, record.pixel_count * (drive.layers_apart ? layers : 1));
   paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
   ++beats_;
   rays_.not_finite += counters[counter_not_finite];
 }
 
-std::uint64_t batch_bytes(bool cpu) { return PathBuffers::bytes_per_path(Layers::all()) * default_batch_paths(cpu); }
+void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
+  Kernels& kernels = scene_.kernels();
+  const bool sorts = sort_bits_ != CAPLET_NONE;
+  std::array<uint, counter_count> counters{};
+  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
+  while (paths > 0) {
+    if (sorts) paths_.sort.sort_bins.clear();
+    kernels.run(extend, bindings, paths);
+    extend = Stage::extend;
+    kernels.run(Stage::shade, bindings, paths);
+    paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
+    ++beats_;
+    const uint next = counters[counter_next], shadow = counters[counter_shadow];
+    kernels.run(Stage::connect, bindings, shadow);
+    if (!sorts)
+      std::swap(paths_.queues.queue, paths_.queues.queue_next);
+    else if (next > 0)
+      sort(bindings, next, CAPLET_NONE);
+    counters = {};
+    paths_.counters.counters.write(counters);
+    rays_.bounce += next;
+    rays_.shadow += shadow;
+    paths = next;
+  }
+}
+
+void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
+  Kernels& kernels = scene_.kernels();
+  const bool sorts = sort_bits_ != CAPLET_NONE;
+  std::array<uint, counter_count> counters{};
+  uint bounces = 0, shadows = 0;
+  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
+  while (paths > 0) {
+    const Clock::time_point start = Clock::now();
+    for (int round = 0; round < rounds_unasked; ++round) {
+      if (sorts) paths_.sort.sort_bins.clear();
+      kernels.run(extend, bindings, paths, 0, counter_queued);
+      extend = Stage::extend;
+      kernels.run(Stage::shade, bindings, paths, 0, counter_queued);
+      kernels.run(Stage::connect, bindings, paths, 0, counter_shadow);
+      if (sorts)
+        sort(bindings, paths, counter_next);
+      else
+        std::swap(paths_.queues.queue, paths_.queues.queue_next);
+      kernels.run(Stage::advance, bindings, 1);
+    }
+    paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
+    ++beats_;
+    chunk_ = next_chunk(chunk_, paths, seconds_since(start));
+    kernels.set_chunk(chunk_);
+    rays_.bounce += counters[counter_bounces] - std::exchange(bounces, counters[counter_bounces]);
+    rays_.shadow += counters[counter_shadows] - std::exchange(shadows, counters[counter_shadows]);
+    paths = counters[counter_queued];
+  }
+}
+
+/// queue_next into queue.
+void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter) {
+  Kernels& kernels = scene_.kernels();
+  const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), drive_of(scene_.device().profile()).sort_fan);
+  for (std::size_t i = 0; i + 1 < levels.size(); ++i) kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
+  for (std::size_t i = levels.size(); i-- > 0;) kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
+  kernels.run(Stage::sort_scatter, bindings, paths, 0, counter);
+}
+
+std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path(Layers::all()) * least_batch_paths; }
 
 }  // namespace caplet

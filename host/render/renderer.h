@@ -65,23 +65,26 @@ class Renderer {
 
  private:
   void batch(const BatchRecord& record);
-  void clear_counters();
+  /// Its rounds, until no path is left: asked about by the host in each, or launched several at a time for the most there may be.
+  void rounds_by_host(Bindings& bindings, std::size_t paths);
+  void rounds_on_device(Bindings& bindings, std::size_t paths);
+  void sort(const Bindings& bindings, std::size_t paths, cl_uint counter);
   void clear_film() const;
 
   DeviceScene& scene_;
   std::size_t batch_paths_;
-  std::uint32_t sort_bits_;
   Layers layers_;
-  SensorBuffers sensor_;
   PathBuffers paths_;
+  std::uint32_t sort_bits_;
+  std::size_t chunk_;  // Kernels::set_chunk
+  SensorBuffers sensor_;
   mutable DeviceFilm film_;
   mutable bool is_old_ = true;  // the film's words are those of before a reset: they count as zeros
   RayCounts rays_;
   std::atomic<std::uint64_t> beats_{0};
 };
 
-/// Bytes of the state of a full batch of paths, with all layers, on a CPU or another device (smaller renders take smaller
-/// batches).
-std::uint64_t batch_bytes(bool cpu);
+/// Bytes of the state of the smallest batch of paths, with all layers, that a render takes on a device without room for more.
+std::uint64_t least_batch_bytes();
 
 }  // namespace caplet

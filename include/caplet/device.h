@@ -48,5 +48,7 @@ class CAPLET_API Device {
 /// question a device is tried once with answers that are known, which takes the time that its kernels take to compile; a wrong
 /// one throws RunError.
 CAPLET_API Device choose_device(const std::string& choice = {});
+/// Several: "all", or such choices between commas, none of them twice.
+CAPLET_API std::vector<Device> choose_devices(const std::string& choice);
 
 CAPLET_END

@@ -22,7 +22,8 @@ CAPLET_BEGIN
 class CAPLET_API Session {
  public:
   /// Puts the scene as it now is on the devices. Several share the samples; what comes out does not depend on who did what, as
-  /// long as they are of one kind. Throws InputError when the scene is beyond a limit.
+  /// long as they are of one kind. One that fails or hangs is left out with a warning, and the others do its work again; a
+  /// session fails with its last device. Throws InputError when the scene is beyond a limit.
   Session(const Scene& scene, const Device& device);
   Session(const Scene& scene, std::span<const Device> devices);
   Session(Session&&) noexcept;

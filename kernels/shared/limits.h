@@ -25,11 +25,14 @@
 namespace caplet {
 #endif
 
-// What a round of stages counts (Counters.counters).
+// What stages count (Counters.counters).
 enum {
-  counter_next,        // paths that go on
+  counter_queued,      // paths of this round
+  counter_next,        // those that go on
   counter_shadow,      // shadow rays
   counter_not_finite,  // samples dropped because their radiance was not a number
+  counter_bounces,     // paths that went on and shadow rays, of rounds that the host did not ask about, modulo 2^32
+  counter_shadows,
   counter_count
 };
 

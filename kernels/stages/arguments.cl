@@ -3,6 +3,7 @@
 //
 // The groups of one stage as a struct. A stage's program is the text
 //   #define STAGE_NAME extend
+//   #define STAGE_IS_COUNTED   (if GROUP_COUNTERS is one of its groups)
 //   #define STAGE_GROUPS GROUP_TREE GROUP_RAYS   (its row of shared/stages.def or queries.def)
 //   #include "stages/arguments.cl"
 //   #include "stages/extend.cl"                  (defines stage_item)

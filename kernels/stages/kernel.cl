@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The entry point of a stage: its groups' buffers are the arguments (arguments.cl). A work-item does one item, or its share of them.
+// The entry point of a stage: its groups' buffers are the arguments (arguments.cl). A work-item does one item, or its share of them:
+// of `item_count`, or of as many as a counter says (CAPLET_NONE: no counter), for stages that have the counters. Launches may begin
+// at a later item.
 
 // Work-items compute with float8 where eight primitives are tested at once, and go ways of their own where they are tested one by one:
 // compilers must not put several of them into one vector. Without this hint Intel's of 2025 and later do, which is slow in both
@@ -15,7 +17,7 @@ __kernel void STAGE_NAME(
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-    uint item_count) {
+    uint item_count, uint counter) {
   const Stage stage = {
 #define GROUP_BEGIN(Type, group) {
 #define BUFFER(name, type, access) name,
@@ -25,5 +27,9 @@ __kernel void STAGE_NAME(
 #undef BUFFER
 #undef GROUP_END
   };
+#ifdef STAGE_IS_COUNTED
+  // Launched for as many items as there may be. Without any the buffers may be null (Program::prepare).
+  if (item_count > 0 && counter != CAPLET_NONE) item_count = min(item_count, stage.counters.counters[counter]);
+#endif
 #include "stages/items.cl"
 }

@@ -5,7 +5,7 @@
 //
 //   generate -> queue
 //   repeat: extend (closest hits) -> shade (ends paths or fills queue_next and queue_shadow) -> connect (shadow rays)
-//           -> sort_prefix, sort_scatter (queue_next into queue, spatially sorted)
+//           -> sort_sums, sort_prefix, sort_scatter (queue_next into queue, spatially sorted)
 //   resolve (radiance to film)
 #ifndef CAPLET_STAGES_PATH_CL
 #define CAPLET_STAGES_PATH_CL
@@ -54,13 +54,18 @@ static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
   return (uint2)(batch->window_x + 8u * tile + in_tile % columns, batch->window_y + 8u * band + in_tile / columns);
 }
 
+// The number of a path of a batch: that of sample number `sample` of pixel number `pixel`.
+static inline uint path_number(__global const BatchRecord* batch, uint pixel, uint sample) {
+  return batch->by_sample ? sample * batch->pixel_count + pixel : pixel * batch->sample_count + sample;
+}
+
 // Of path number `path` of a batch.
 static inline PathSample path_sample(__global const BatchRecord* batch, uint seed, uint path) {
-  const uint2 pixel = batch_pixel(batch, path / batch->sample_count);
+  const uint2 pixel = batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
   PathSample s;
   s.x = pixel.x;
   s.y = pixel.y;
-  s.sample = batch->sample_begin + path % batch->sample_count;
+  s.sample = batch->sample_begin + (batch->by_sample ? path / batch->pixel_count : path % batch->sample_count);
   s.seed = pixel_seed(s.x, s.y, seed);
   return s;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Finished paths to the film: one work-item a pixel adds its samples to sums that no order of adding can change.
+// Finished paths to the film: one work-item a pixel, or a layer of it, adds its samples to sums that no order of adding can change.
 #include "math/exact.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
@@ -18,7 +18,7 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   return (float3)(0.0f);
 }
 
-// Adds the samples of the batch's pixel `item` to `count` sums of `words` words at `film`, and goes on to what is behind. sample: a
+// Adds the samples of the batch's pixel `number` to `count` sums of `words` words at `film`. sample: a
 // float4 by the number `path` of a path.
 #define ADD_SAMPLES(count, words, unit, sample)                                                     \
   {                                                                                                 \
@@ -27,7 +27,7 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
       sums[w] = first ? (ulong4)(0)                                                                 \
                       : (ulong4)(film[w], film[count > 1 ? words + w : 0], film[count > 2 ? 2 * words + w : 0], 0); \
     for (uint i = 0; i < batch->sample_count; ++i) {                                                \
-      const uint path = item * batch->sample_count + i;                                             \
+      const uint path = path_number(batch, number, i);                                              \
       exact_add(sums, words, sample, unit);                                                         \
     }                                                                                               \
     for (int w = 0; w < words; ++w) {                                                               \
@@ -35,7 +35,6 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
       if (count > 1) film[words + w] = sums[w].y;                                                   \
       if (count > 2) film[2 * words + w] = sums[w].z;                                               \
     }                                                                                               \
-    film += (count) * (words);                                                                      \
   }
 
 // radiance_layer_<name>: the value of a sample.
@@ -59,28 +58,37 @@ static inline float4 layer_at(__global const float* values, const int count) {
 static void stage_item(const Stage* g, uint item) {
   __global const BatchRecord* batch = g->batch.batch;
   __global const ViewRecord* view = g->view.view;
-  const uint2 pixel = batch_pixel(batch, item);
+  const uint apart = batch->layers_apart, number = apart ? item % batch->pixel_count : item;
+  uint left = apart ? item / batch->pixel_count : 0u;  // layers before the one that is this item's
+#define TAKES_LAYER (!apart || left-- == 0u)
+  const uint2 pixel = batch_pixel(batch, number);
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;
-  *film = (first ? 0ul : *film) + batch->sample_count;
+  if (left == 0u) *film = (first ? 0ul : *film) + batch->sample_count;
   ++film;
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
   uint offset = 0;  // of the layer in path_layers
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
-  if (layers & (1u << layer_##name))                                           \
-    ADD_SAMPLES(count, words, unit, radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view))
+  if (layers & (1u << layer_##name)) {                                         \
+    if (TAKES_LAYER)                                                           \
+      ADD_SAMPLES(count, words, unit, radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view)) \
+    film += (count) * (words);                                                 \
+  }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)                                                 \
   if (layers & (1u << layer_##name)) {                                                                                    \
-    ADD_SAMPLES(count, words, unit, layer_at(layers_of_path(batch, path, g->layers.path_layers) + offset, count))         \
+    if (TAKES_LAYER)                                                                                                      \
+      ADD_SAMPLES(count, words, unit, layer_at(layers_of_path(batch, path, g->layers.path_layers) + offset, count))       \
+    film += (count) * (words);                                                                                            \
     offset += count;                                                                                                      \
   }
 #define ID_LAYER(name, option, channel, value)                                                                           \
   if (layers & (1u << layer_##name)) {                                                                                   \
-    if (first) *film = 0;                                                                                                \
-    for (uint i = 0; i < batch->sample_count; ++i) {                                                                     \
-      const uint path = item * batch->sample_count + i;                                                                  \
+    const int takes = TAKES_LAYER;                                                                                       \
+    if (takes && first) *film = 0;                                                                                       \
+    for (uint i = 0; takes && i < batch->sample_count; ++i) {                                                            \
+      const uint path = path_number(batch, number, i);                                                                   \
       const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]);                               \
       *film = max(*film, ~(((ulong)(batch->sample_begin + i) << 32) | id));                                                 \
     }                                                                                                                    \

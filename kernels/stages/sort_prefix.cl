@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Exclusive prefix sums of the sort bins, in place, by one work-item: a few thousand additions.
+// Exclusive prefix sums of the sort bins, in place: each block begins where the one above it says, from the last level down to the
+// bins. With all bins in one block that is a work-item that adds up a few thousand numbers.
+#include "stages/sort_blocks.cl"
 
 static void stage_item(const Stage* g, uint item) {
-  const uint bins = 8u << (3u * g->batch.batch->sort_bits);
-  uint sum = 0;
-  for (uint i = item; i < bins; ++i) {
-    const uint count = g->sort.sort_bins[i];
-    g->sort.sort_bins[i] = sum;
+  const SortBlock block = sort_block(g->batch.batch, item);
+  uint sum = block.is_last ? 0u : g->sort.sort_bins[block.place];
+  for (uint i = 0; i < block.count; ++i) {
+    const uint count = g->sort.sort_bins[block.first + i];
+    g->sort.sort_bins[block.first + i] = sum;
     sum += count;
   }
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// How devices of a kind are kept busy: the sizes of batches and launches, and what is left to the device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "device/device.h"
+#include "shared/records.h"
+
+namespace caplet {
+
+struct Drive {
+  std::size_t batch_paths;  // under way at a time
+  std::size_t local_size;   // of kernels that take one item a work-item
+  bool counts_on_device;    // rounds are launched for as many paths as there may be, and several of them before the host asks
+  bool by_sample;           // path = sample * pixels + pixel, so that neighbours in a launch are neighbours in memory
+  bool layers_apart;        // a work-item a layer of a pixel, not a pixel, adds samples to the film
+  std::uint32_t sort_fan;   // sort bins that a work-item adds up
+  std::size_t first_chunk;  // work-items of a launch in the beginning; 0: any number
+};
+const Drive& drive_of(Profile profile);
+
+/// Rounds of a batch that are launched between two questions for the number of paths left.
+inline constexpr int rounds_unasked = 4;
+
+/// No batch is made smaller than this to fit a device.
+inline constexpr std::size_t least_batch_paths = std::size_t{1} << 12;
+
+/// `wanted` paths, or as often half of them as it takes for their state to fit: `bytes` a path in all and `largest_bytes` in one
+/// buffer, with `left` bytes left in all and `most` in one buffer. Not below least_batch_paths (or `wanted`).
+std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes, std::uint64_t left,
+                          std::uint64_t most);
+
+/// Drivers of displays end kernels that run for seconds. The work-items of one launch are twice as many after rounds that show
+/// that these would do within least_chunk_seconds, and half as many after such as may have had a launch of most_chunk_seconds:
+/// `launched`, of one stage in a round, took at most `seconds` with all the other stages.
+inline constexpr double least_chunk_seconds = 0.1, most_chunk_seconds = 0.5;
+std::size_t next_chunk(std::size_t chunk, std::size_t launched, double seconds);
+
+/// Blocks of `fan` sort bins, blocks of `fan` of their sums, and so on until there is one: items [first, first + count) of
+/// sort_sums and sort_prefix, level by level.
+struct SortLevel {
+  std::size_t first = 0, count = 0;
+};
+std::vector<SortLevel> sort_levels(std::size_t bins, std::size_t fan);
+/// What the bins and the sums of blocks take together.
+std::size_t sort_places(std::size_t bins, std::size_t fan);
+
+}  // namespace caplet
