@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Writes every stage's OpenCL C, as a renderer gives it to a driver, for a scene that has certain kinds of shapes: what tools/budgets.py
-// compiles for devices that are not there.
+// Writes every stage's OpenCL C, as a renderer gives it to a driver, for a scene that has certain kinds of shapes: what
+// tools/budgets.py compiles for devices that are not there.
 #include <array>
 #include <cstdint>
 #include <exception>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The nodes of trees as devices want them that trace rays one at a time (kernels/trace/packed.cl): made of the wide ones, number for
-// number, when a scene is sent.
+// The nodes of trees as devices want them that trace rays one at a time (kernels/trace/packed.cl): made of the wide ones, number
+// for number, when a scene is sent.
 #pragma once
 
 #include <span>

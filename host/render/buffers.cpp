@@ -142,7 +142,7 @@ std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, 
   std::uint64_t bytes = 0;
   const bool packs = encoding_ == Encoding::single;
   if (packs) bytes += send_packed(device, flat.nodes, changes.nodes, changes.all, tree.nodes);
-#define BUFFER(name, type, access)                                                      \
+#define BUFFER(name, type, access)                                                             \
   if (!packs || static_cast<const void*>(&flat.name) != static_cast<const void*>(&flat.nodes)) \
     bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
   SCENE_GROUPS

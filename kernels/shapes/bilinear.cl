@@ -72,20 +72,21 @@ static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real
 static inline Span bilinear_span(const ShapeRay* ray, __global const float* block, uint lane) {
 #pragma OPENCL FP_CONTRACT OFF
   __global const float* p00 = block + 8 * (1 + bilinear_at_p00);
-  __global const float* rx = p00 + ray->row_x;
-  __global const float* ry = p00 + ray->row_y;
-  __global const float* rz = p00 + ray->row_z;
+  const TriangleRay axes = triangle_ray_of(ray);
+  __global const float* rx = p00 + axes.row_x;
+  __global const float* ry = p00 + axes.row_y;
+  __global const float* rz = p00 + axes.row_z;
   const int p10 = 8 * (bilinear_at_p10 - bilinear_at_p00), p01 = 8 * (bilinear_at_p01 - bilinear_at_p00),
             p11 = 8 * (bilinear_at_p11 - bilinear_at_p00);
-  const real z00 = real_load(rz, lane) - ray->koz, z10 = real_load(rz + p10, lane) - ray->koz;
-  const real z01 = real_load(rz + p01, lane) - ray->koz, z11 = real_load(rz + p11, lane) - ray->koz;
-  real x00 = (real_load(rx, lane) - ray->kox) - ray->shear_x * z00, y00 = (real_load(ry, lane) - ray->koy) - ray->shear_y * z00;
-  real x10 = (real_load(rx + p10, lane) - ray->kox) - ray->shear_x * z10,
-       y10 = (real_load(ry + p10, lane) - ray->koy) - ray->shear_y * z10;
-  real x01 = (real_load(rx + p01, lane) - ray->kox) - ray->shear_x * z01,
-       y01 = (real_load(ry + p01, lane) - ray->koy) - ray->shear_y * z01;
-  real x11 = (real_load(rx + p11, lane) - ray->kox) - ray->shear_x * z11,
-       y11 = (real_load(ry + p11, lane) - ray->koy) - ray->shear_y * z11;
+  const real z00 = real_load(rz, lane) - axes.koz, z10 = real_load(rz + p10, lane) - axes.koz;
+  const real z01 = real_load(rz + p01, lane) - axes.koz, z11 = real_load(rz + p11, lane) - axes.koz;
+  real x00 = (real_load(rx, lane) - axes.kox) - axes.shear_x * z00, y00 = (real_load(ry, lane) - axes.koy) - axes.shear_y * z00;
+  real x10 = (real_load(rx + p10, lane) - axes.kox) - axes.shear_x * z10,
+       y10 = (real_load(ry + p10, lane) - axes.koy) - axes.shear_y * z10;
+  real x01 = (real_load(rx + p01, lane) - axes.kox) - axes.shear_x * z01,
+       y01 = (real_load(ry + p01, lane) - axes.koy) - axes.shear_y * z01;
+  real x11 = (real_load(rx + p11, lane) - axes.kox) - axes.shear_x * z11,
+       y11 = (real_load(ry + p11, lane) - axes.koy) - axes.shear_y * z11;
   const real zero = real_of(0.0f);
   Span span = span_of(int_of(0), zero, zero);
   // The ray must pass the box of the corners' images.
@@ -127,16 +128,16 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   b.wx = (x11 - bx) - b.ux, b.wy = (y11 - by) - b.uy, b.wz = (z11 - bz) - b.uz;
   // The normal points along the ray where the Jacobian (turned by the swap) and the ray's z have one sign; at k : f1 it has the
   // sign of k.
-  const real sense = (negative ? real_of(ray->inv_dz) : real_of(-ray->inv_dz)) * (swap ? real_of(-1.0f) : real_of(1.0f));
+  const real sense = (negative ? real_of(axes.inv_dz) : real_of(-axes.inv_dz)) * (swap ? real_of(-1.0f) : real_of(1.0f));
   const real_mask first_leaves = sense > 0.0f;
   const real_mask first = k >= 0.0f ? f1 >= 0.0f : f1 <= 0.0f, second = k >= 0.0f ? f0 >= 0.0f : f0 <= 0.0f;
   real depth;
   span.enter = meets & (first_leaves ? second : first);
   span.enter &= bilinear_crossing(&b, first_leaves ? f0 : k, first_leaves ? k : f1, first_leaves ? -k : k, &depth);
-  span.t_enter = depth * ray->inv_dz;
+  span.t_enter = depth * axes.inv_dz;
   span.exit = meets & (first_leaves ? first : second);
   span.exit &= bilinear_crossing(&b, first_leaves ? k : f0, first_leaves ? f1 : k, first_leaves ? k : -k, &depth);
-  span.t_exit = depth * ray->inv_dz;
+  span.t_exit = depth * axes.inv_dz;
   return span;
 }
 

@@ -56,6 +56,7 @@ static inline int csg_value(const CsgLine* line) {
   return (int)(stack & 1u);
 }
 
+#if CAPLET_REAL_WIDTH == 8
 // Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to `grown_exit`; `shift` is added to all t.
 static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter, float grown_exit, float shift,
                            int surface_enter, int surface_exit) {
@@ -69,6 +70,7 @@ static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float
   line->surface[2 * i + 1] = (ushort)surface_exit;
   line->pending |= 3ul << (2 * i);
 }
+#endif
 
 // The crossings of the operands of one group with the ray `own`.
 static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group, float shift) {
@@ -91,11 +93,27 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
   }
 #else
   for (uint i = 0; i < count; i++) {
-    const Span span = solid_span(kind, own, block, i);
-    if ((span.enter & span.exit) == 0) continue;
-    Span grown = solid_span(kind, own, block, i + 4);
-    if ((grown.enter & grown.exit) == 0) grown = span;
-    csg_add(line, first + i, span.t_enter, span.t_exit, grown.t_enter, grown.t_exit, shift, span.surface_enter, span.surface_exit);
+    const uint at = 2 * (first + i);
+    // One place in the code for all solids, not two; what the first leaves waits in `line`, not in registers.
+#pragma unroll 1
+    for (uint grown = 0; grown < 2; grown++) {
+      const Span span = solid_span(kind, own, block, i + 4 * grown);
+      const int met = (span.enter & span.exit) != 0;
+      if (grown == 0) {
+        const float exit = fmax(span.t_exit, span.t_enter);
+        if (!met || !(fabs(span.t_enter) < MAXFLOAT && fabs(exit) < MAXFLOAT)) break;
+        line->t[at] = shift + span.t_enter;
+        line->t[at + 1] = shift + exit;
+        line->slack[at] = span.t_enter;
+        line->slack[at + 1] = exit;
+        line->surface[at] = (ushort)span.surface_enter;
+        line->surface[at + 1] = (ushort)span.surface_exit;
+        line->pending |= 3ul << at;
+      } else {
+        line->slack[at] = met ? fmax(line->slack[at] - span.t_enter, 0.0f) : 0.0f;
+        line->slack[at + 1] = met ? fmax(span.t_exit - line->slack[at + 1], 0.0f) : 0.0f;
+      }
+    }
   }
 #endif
 }

@@ -82,6 +82,31 @@ static inline real real_power_of_two_below_inverse(real x) {
 // Index of the lowest set bit; bits must not be 0.
 static inline uint lowest_bit(uint bits) { return popcount(~bits & (bits - 1u)); }
 
+// What triangles need of a ray: offsets, in floats of a leaf block, of the components that become x, y and z once the largest component of
+// d is z; the shear, and 1 / dz (Woop, Benthin and Wald 2013).
+typedef struct {
+  uint row_x, row_y, row_z;
+  float kox, koy, koz, shear_x, shear_y, inv_dz;
+} TriangleRay;
+
+static inline TriangleRay triangle_ray(float3 o, float3 d) {
+  TriangleRay ray;
+  const float ax = fabs(d.x), ay = fabs(d.y), az = fabs(d.z);
+  const int z_is_x = ax > ay && ax > az, z_is_y = !z_is_x && ay > az;
+  // (x y z) -> (y z x), (z x y) or (x y z): cyclic, so that the orientation stays.
+  ray.row_x = z_is_x ? 8 : z_is_y ? 16 : 0;
+  ray.row_y = z_is_x ? 16 : z_is_y ? 0 : 8;
+  ray.row_z = z_is_x ? 0 : z_is_y ? 8 : 16;
+  const float3 ko = z_is_x ? o.yzx : z_is_y ? o.zxy : o, kd = z_is_x ? d.yzx : z_is_y ? d.zxy : d;
+  ray.kox = ko.x;
+  ray.koy = ko.y;
+  ray.koz = ko.z;
+  ray.inv_dz = 1.0f / kd.z;
+  ray.shear_x = kd.x * ray.inv_dz;
+  ray.shear_y = kd.y * ray.inv_dz;
+  return ray;
+}
+
 // A ray in the space of the primitives, with what every primitive needs of it.
 typedef struct {
   float ox, oy, oz, dx, dy, dz;
@@ -90,10 +115,9 @@ typedef struct {
   float ff_min;  // below this a squared direction component is rounding noise (2^-50 |d|^2)
   int sees_entering, sees_leaving;  // -1 or 0: crossings that count
   __global const float* leaves;     // shapes of no fixed size keep data there
-  // Triangles: offsets, in floats of a leaf block, of the components that become x, y and z once the largest component of d is z;
-  // the shear, and 1 / dz (Woop, Benthin and Wald 2013).
-  uint row_x, row_y, row_z;
-  float kox, koy, koz, shear_x, shear_y, inv_dz;
+#if CAPLET_REAL_WIDTH == 8
+  TriangleRay triangle;  // kept; one at a time registers are dearer
+#endif
 } ShapeRay;
 
 static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, __global const float* leaves) {
@@ -110,21 +134,18 @@ static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, __global const
   const float dd = dot(d, d);
   ray.inv_dd = 1.0f / dd;
   ray.ff_min = fmax(dd * 0x1p-50f, 0x1p-120f);
-  const float ax = fabs(d.x), ay = fabs(d.y), az = fabs(d.z);
-  const int z_is_x = ax > ay && ax > az, z_is_y = !z_is_x && ay > az;
-  // (x y z) -> (y z x), (z x y) or (x y z): cyclic, so that the orientation stays.
-  ray.row_x = z_is_x ? 8 : z_is_y ? 16 : 0;
-  ray.row_y = z_is_x ? 16 : z_is_y ? 0 : 8;
-  ray.row_z = z_is_x ? 0 : z_is_y ? 8 : 16;
-  ray.kox = z_is_x ? o.y : z_is_y ? o.z : o.x;
-  ray.koy = z_is_x ? o.z : z_is_y ? o.x : o.y;
-  ray.koz = z_is_x ? o.x : z_is_y ? o.y : o.z;
-  const float kdx = z_is_x ? d.y : z_is_y ? d.z : d.x;
-  const float kdy = z_is_x ? d.z : z_is_y ? d.x : d.y;
-  ray.inv_dz = 1.0f / (z_is_x ? d.x : z_is_y ? d.y : d.z);
-  ray.shear_x = kdx * ray.inv_dz;
-  ray.shear_y = kdy * ray.inv_dz;
+#if CAPLET_REAL_WIDTH == 8
+  ray.triangle = triangle_ray(o, d);
+#endif
   return ray;
+}
+
+static inline TriangleRay triangle_ray_of(const ShapeRay* ray) {
+#if CAPLET_REAL_WIDTH == 8
+  return ray->triangle;
+#else
+  return triangle_ray((float3)(ray->ox, ray->oy, ray->oz), (float3)(ray->dx, ray->dy, ray->dz));
+#endif
 }
 
 // A ray as filters want it that look along it: its origin, an orthonormal frame with w along the direction, and the length of the

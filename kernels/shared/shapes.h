@@ -35,6 +35,14 @@ enum {
 #define CAPLET_HAS_SHAPE(kind) (((CAPLET_SHAPES >> (kind)) & 1u) != 0)
 
 enum {
+  // Whether some shape is tested apart.
+  has_rare_shape = 0
+#define SHAPE(name, traits) || (CAPLET_HAS_SHAPE(shape_##name) && ((traits)&trait_rare) != 0)
+#include "shared/shapes.def"
+#undef SHAPE
+};
+
+enum {
   // Whether some light may be sampled by a ball around it.
   any_ball_light = 0
 #define SHAPE(name, traits) || (CAPLET_HAS_SHAPE(shape_##name) && ((traits)&trait_ball_light) != 0)

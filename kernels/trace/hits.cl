@@ -52,12 +52,10 @@ static inline HitRecord hit_record(const NearestHit* nearest) {
   return hit;
 }
 
-// What the ray hits of the lanes from `lane` on of the leaf block at `row`, whose shapes are of one kind. `instance`: that the ray is in.
-static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
+// Keeps the nearest of what the ray hits of the lanes from `lane` on of the leaf block at `row`. `instance`: that the ray is in.
+static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeRay* shape, uint instance, real_mask ok, real t,
+                             real_mask side, NearestHit* nearest) {
   __global const float* block = tree->leaves + (size_t)row * 8;
-  real t;
-  real_mask side;
-  real_mask ok = shape_hit(kind, shape, block, lane, &t, &side);
   ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
   // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
   if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
@@ -81,6 +79,14 @@ static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, c
       nearest->found = 1;
     }
   } while (bits != 0);
+}
+
+// What the ray hits of these lanes, whose shapes are of one kind, and not rare where it is traced alone.
+static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
+  real t;
+  real_mask side;
+  const real_mask ok = shape_hit(kind, shape, tree->leaves + (size_t)row * 8, lane, &t, &side);
+  keep_hits(tree, row, lane, shape, instance, ok, t, side, nearest);
 }
 
 #endif

@@ -10,7 +10,7 @@
 #define CAPLET_TRACE_PACKED_CL
 
 #include "math/vector.cl"
-#include "shared/limits.h"
+#include "shapes/real.cl"
 
 // The ray as these boxes want it. NaN: all of them are met.
 //
@@ -64,13 +64,11 @@ static inline uint packed_node_hits(__global const float* nodes, uint node, cons
   const float far_x = bx + rx, far_y = by + ry, far_z = bz + rz;
   const int down_x = (r->octant & 1u) != 0, down_y = (r->octant & 2u) != 0, down_z = (r->octant & 4u) != 0;
   uint bits = 0;
-#pragma unroll 1
   for (uint part = 0; part < 2; part++) {
     const uint lx = part == 0 ? low.x : low.y, ly = part == 0 ? low.z : low.w, lz = part == 0 ? mixed.x : mixed.y;
     const uint hx = part == 0 ? mixed.z : mixed.w, hy = part == 0 ? high.x : high.y, hz = part == 0 ? high.z : high.w;
     uint nx = down_x ? hx : lx, ny = down_y ? hy : ly, nz = down_z ? hz : lz;
     uint fx = down_x ? lx : hx, fy = down_y ? ly : hy, fz = down_z ? lz : hz;
-#pragma unroll 1
     for (uint i = 0; i < 4; i++) {
       const float near = fmax(fmax((float)(nx & 255u) * ax + near_x, (float)(ny & 255u) * ay + near_y), (float)(nz & 255u) * az + near_z);
       const float far = fmin(fmin((float)(fx & 255u) * ax + far_x, (float)(fy & 255u) * ay + far_y), (float)(fz & 255u) * az + far_z);

@@ -8,6 +8,43 @@
 #include "trace/hits.cl"
 #include "trace/walk.cl"
 
+// The lanes of a leaf of rare shapes. What the walk and the nearest hit so far need is put into memory meanwhile, where compilers leave what is volatile.
+static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint kind, uint row, Walk* w, NearestHit* nearest) {
+  __global const float* block = tree->leaves + (size_t)row * 8;
+  volatile uint kept[8];
+  kept[0] = w->top;
+  kept[1] = w->bottom;
+  kept[2] = w->floor;
+  kept[3] = w->instance;
+  kept[4] = as_uint(nearest->t);
+  kept[5] = nearest->slot;
+  kept[6] = nearest->instance;
+  kept[7] = nearest->found ? (uint)nearest->side : CAPLET_NONE;
+  const ShapeRay own = walk_ray(tree, ray, w->instance);
+#pragma unroll 1
+  for (uint lane = 0; lane < CAPLET_WIDTH && lanes_filled(block, lane) != 0; lane++) {
+    float t;
+    int side;
+    if (rare_hit(kind, &own, block, lane, &t, &side) == 0) continue;
+    NearestHit so_far = {as_float(kept[4]), kept[5], kept[6], (int)kept[7], kept[7] != CAPLET_NONE};
+    keep_hits(tree, row, lane, &own, kept[3], -1, t, side, &so_far);
+    if (!so_far.found) continue;
+    kept[4] = as_uint(so_far.t);
+    kept[5] = so_far.slot;
+    kept[6] = so_far.instance;
+    kept[7] = (uint)so_far.side;
+  }
+  w->top = kept[0];
+  w->bottom = kept[1];
+  w->floor = kept[2];
+  w->instance = kept[3];
+  nearest->t = as_float(kept[4]);
+  nearest->slot = kept[5];
+  nearest->instance = kept[6];
+  nearest->side = (int)kept[7];
+  nearest->found = kept[7] != CAPLET_NONE;
+}
+
 // Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
 // traversal can show. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, const int any) {
@@ -20,10 +57,16 @@ static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPA
     const int leaf = walk_next(tree, root, ray, &walk, &shape, stack, nearest.t, visit);
     if (leaf == CAPLET_WALK_ENDS) return hit_record(&nearest);
     const uint kind = CAPLET_LEAF_KIND(leaf), row = CAPLET_LEAF_ROW(leaf);
+    __global const float* block = tree->leaves + (size_t)row * 8;
     // Lanes are filled from the first on.
+    if (has_rare_shape && shape_is_rare(kind)) {
+      walk_forget(&walk, stack);
+      rare_leaf(tree, ray, kind, row, &walk, &nearest);
+    } else {
 #pragma unroll 1
-    for (uint lane = 0; lane < CAPLET_WIDTH && lanes_filled(tree->leaves + (size_t)row * 8, lane) != 0; lane++)
-      test_leaf(tree, kind, row, lane, &shape, walk.instance, &nearest);
+      for (uint lane = 0; lane < CAPLET_WIDTH && lanes_filled(block, lane) != 0; lane++)
+        test_leaf(tree, kind, row, lane, &shape, walk.instance, &nearest);
+    }
     if (any && nearest.found) return hit_record(&nearest);
   }
 }

@@ -24,10 +24,13 @@
 
 // Entries of the stack, a power of two. Trees of real scenes have some ten levels.
 #ifndef CAPLET_STACK_SIZE
-#define CAPLET_STACK_SIZE 32
+#define CAPLET_STACK_SIZE 16
 #endif
 // And the entries that were lost last, of the world and of an instance.
 #define CAPLET_WALK_ENTRIES (CAPLET_STACK_SIZE + 2)
+
+// Whether the ray is ever made anew: in and after instances, and after shapes that are tested apart.
+#define CAPLET_WALK_TURNS (CAPLET_HAS_SHAPE(shape_instance) || has_rare_shape)
 
 #define CAPLET_WALK_ENDS 0  // no reference of a leaf
 
@@ -37,11 +40,9 @@ typedef struct {
   uint top, bottom;  // entries [bottom, top) of the stack are there, at their number modulo its size; those below were lost
   uint floor;        // entries from here on are of the tree of the instance
   uint instance;     // CAPLET_NONE: in the world
+  int turns;         // 1: the ray is to be made anew
   BoxRay box;
 } Walk;
-
-static inline float3 ray_origin(CAPLET_RAY_SPACE const RayRecord* ray) { return (float3)(ray->ox, ray->oy, ray->oz); }
-static inline float3 ray_direction(CAPLET_RAY_SPACE const RayRecord* ray) { return (float3)(ray->dx, ray->dy, ray->dz); }
 
 static inline void walk_push(Walk* w, uint2* stack, uint node, uint mask) {
   if (w->top - w->bottom == CAPLET_STACK_SIZE) {
@@ -67,49 +68,64 @@ static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* 
   return next;
 }
 
-// The ray in the space of the world. 0: it meets nothing.
-static inline int walk_in_world(CAPLET_RAY_SPACE const RayRecord* ray, __global const float* leaves, Walk* w, ShapeRay* shape) {
-  const float3 o = ray_origin(ray), d = ray_direction(ray);
-  w->instance = CAPLET_NONE;
-  w->floor = 0;
+// The ray in the space of the world or of an instance, along which it goes unnormalised, so that t stays what it is. It is read anew each time: a
+// compiler that kept it would keep it in registers, all the way.
+static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint instance) {
+  volatile CAPLET_RAY_SPACE const RayRecord* read = ray;
+  float3 o = (float3)(read->ox, read->oy, read->oz), d = (float3)(read->dx, read->dy, read->dz);
+  const float t_min = read->t_min;
+  uint unseen = 0;
+  if (CAPLET_HAS_SHAPE(shape_instance) && instance != CAPLET_NONE) {
+    __global const InstanceRecord* placed = tree->instances + instance;
+    o = transform_point(placed->object_from_world, o);
+    d = transform_vector(placed->object_from_world, d);
+    unseen = placed->flags;
+  }
+  ShapeRay shape = shape_ray(o, d, t_min > 0.0f ? t_min : 0.0f, tree->leaves);
+  if (unseen & CAPLET_INSTANCE_NO_ENTERING) shape.sees_entering = 0;
+  if (unseen & CAPLET_INSTANCE_NO_LEAVING) shape.sees_leaving = 0;
+  return shape;
+}
+
+// Where the ray goes through nodes from here on. 0: nowhere, nothing is left of it within floats.
+static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape) {
+  *shape = walk_ray(tree, ray, w->instance);
+  const float3 o = (float3)(shape->ox, shape->oy, shape->oz), d = (float3)(shape->dx, shape->dy, shape->dz);
   w->box = box_ray(o, d);
-  *shape = shape_ray(o, d, ray->t_min > 0.0f ? ray->t_min : 0.0f, leaves);
+  w->turns = 0;
   return line_is_valid(o, d);
 }
 
-// And in that of an instance: it goes along unnormalised, so t stays what it is. 0: nothing is left of it within floats.
-static inline int walk_in_instance(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint instance, Walk* w, ShapeRay* shape) {
-  __global const InstanceRecord* placed = tree->instances + instance;
-  const float3 o = transform_point(placed->object_from_world, ray_origin(ray));
-  const float3 d = transform_vector(placed->object_from_world, ray_direction(ray));
-  w->instance = instance;
-  w->floor = w->top;
-  w->box = box_ray(o, d);
-  *shape = shape_ray(o, d, shape->t_min, tree->leaves);
-  if (placed->flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
-  if (placed->flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
-  return line_is_valid(o, d);
-}
-
-// 0: no way at all. Otherwise `shape` is the ray, and the first walk_next has to visit the root.
+// 0: no way at all. Otherwise the first walk_next has to visit the root.
 static inline int walk_begin(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, float t_best) {
-  w->node = w->mask = w->top = w->bottom = 0;
-  return walk_in_world(ray, tree->leaves, w, shape) && ray->t_min < ray->t_max && shape->t_min < t_best;
+  w->node = w->mask = w->top = w->bottom = w->floor = 0;
+  w->instance = CAPLET_NONE;
+  w->turns = CAPLET_WALK_TURNS;
+  if (!CAPLET_WALK_TURNS && !walk_turn(tree, ray, w, shape)) return 0;
+  return ray->t_min < ray->t_max && (ray->t_min > 0.0f ? ray->t_min : 0.0f) < t_best;
+}
+
+// After this, `shape` and what is known of boxes are made anew: registers need not keep them meanwhile.
+static inline void walk_forget(Walk* w, uint2* stack) {
+  if (w->mask != 0) walk_push(w, stack, w->node, w->mask);
+  w->mask = 0;
+  w->turns = 1;
 }
 
 // The reference of the next leaf whose box the ray meets before t_best, in whose space `shape` then is, or CAPLET_WALK_ENDS. `visit`: a node to
 // begin with, -1: go on.
 static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, uint2* stack,
                             float t_best, int visit) {
-  uint again = CAPLET_NONE;  // the node that is to be come to again
+  uint again = CAPLET_NONE, left = 0;  // the node that is to be come to again, and its children to come
   for (;;) {
+    if (CAPLET_WALK_TURNS && w->turns && !walk_turn(tree, ray, w, shape)) visit = -1;
     const int placed = CAPLET_HAS_SHAPE(shape_instance) && w->instance != CAPLET_NONE;
     if (visit >= 0) {
       w->node = (uint)visit;
       w->mask = packed_node_hits(tree->nodes, w->node, &w->box, shape->ox, shape->oy, shape->oz, shape->t_min, t_best);
       visit = -1;
       if (again == w->node) {
-        w->mask = stack[CAPLET_STACK_SIZE + (placed ? 1u : 0u)].y;
+        w->mask = left;
         again = CAPLET_NONE;
       } else if (again != CAPLET_NONE) {
         uint key;
@@ -127,19 +143,25 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
       w->mask = 0;
       visit = next;
       if (of_instance) {
-        const uint instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(next) * 8];
-        visit = walk_in_instance(tree, ray, instance, w, shape) ? (int)tree->instances[instance].root : -1;
+        w->instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(next) * 8];
+        w->floor = w->top;
+        w->turns = 1;
+        visit = (int)tree->instances[w->instance].root;
       }
     } else if (w->top > max(w->floor, w->bottom)) {
       const uint2 entry = stack[--w->top % CAPLET_STACK_SIZE];
       w->node = entry.x;
       w->mask = entry.y;
     } else if (w->top > w->floor) {
-      again = stack[CAPLET_STACK_SIZE + (placed ? 1u : 0u)].x;
+      const uint2 lost = stack[CAPLET_STACK_SIZE + (placed ? 1u : 0u)];
+      again = lost.x;
+      left = lost.y;  // on the way down others may be lost
       w->top = w->bottom = w->floor;
       visit = (int)(placed ? tree->instances[w->instance].root : root);
     } else if (placed) {
-      walk_in_world(ray, tree->leaves, w, shape);
+      w->instance = CAPLET_NONE;
+      w->floor = 0;
+      w->turns = 1;
     } else {
       return CAPLET_WALK_ENDS;
     }

@@ -314,7 +314,8 @@ std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const 
   for (GeometryRecord& geometry : geometries) geometry.flags = flags;
   if (!mesh_uvs.empty())
     for (GeometryRecord& geometry : geometries) geometry.uv_begin = 0;
-  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_),
+             uvs = upload(device_, mesh_uvs);
   const auto instances = upload(device_, instances_);
   const auto geometry_buffer = upload(device_, geometries);
   const auto primitive_geometry = upload(device_, primitive_geometry_), indices = upload(device_, mesh_indices_),
@@ -367,7 +368,8 @@ std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const st
   for (const Probed& probed : from) surfaces.push_back(probed.surface);
   std::vector<float> flat;
   for (const auto& d : directions) flat.insert(flat.end(), d.begin(), d.end());
-  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_), direction_buffer = upload(device_, flat);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_),
+             direction_buffer = upload(device_, flat);
   const auto instances = upload(device_, instances_);
   const auto root_buffer = upload(device_, roots);
   const auto surface_buffer = upload(device_, surfaces);
