@@ -42,6 +42,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
   if (trial.nearest) words.push_back("--nearest");
   if (trial.lists) words.push_back("--lists");
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   // This process has threads already: its child may only call exec.

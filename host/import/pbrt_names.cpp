@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "import/detail/pbrt_names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -136,7 +138,7 @@ Refusal refusal_of(std::string_view directive, const std::string& name) {
   for (const NameTable& table : name_tables()) {
     if (table.directive != directive) continue;
     if (contains(table.accepted, name)) return {};
-    if (contains(table.refused, name)) return {table.directive + " \"" + name + "\" is not rendered yet"};
+    if (contains(table.refused, name)) return {fmt::format("{} \"{}\" is not rendered yet", table.directive, name)};
     const std::string unknown = "unknown " + table.directive + " " + in_quotes(name);
     if (const std::string old = v3_name(directive, name); !old.empty()) return {unknown + ": that is " + old, false};
     std::vector<std::string> known = table.accepted;

@@ -24,6 +24,7 @@ std::vector<double> wanted_chances(const std::vector<LightShare>& lights) {
       groups[light.group] += light.power;
     }
   std::vector<double> chances;
+  chances.reserve(lights.size());
   for (const LightShare& light : lights)
     chances.push_back(light.power > 0 ? 0.5 * light.power / total +
                                             0.5 * (light.power / groups[light.group]) / static_cast<double>(groups.size())

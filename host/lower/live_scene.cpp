@@ -3,7 +3,9 @@
 #include "lower/live_scene.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <utility>
 
 #include "base/check.h"
@@ -28,8 +30,8 @@ constexpr std::size_t most_moved = 4096, least_unmoved_share = 8;
 
 template <class T>
 bool same_bytes(const T& a, const T& b) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bytes = std::array<std::byte, sizeof(T)>;
+  return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
 }
 
 /// What of `now` differs from `before`.

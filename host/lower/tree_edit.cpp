@@ -3,8 +3,8 @@
 #include "lower/detail/tree_edit.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cstring>
 #include <limits>
 
 #include "base/check.h"
@@ -42,7 +42,10 @@ ReferenceBox clipped(ReferenceBox box, const ReferenceBox& to) {
   return box;
 }
 
-bool same(const ReferenceBox& a, const ReferenceBox& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(const ReferenceBox& a, const ReferenceBox& b) {
+  using Bits = std::array<std::uint32_t, 6>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
 
 ReferenceBox bounds_of(const EncodedTree& tree) {
   ReferenceBox box;

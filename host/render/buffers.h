@@ -47,7 +47,8 @@ struct Bindings {
 struct SceneBuffers {
   SCENE_GROUPS
 
-  /// `encoding`: what the nodes are for; automatic: the device's. Throws RunError, before anything is allocated, when it does not fit.
+  /// `encoding`: what the nodes are for; automatic: the device's. Throws RunError, before anything is allocated, when it does not
+  /// fit.
   SceneBuffers(const Device& device, const FlatScene& scene, Encoding encoding = Encoding::automatic);
   /// Sends what has changed, and returns its bytes. Buffers that have grown are made anew, with some room to grow on.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);

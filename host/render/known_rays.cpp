@@ -24,7 +24,7 @@ using glm::dvec3;
 using Side = KnownCrossing::Side;
 
 constexpr int copies = 12;
-constexpr int cells_a_side = 7;
+constexpr int cells_a_side = 7, middle_cell = cells_a_side / 2;
 // Shapes reach 1.3 from the middle of their cell before they are scaled by 1.5 at most, and rays, at most three times a shape's
 // width long, 8.
 constexpr double cell_width = 24;
@@ -153,7 +153,7 @@ class Maker {
   dmat4 placement(int copy) {
     const int cell = cell_++;
     const dvec3 place(cell % cells_a_side, cell / cells_a_side % cells_a_side, cell / (cells_a_side * cells_a_side));
-    dmat4 m = glm::translate(dmat4(1), cell_width * (place - dvec3(cells_a_side / 2)));
+    dmat4 m = glm::translate(dmat4(1), cell_width * (place - dvec3(middle_cell)));
     m = glm::rotate(m, random_.uniform(0, full_turn), random_.direction());
     const double size = random_.uniform(0.7, 1.5);
     if (!stretches_ || copy % 2 == 0) return glm::scale(m, dvec3(size));

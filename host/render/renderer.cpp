@@ -127,6 +127,8 @@ void Renderer::reset(const FlatView& view) {
   is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
   if (!scene_.has_camera_stage()) std::erase(stages, Stage::extend_camera);
+  if (!drive_of(scene_.device().profile()).counts_on_device)
+    std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
   scene_.kernels().compile(stages, batch_paths_);
 }
 

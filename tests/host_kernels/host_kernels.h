@@ -34,7 +34,7 @@ SCENE_GROUPS VIEW_GROUPS
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-  const float* packed_nodes = nullptr;  // of the tree, for width 1
+      const float* packed_nodes = nullptr;  // of the tree, for width 1
 };
 extern "C" {
 #endif

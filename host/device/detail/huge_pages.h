@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Large buffers of processors in pages of 2 MiB, where the system has such: rays that go through a tree at random otherwise miss the
-// processor's table of pages at nearly every node.
+// Large buffers of processors in pages of 2 MiB, where the system has such: rays that go through a tree at random otherwise miss
+// the processor's table of pages at nearly every node.
 #pragma once
 
 #include <cstddef>

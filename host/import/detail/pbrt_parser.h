@@ -139,6 +139,7 @@ class Parser {
   std::string nearest(const std::string& name, const Map& map) const {
     if (map.empty() || diagnostics_.is_full()) return {};
     std::vector<std::string> known;
+    known.reserve(map.size());
     for (const auto& [one, value] : map) known.push_back(one);
     return "; the nearest known name is \"" + nearest_name(name, known) + "\"";
   }
