@@ -33,16 +33,15 @@ test::Result render(const fs::path& kernels, const std::vector<std::string>& mor
 TEST(Trial, ADriverThatAbortsIsToldOf) {
   CAPLET_NEEDS_POCL();  // a trap of a GPU's is no signal
   const test::Result result =
-      render(test::changed_kernels("stages/extend.cl", "{ return g->rays.path_ray[g->queues.queue[item]]; }",
-                                   "{ __builtin_trap(); return g->rays.path_ray[g->queues.queue[item]]; }"));
+      render(test::changed_kernels("stages/extend.cl", "{ return g->rays.path_ray + g->queues.queue[item]; }",
+                                   "{ __builtin_trap(); return g->rays.path_ray + g->queues.queue[item]; }"));
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_EQ(result.signal, 0);
   EXPECT_THAT(result.err, AllOf(HasSubstr("its driver ended with signal"), HasSubstr("caplet doctor")));
 }
 
 TEST(Trial, WrongKernelsAreRefusedByShape) {
-  const test::Result result =
-      render(test::changed_kernels("trace/trace.cl", "hit.t = nearest->t;", "hit.t = 2.0f * nearest->t;"));
+  const test::Result result = render(test::changed_kernels("trace/hits.cl", "hit.t = nearest->t;", "hit.t = 2.0f * nearest->t;"));
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_THAT(result.err, AllOf(HasSubstr("computes wrongly"), HasSubstr("capsule: nearest crossing (extend)"),
                                 HasSubstr("sphere: nearest crossing (extend)")));
@@ -50,8 +49,8 @@ TEST(Trial, WrongKernelsAreRefusedByShape) {
 
 // Camera rays go through the tree by another text where the device tests eight boxes at a time.
 TEST(Trial, CameraRaysAreTriedByThemselves) {
-  const fs::path kernels = test::changed_kernels("trace/stream.cl", "hit_record(&rays[i].nearest);",
-                                                 "hit_record(&rays[i].nearest);\n    if (hit.surface == 0) continue;");
+  const fs::path kernels = test::changed_kernels("trace/stream.cl", "hit_record(&nearest[i]);",
+                                                 "hit_record(&nearest[i]);\n    if (hit.surface == 0) continue;");
   // Whatever this processor is good at.
   test::write_file(kernels / "trace" / "eight.cl", "#define CAPLET_PORTABLE\n" + test::read_file(kernels / "trace" / "eight.cl"));
   const test::Result result = render(kernels, {"--encoding", "wide"});
