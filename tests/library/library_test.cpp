@@ -346,7 +346,7 @@ TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
 TEST_F(LibraryEdits, ASessionTriesItsDeviceBeforeItRenders) {
   namespace fs = std::filesystem;
   fs::copy(fs::path(CAPLET_SCENES).parent_path() / "kernels", folder_ / "kernels", fs::copy_options::recursive);
-  const fs::path file = folder_ / "kernels" / "trace" / "trace.cl";
+  const fs::path file = folder_ / "kernels" / "trace" / "hits.cl";
   std::ifstream in(file);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   const std::string right = "hit.t = nearest->t;";
