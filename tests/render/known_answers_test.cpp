@@ -117,8 +117,8 @@ void expect_all(const std::vector<std::string>& failures, const std::string& che
 }
 
 TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
-  const ChangedKernels changed({{"trace/trace.cl", "real_mask ok = shape_hit(kind, shape, block, lane, &t, &side);",
-                                 "real_mask ok = shape_hit(kind, shape, block, lane, &t, &side); t *= 1.05f;"}});
+  const ChangedKernels changed(
+      {{"trace/hits.cl", "ok &= lanes_filled(block, lane)", "t *= 1.05f;\n  ok &= lanes_filled(block, lane)"}});
   const std::vector<std::string> failures = known_answer_failures(test_device(), rendering);
   expect_all(failures, "nearest crossing (extend)");
   expect_all(failures, "any crossing (connect)");
@@ -127,6 +127,7 @@ TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
 TEST(KnownAnswers, SeeCrossingsThatAreMissedByShadowRaysAlone) {
   const ChangedKernels changed(
       {{"trace/trace.cl", "if (any && nearest.found)", "if (any) nearest.found = 0;\n        if (any && nearest.found)"},
+       {"trace/single.cl", "if (any && nearest.found)", "if (any) nearest.found = 0;\n    if (any && nearest.found)"},
        {"trace/pool.cl", "if (TRACED_ANY && r->nearest.found)",
         "if (TRACED_ANY) r->nearest.found = 0;\n      if (TRACED_ANY && r->nearest.found)"}});
   const std::vector<std::string> failures =
@@ -153,7 +154,7 @@ TEST(KnownAnswers, SeeWrongLists) {
 }
 
 TEST(KnownAnswers, SeeTheSidesOfOneSidedShapesSwapped) {
-  const ChangedKernels changed({{"trace/trace.cl", "if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;",
+  const ChangedKernels changed({{"trace/hits.cl", "if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;",
                                  "if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;"}});
   const std::uint64_t solids = shape_bit(shape_sphere) | shape_bit(shape_capsule) | tapered_and_instances;
   const std::vector<std::string> failures = known_answer_failures(test_device(), {.shapes = solids, .render = true});
@@ -172,10 +173,10 @@ TEST(KnownAnswers, AreRememberedByKernelsAndEncoding) {
   EXPECT_TRUE(needs_trial(single, trial));
   {
     const ChangedKernels changed(
-        {{"trace/trace.cl", "{fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 0, 0}", "{fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 1, 0}"}});
+        {{"trace/hits.cl", "{fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 0, 0}", "{fmin(t_max, MAXFLOAT), 0, CAPLET_NONE, 1, 0}"}});
     EXPECT_TRUE(needs_trial(wide, trial));
   }
-  const ChangedKernels wrong({{"trace/trace.cl", "nearest->t = ts[i];", "nearest->t = ts[i] * 1.1f;"}});
+  const ChangedKernels wrong({{"trace/hits.cl", "nearest->t = ts[i];", "nearest->t = ts[i] * 1.1f;"}});
   EXPECT_THROW(try_device(wide, trial), RunError);
   EXPECT_THROW(try_device(wide, trial), RunError);
   ::unsetenv("CAPLET_CACHE");
