@@ -136,7 +136,7 @@ def measure(target, arguments, text, out):
                 "spill": number(r"(\d+) bytes spill stores", said) + number(r"(\d+) bytes spill loads", said), "code": code_size(cubin)}
     if target == "SPIR-V":
         module = out.with_suffix(".spv")
-        result = command(["llvm-spirv-14", str(out), "-o", str(module)])
+        result = command(["llvm-spirv-14", "--spirv-max-version=1.0", str(out), "-o", str(module)])
         if result.returncode == 0 and shutil.which("spirv-val"):
             result = command(["spirv-val", "--target-env", "opencl1.2", str(module)])
         if result.returncode != 0:
