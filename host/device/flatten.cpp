@@ -111,16 +111,12 @@ class Flattener {
       if (directive.name.starts_with("if") && !std::exchange(guarded, false)) ++depth_;
       if (directive.name == "endif" && depth_ > depth_around) --depth_;
       const bool quoted = directive.name == "include" && !directive.rest.starts_with('<');
-      if (!quoted) {
-        out_.append(line);
-        out_ += '\n';
-      } else if (host_text.active()) {
-        out_ += '\n';
-      } else if (include(directive.rest, label, line_number)) {
+      if (quoted && !host_text.active() && include(directive.rest, label, line_number)) {
         mark(line_number + 1, label);
-      } else {
-        out_ += '\n';
+        continue;
       }
+      if (!quoted) out_.append(line);
+      out_ += '\n';
     }
     depth_ = depth_around;
   }

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "device/detail/huge_pages.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -27,10 +28,11 @@ struct Pages {
   explicit Pages(std::size_t bytes) : size((bytes + page - 1) / page * page) {
     void* const all = mmap(nullptr, size + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (all == MAP_FAILED) return;
-    const auto at = reinterpret_cast<std::uintptr_t>(all), aligned = (at + page - 1) / page * page;
-    if (aligned > at) munmap(all, aligned - at);
-    if (const std::size_t rest = at + page - aligned; rest > 0) munmap(reinterpret_cast<void*>(aligned + size), rest);
-    begin = reinterpret_cast<void*>(aligned);
+    char* const first = static_cast<char*>(all);
+    const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(all) % page) % page;
+    if (before > 0) munmap(first, before);
+    munmap(first + before + size, page - before);
+    begin = first + before;
     madvise(begin, size, MADV_HUGEPAGE);
   }
   Pages(const Pages&) = delete;
