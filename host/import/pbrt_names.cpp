@@ -143,7 +143,7 @@ Refusal refusal_of(std::string_view directive, const std::string& name) {
     if (const std::string old = v3_name(directive, name); !old.empty()) return {unknown + ": that is " + old, false};
     std::vector<std::string> known = table.accepted;
     known.insert(known.end(), table.refused.begin(), table.refused.end());
-    return {unknown + "; the nearest known name is \"" + nearest_name(name, known) + "\"", false};
+    return {fmt::format("{}; the nearest known name is \"{}\"", unknown, nearest_name(name, known)), false};
   }
   return {"unknown directive " + in_quotes(directive), false};
 }
