@@ -140,7 +140,8 @@ Refusal refusal_of(std::string_view directive, const std::string& name) {
     if (contains(table.accepted, name)) return {};
     if (contains(table.refused, name)) return {fmt::format("{} \"{}\" is not rendered yet", table.directive, name)};
     const std::string unknown = fmt::format("unknown {} {}", table.directive, in_quotes(name));
-    if (const std::string old = v3_name(directive, name); !old.empty()) return {fmt::format("{}: that is {}", unknown, old), false};
+    if (const std::string old = v3_name(directive, name); !old.empty())
+      return {fmt::format("{}: that is {}", unknown, old), false};
     std::vector<std::string> known = table.accepted;
     known.insert(known.end(), table.refused.begin(), table.refused.end());
     return {fmt::format("{}; the nearest known name is \"{}\"", unknown, nearest_name(name, known)), false};
