@@ -40,13 +40,11 @@ constexpr Quirk quirks[] = {
     // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl
     {"Portable Computing Language", "", "6.0", "6.1",
      "has a compiler that may abort the process (\"Instruction Combining did not reach a fixpoint\"); Caplet's kernels are "
-     "written "
-     "so that it does not"},
+     "written so that it does not"},
     // Seen with 2025.0.4 (which calls itself 2024.18.12) and later, not with 2024.2.1 (2024.18.7); kernels/stages/kernel.cl
     {"Intel(R) OpenCL", "Intel(R)", "2024.18.8", "",
      "may put several work-items into one vector, which is slow, and wrong where functions are called; Caplet's kernels ask it "
-     "not "
-     "to, others (CAPLET_KERNELS) must, too"},
+     "not to, others (CAPLET_KERNELS) must, too"},
     // Seen with 2023.2.4, which calls itself 2024.16.
     {"Intel(R) OpenCL", "Intel(R)", "2023", "2024.17",
      "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide one, which is its own"},
@@ -55,15 +53,13 @@ constexpr Quirk quirks[] = {
      "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, iris, llvmpipe)"},
     {"rusticl", "llvmpipe", "", "",
      "runs a work-item in each lane of the processor's vectors: the wide encoding takes minutes to compile and is slower than "
-     "the "
-     "single one, which is its own"},
+     "the single one, which is its own"},
     // Seen with 22.3 and 25.0: fma(-0, 0, +0) is -0.
     {"rusticl", "", "", "", "may give a zero of fma() the wrong sign; no kernel of Caplet's takes it"},
     // Seen with Debian's oclgrind 21.10-3: the self-test's comparisons of float8.
     {"Oclgrind", "", "21.10", "21.11",
      "is a simulator for debugging, and compares vectors wrongly: it cannot render (unless kernels are built as "
-     "tools/oclgrind.sh "
-     "does)"},
+     "tools/oclgrind.sh does)"},
 };
 
 /// The numbers of the first version in a text: "Oclgrind 21.10" has 21 and 10, "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.

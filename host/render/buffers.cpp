@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/check.h"
 #include "lower/packed_nodes.h"
@@ -108,6 +109,21 @@ void require_fit(const Device& device, const FlatScene& flat, const std::vector<
       static_cast<double>(left) * megabytes, static_cast<double>(info.max_allocation_bytes) * megabytes));
 }
 
+/// What each buffer of the paths holds of one path.
+std::vector<std::uint64_t> bytes_of_path(Layers of_film) {
+  constexpr std::uint64_t count_ONE = 0, count_STATE = 1;
+  std::vector<std::uint64_t> out;
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) \
+  out.push_back((std::string_view(#name) == "path_layers" ? floats_per_path(of_film) : count_##access) * sizeof(type));
+  PATH_GROUPS
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+  return out;
+}
+
 }  // namespace
 
 #define GROUP_BEGIN(Type, group) \
@@ -163,29 +179,15 @@ void PathBuffers::bind(Bindings& bindings) const {PATH_GROUPS}
 #undef GROUP_END
 
 std::uint64_t PathBuffers::largest_bytes_per_path(Layers of_film) {
-  std::uint64_t bytes = floats_per_path(of_film) * sizeof(float);
-#define GROUP_BEGIN(Type, group)
-#define BUFFER(name, type, access) bytes = std::max<std::uint64_t>(bytes, bytes_##access * sizeof(type));
-#define GROUP_END(Type)
-  constexpr std::uint64_t bytes_ONE = 0, bytes_STATE = 1;
-  PATH_GROUPS
-#undef GROUP_BEGIN
-#undef BUFFER
-#undef GROUP_END
-  return bytes;
+  std::uint64_t largest = 0;
+  for (const std::uint64_t bytes : bytes_of_path(of_film)) largest = std::max(largest, bytes);
+  return largest;
 }
 
 std::uint64_t PathBuffers::bytes_per_path(Layers of_film) {
-  std::uint64_t bytes = (floats_per_path(of_film) - 1) * sizeof(float);
-#define GROUP_BEGIN(Type, group)
-#define BUFFER(name, type, access) bytes += bytes_##access * sizeof(type);
-#define GROUP_END(Type)
-  constexpr std::uint64_t bytes_ONE = 0, bytes_STATE = 1;
-  PATH_GROUPS
-#undef GROUP_BEGIN
-#undef BUFFER
-#undef GROUP_END
-  return bytes;
+  std::uint64_t all = 0;
+  for (const std::uint64_t bytes : bytes_of_path(of_film)) all += bytes;
+  return all;
 }
 
 }  // namespace caplet

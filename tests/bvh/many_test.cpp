@@ -5,8 +5,8 @@
 // device's own way and the portable one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <string>
 
@@ -38,17 +38,8 @@ class Many : public testing::TestWithParam<std::size_t> {
 
   /// Number of rays that hit.
   int compare(const std::vector<RayRecord>& rays) {
-    const auto expected = one_by_one_.closest(rays), seen = tracer_.closest(rays);
-    int hit = 0, different = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      hit += seen[i].slot != CAPLET_NONE ? 1 : 0;
-      if (std::memcmp(&seen[i], &expected[i], sizeof seen[i]) != 0 && different++ < 5)
-        ADD_FAILURE() << "ray " << i << ": t " << seen[i].t << " of slot " << seen[i].slot << " in place of " << expected[i].t
-                      << " of " << expected[i].slot;
-    }
-    EXPECT_EQ(different, 0);
-    EXPECT_EQ(tracer_.any(rays), one_by_one_.any(rays));
-    return hit;
+    const auto hits = same_hits(tracer_, one_by_one_, rays);
+    return static_cast<int>(std::ranges::count_if(hits, [](const HitRecord& hit) { return hit.slot != CAPLET_NONE; }));
   }
   void upload(const Encoded& scene) {
     for (DeviceTracer* tracer : {&tracer_, &one_by_one_}) tracer->upload(scene.nodes, scene.leaves, {}, scene.tree.root);

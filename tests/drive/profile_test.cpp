@@ -18,6 +18,7 @@
 #include "render/detail/drive.h"
 #include "render/device_scene.h"
 #include "render/render.h"
+#include "render_scene.h"
 #include "support/data.h"
 #include "support/test_device.h"
 
@@ -36,23 +37,6 @@ Scene scene_named(const std::string& name, int width, int height, int depth) {
   scene.film.width = width;
   scene.film.height = height;
   scene.integrator.max_depth = depth;
-  return scene;
-}
-
-/// 60,000 capsules more: a tree that rays are sorted for.
-Scene with_a_cloud(Scene scene) {
-  CapsulesShape many;
-  std::mt19937 random(1);
-  const auto draw = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f * 2 - 1; };
-  for (int i = 0; i < 60000; ++i) {
-    const glm::vec3 middle{3 * draw(), 3 * draw(), 3 * draw()}, half{0.05f * draw(), 0.05f * draw(), 0.05f * draw()};
-    many.p0.push_back(middle - half);
-    many.p1.push_back(middle + half);
-    many.radius0.push_back(0.02f);
-  }
-  Shape cloud;
-  cloud.geometry = many;
-  scene.shapes.push_back(cloud);
   return scene;
 }
 
@@ -99,7 +83,8 @@ TEST(Profile, OfGpusMakesThePicturesOfProcessors) {
 
 // A batch of 2^20 paths, and so 2^18 sort bins in three levels of sums; launches begin with 2^16 work-items.
 TEST(Profile, OfGpusSortsAndLaunchesInChunks) {
-  const Scene scene = with_a_cloud(scene_named("scenes/capsules.pbrt", 256, 256, 2));
+  Scene scene = scene_named("scenes/capsules.pbrt", 256, 256, 2);
+  add_cloud(scene);
   ASSERT_GE(lower(scene).bvh_nodes, 1024u);
   const Device gpu = device_of("gpu");
   expect_same(made(scene, gpu, 4), made(scene, device_of("cpu"), 4), "sorted");

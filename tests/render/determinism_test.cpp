@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <random>
 #include <string>
 #include <utility>
 
@@ -102,18 +101,7 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
 TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   // What a GPU takes: one box at a time, a batch of 2^20 paths and so 2^18 sort bins (of a tree that is sorted for).
   Scene scene = import_scene(source_folder() / "scenes" / "capsules.pbrt", FileImageReader());
-  CapsulesShape many;
-  std::mt19937 random(1);
-  const auto draw = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f * 2 - 1; };
-  for (int i = 0; i < 60000; ++i) {
-    const glm::vec3 middle{3 * draw(), 3 * draw(), 3 * draw()}, half{0.05f * draw(), 0.05f * draw(), 0.05f * draw()};
-    many.p0.push_back(middle - half);
-    many.p1.push_back(middle + half);
-    many.radius0.push_back(0.02f);
-  }
-  Shape cloud;
-  cloud.geometry = many;
-  scene.shapes.push_back(cloud);
+  add_cloud(scene);
   scene.film.width = 512;
   scene.film.height = 512;
   scene.integrator.max_depth = 1;

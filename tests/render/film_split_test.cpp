@@ -25,21 +25,8 @@ namespace {
 
 constexpr std::uint32_t samples = 64;
 
-/// Glass, metal, a sky, a blurred lens and a light, small.
-struct Model {
-  Model() {
-    scene = import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
-    scene.film.width = 24;
-    scene.film.height = 18;
-    flat = lower(scene);
-    view = lower_view(scene);
-  }
-  Scene scene;
-  FlatScene flat;
-  FlatView view;
-};
-const Model& model() {
-  static const Model made;
+const LoweredScene& model() {
+  static const LoweredScene made = lowered_everything(24, 18);
   return made;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 
 #include "film/develop.h"
@@ -28,6 +29,31 @@ Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, c
   Scene scene = import_scene(file, FileImageReader());
   if (change) change(scene);
   return render_model(scene, samples_per_pixel, options);
+}
+
+LoweredScene lowered_everything(int width, int height) {
+  LoweredScene out;
+  out.scene = import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
+  out.scene.film.width = width;
+  out.scene.film.height = height;
+  out.flat = lower(out.scene);
+  out.view = lower_view(out.scene);
+  return out;
+}
+
+void add_cloud(Scene& scene) {
+  CapsulesShape many;
+  std::mt19937 random(1);
+  const auto draw = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f * 2 - 1; };
+  for (int i = 0; i < 60000; ++i) {
+    const glm::vec3 middle{3 * draw(), 3 * draw(), 3 * draw()}, half{0.05f * draw(), 0.05f * draw(), 0.05f * draw()};
+    many.p0.push_back(middle - half);
+    many.p1.push_back(middle + half);
+    many.radius0.push_back(0.02f);
+  }
+  Shape cloud;
+  cloud.geometry = many;
+  scene.shapes.push_back(cloud);
 }
 
 const Channel& channel(const LayeredImage& image, const std::string& name) {

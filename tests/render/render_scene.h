@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "film/image.h"
+#include "lower/flat_scene.h"
 #include "render/render.h"
 #include "scene/scene.h"
 #include "support/compare.h"
@@ -24,6 +25,18 @@ struct Rendered {
 Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, const std::function<void(Scene&)>& change = {},
                      RenderOptions options = {});
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options = {});
+
+/// A scene as devices take it, and as it is.
+struct LoweredScene {
+  Scene scene;
+  FlatScene flat;
+  FlatView view;
+};
+/// Glass, metal, a sky, a blurred lens and a light, in a picture of this size.
+LoweredScene lowered_everything(int width, int height);
+
+/// Adds 60,000 small capsules: a tree that rays are sorted for.
+void add_cloud(Scene& scene);
 
 /// The scene of a pbrt text.
 Scene scene_of_text(const std::string& text);

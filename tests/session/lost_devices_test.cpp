@@ -11,11 +11,9 @@
 #include <thread>
 
 #include "driver_stub.h"
-#include "import/import.h"
-#include "lower/lower.h"
 #include "render/render.h"
 #include "render/session.h"
-#include "support/data.h"
+#include "render_scene.h"
 #include "support/logged_errors.h"
 #include "support/test_device.h"
 
@@ -26,20 +24,8 @@ using testing::HasSubstr;
 
 constexpr std::uint32_t samples = 48;
 
-struct Model {
-  Model() {
-    scene = import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
-    scene.film.width = 40;
-    scene.film.height = 30;
-    flat = lower(scene);
-    view = lower_view(scene);
-  }
-  Scene scene;
-  FlatScene flat;
-  FlatView view;
-};
-const Model& model() {
-  static const Model made;
+const LoweredScene& model() {
+  static const LoweredScene made = lowered_everything(40, 30);
   return made;
 }
 

@@ -11,9 +11,8 @@
 
 namespace caplet {
 
-/// A buffer of `size` bytes in huge pages; an empty handle where that is not to be had or would not pay: on devices that are no
-/// processors or do not share the host's memory, on systems without, for buffers of a few pages. $CAPLET_HUGE_PAGES=0: never.
-/// Throws cl::Error.
+/// A buffer of `size` bytes in huge pages; an empty handle where these are not to be had or would not pay: on devices that are no
+/// processors, on systems without, for buffers smaller than such a page. $CAPLET_HUGE_PAGES=0: never. Throws cl::Error.
 cl::Buffer on_huge_pages(const Device& device, bool read_only, std::size_t size);
 
 }  // namespace caplet
