@@ -8,19 +8,26 @@
 #include "shapes/csg.cl"
 #include "shapes/spans.cl"
 
-// Of shapes that are rare or of those that are not; eight lanes are tested of either alike.
-static inline real_mask hit_among(uint shape, const int rare, const ShapeRay* ray, __global const float* block, uint lane, real* t,
-                                  real_mask* side) {
-  switch (shape) {
-#define SHAPE(name, traits)                                                            \
-  case shape_##name:                                                                   \
-    if (CAPLET_REAL_WIDTH == 8 || (((traits)&trait_rare) != 0) == rare) return name##_hit(ray, block, lane, t, side); \
+#define HIT_CASE(name, traits)                                                        \
+  case shape_##name:                                                                  \
+    if (HIT_IS_ASKED(traits)) return name##_hit(ray, block, lane, t, side);           \
     break;
-#define COMPOUND(name, traits) COMPOUND_CASE_##name(traits)
-#define COMPOUND_CASE_csg(traits) SHAPE(csg, traits)
-#define COMPOUND_CASE_instance(traits)
+#define HIT_CASE_csg(traits) HIT_CASE(csg, traits)
+#define HIT_CASE_instance(traits)
+
+// Lanes of the leaf block that the ray hits, where, and which side of which surface it sees. Of rare shapes: rare_hit.
+static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+  switch (shape) {
+#if CAPLET_REAL_WIDTH == 8
+#define HIT_IS_ASKED(traits) 1
+#else
+#define HIT_IS_ASKED(traits) (((traits)&trait_rare) == 0)
+#endif
+#define SHAPE(name, traits) HIT_CASE(name, traits)
+#define COMPOUND(name, traits) HIT_CASE_##name(traits)
 #include "rows/shapes.def"
 #undef SHAPE
+#undef HIT_IS_ASKED
     default: break;
   }
   *t = real_of(0.0f);
@@ -28,14 +35,20 @@ static inline real_mask hit_among(uint shape, const int rare, const ShapeRay* ra
   return int_of(0);
 }
 
-// Lanes of the leaf block that the ray hits, where, and which side of which surface it sees. Of rare shapes: rare_hit.
-static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
-  return hit_among(shape, 0, ray, block, lane, t, side);
-}
-
 #if CAPLET_REAL_WIDTH == 1
 static inline int rare_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, float* t, int* side) {
-  return hit_among(shape, 1, ray, block, lane, t, side);
+  switch (shape) {
+#define HIT_IS_ASKED(traits) (((traits)&trait_rare) != 0)
+#define SHAPE(name, traits) HIT_CASE(name, traits)
+#define COMPOUND(name, traits) HIT_CASE_##name(traits)
+#include "rows/shapes.def"
+#undef SHAPE
+#undef HIT_IS_ASKED
+    default: break;
+  }
+  *t = 0.0f;
+  *side = 0;
+  return 0;
 }
 
 static inline int shape_is_rare(uint shape) {
