@@ -64,7 +64,7 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
 
   // The ray's point nearest to p0, in cylinder coordinates.
   AxisLine l;
-  const real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
+  const CAPLET_WAITS real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real px = wx + shift * ray->dx, py = wy + shift * ray->dy, pz = wz + shift * ray->dz;
   const real bb = real_dot(bx, by, bz, bx, by, bz);
   const real inv_length = 1.0f / (bb > 0.0f ? sqrt(bb) : one);
@@ -89,15 +89,17 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   const real qx = l.ex + l.nearest * l.fx, qy = l.ey + l.nearest * l.fy, qz = l.ez + l.nearest * l.fz;
   // Nothing lies outside the tube of the larger radius.
   const real wide = real_max(r0, r1);
-  const real tube = wide * wide - real_dot(qx, qy, qz, qx, qy, qz);
+  const CAPLET_WAITS real tube = wide * wide - real_dot(qx, qy, qz, qx, qy, qz);
   const real_mask near_axis = tube >= 0.0f;
   if (mask_bits(near_axis) == 0) return span_of(near_axis, shift, shift);
 
   // Balls, touched within 4 eps of everything: a crossing that the cone and a ball both disown would be lost.
   const real room = 0x1p-22f * (length + wide);
-  real enter0, exit0, enter1, exit1;
-  const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &enter0, &exit0);
-  const real_mask met1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &enter1, &exit1);
+  real ball_enter, ball_exit;
+  const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &ball_enter, &ball_exit);
+  CAPLET_WAITS real enter0 = ball_enter, exit0 = ball_exit;
+  const real_mask met1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &ball_enter, &ball_exit);
+  CAPLET_WAITS real enter1 = ball_enter, exit1 = ball_exit;
 
   // The joining cone. From a rim of radius s to a ball of radius R its generator has the length w, w^2 = L^2 + s^2 - R^2; between
   // two balls w^2 = L^2 - (r0 - r1)^2, between two rims L^2 + (r0 - r1)^2.

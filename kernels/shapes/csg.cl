@@ -32,9 +32,11 @@ typedef struct {
   uint inside;                                  // operands the ray is in
   int value;                                    // whether it is in the result
   float last;                                   // t of the crossing reported last
-  __global const uint* operands;
-  __global const uint* program;
-  uint program_length;
+  __global const uint* CAPLET_WAITS operands;
+  __global const uint* CAPLET_WAITS program;
+  CAPLET_WAITS uint program_length;
+  CAPLET_WAITS float t_min;  // of the ray
+  CAPLET_WAITS int sees_entering, sees_leaving;
 } CsgLine;
 
 static inline uint lowest_event(ulong bits) { return (uint)popcount(~bits & (bits - 1ul)); }
@@ -141,15 +143,19 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
   line->operands = numbers + 8 * (1 + groups);
   line->program = line->operands + (numbers[6] + 7) / 8 * 8;
   line->program_length = numbers[5];
+  line->t_min = ray->t_min;
+  line->sees_entering = ray->sees_entering;
+  line->sees_leaving = ray->sees_leaving;
+  CAPLET_WAITS float kept[7] = {o.x, o.y, o.z, d.x, d.y, d.z, shift};
   for (uint i = 0; i < groups; i++) {
     __global const uint* group = numbers + 8 * (1 + i);
-    float3 group_o = o, group_d = d;
+    float3 group_o = (float3)(kept[0], kept[1], kept[2]), group_d = (float3)(kept[3], kept[4], kept[5]);
     if (group[4] != CAPLET_NONE) {
-      group_o = transform_point(ray->leaves + group[4], o);
-      group_d = transform_vector(ray->leaves + group[4], d);
+      group_o = transform_point(ray->leaves + group[4], group_o);
+      group_d = transform_vector(ray->leaves + group[4], group_d);
     }
     const ShapeRay own = shape_ray(group_o, group_d, ray->t_min, ray->leaves);
-    csg_add_group(line, &own, group, shift);
+    csg_add_group(line, &own, group, kept[6]);
   }
   return line->pending != 0;
 }
@@ -165,11 +171,11 @@ static inline uint csg_earliest(const CsgLine* line) {
 }
 
 // The next crossing of the result beyond t_min: 1, its t and HitRecord.surface. 0: there is none.
-static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* side) {
+static inline int csg_next(CsgLine* line, float* t, int* side) {
   while (line->pending != 0) {
     const int before = line->value;
     uint event = csg_earliest(line);
-    const int first_seen = line->t[event] > ray->t_min;
+    const int first_seen = line->t[event] > line->t_min;
     uint members = 0, crossed = event;
     float low = -INFINITY, high = INFINITY;  // the instants all members have in common
     for (;;) {
@@ -193,9 +199,9 @@ static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* si
     }
     // Several surfaces at which the ray begins are all behind it, unless the instants that they have in common, and the crossing itself,
     // lie ahead. (The ray may graze one of them for long, so that the crossing of that one is far behind.)
-    const int seen = line->t[crossed] > ray->t_min && (first_seen || low > ray->t_min);
+    const int seen = line->t[crossed] > line->t_min && (first_seen || low > line->t_min);
     if (line->value == before || !seen) continue;
-    if ((line->value != 0 ? ray->sees_entering : ray->sees_leaving) == 0) continue;
+    if ((line->value != 0 ? line->sees_entering : line->sees_leaving) == 0) continue;
     const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
     // Each crossing is reported beyond the last one, so that a chord of no length still enters before it leaves.
     line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
@@ -209,7 +215,7 @@ static inline int csg_next(const ShapeRay* ray, CsgLine* line, float* t, int* si
 // The nearest crossing of the csg shape at leaves[begin] beyond t_min.
 static inline int csg_nearest(const ShapeRay* ray, uint begin, float* t, int* side) {
   CsgLine line;
-  return csg_start(ray, begin, &line) && csg_next(ray, &line, t, side);
+  return csg_start(ray, begin, &line) && csg_next(&line, t, side);
 }
 
 static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {

@@ -37,13 +37,29 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
   return t;
 }
 
+static inline Span cylinder_hull(const ShapeRay* ray, __global const float* block, uint lane) {
+  const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
+  const real r = cylinder_r_lanes(block, lane);
+  return cone_span_of(ray, ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z, p1.x - p0.x, p1.y - p0.y, p1.z - p0.z, r, r,
+                      cylinder_cap0_lanes(block, lane), cylinder_cap1_lanes(block, lane));
+}
+
 static inline Span cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
   CapsuleLine c;
   real shift;
   const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
-  real_mask hit = capsule_line(ray, p0, p1, cylinder_r_lanes(block, lane), &c, &shift);
+  const real cap0 = cylinder_cap0_lanes(block, lane), cap1 = cylinder_cap1_lanes(block, lane);
+  const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
+  const real r = cylinder_r_lanes(block, lane), bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
+  const real bb = real_dot(bx, by, bz, bx, by, bz);
+  // A ball that reaches through the other end, which is flat.
+  const real_mask pierced = (round0 | round1) & ((round0 & round1) == 0) & (bb < r * r);
+#if CAPLET_REAL_WIDTH == 1
+  if (pierced) return cylinder_hull(ray, block, lane);
+#endif
+  real_mask hit = capsule_line(ray, p0, p1, r, &c, &shift);
   const real_mask shallow = c.ff < ray->ff_min;
-  if (mask_bits(hit | shallow) == 0) return span_of(hit, shift, shift);
+  if (mask_bits(hit | shallow | pierced) == 0) return span_of(hit, shift, shift);
   if (mask_bits(shallow) != 0) {
     // f is rounding noise (or d is tiny). With the floor alone t0 is too small and q too short, which a capsule's ends make good,
     // but not flat ones: the distance from the axis is to be right in between, too.
@@ -58,8 +74,6 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
     c.h = shallow ? (crosses ? disc / c.ff : real_of(INFINITY)) : c.h;
   }
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
-  const real cap0 = cylinder_cap0_lanes(block, lane), cap1 = cylinder_cap1_lanes(block, lane);
-  const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
   Span span;
   span.t_enter = cylinder_end(ray, &c, -1.0f, round0, round1, &hit, &span.surface_enter);
   span.t_exit = cylinder_end(ray, &c, 1.0f, round0, round1, &hit, &span.surface_exit);
@@ -76,7 +90,6 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
   span.t_exit = exit_flat ? flat_exit : span.t_exit;
   span.surface_enter = enter_flat ? (up ? int_of(1) : int_of(2)) : span.surface_enter;
   span.surface_exit = exit_flat ? (up ? int_of(2) : int_of(1)) : span.surface_exit;
-  const real bb = real_dot(c.bx, c.by, c.bz, c.bx, c.by, c.bz);
   hit &= (span.t_enter <= span.t_exit) & (bb > 0.0f);
   const real_mask open0 = cap0 == CAPLET_CAP_OPEN, open1 = cap1 == CAPLET_CAP_OPEN;
   span.enter = hit & ((enter_flat & (up ? open0 : open1)) == 0);
@@ -84,10 +97,9 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
   span.t_enter += shift;
   span.t_exit += shift;
 
-  const real_mask pierced = (round0 | round1) & ((round0 & round1) == 0) & (bb < c.r * c.r);
+#if CAPLET_REAL_WIDTH == 8
   if (mask_bits(pierced) != 0) {
-    const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
-    const Span hull = cone_span_of(ray, wx, wy, wz, c.bx, c.by, c.bz, c.r, c.r, cap0, cap1);
+    const Span hull = cylinder_hull(ray, block, lane);
     span.t_enter = pierced ? hull.t_enter : span.t_enter;
     span.t_exit = pierced ? hull.t_exit : span.t_exit;
     span.enter = pierced ? hull.enter : span.enter;
@@ -95,6 +107,7 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
     span.surface_enter = pierced ? hull.surface_enter : span.surface_enter;
     span.surface_exit = pierced ? hull.surface_exit : span.surface_exit;
   }
+#endif
   return span;
 }
 

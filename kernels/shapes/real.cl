@@ -12,7 +12,9 @@
 #define CAPLET_REAL_WIDTH 1
 #endif
 
+// What is made long before it is needed: where one primitive is tested at a time it waits in memory, not in registers, of which GPUs have few.
 #if CAPLET_REAL_WIDTH == 8
+#define CAPLET_WAITS
 typedef float8 real;
 typedef int8 real_mask;
 
@@ -49,6 +51,7 @@ static inline uint mask_bits(real_mask m) {
 }
 
 #elif CAPLET_REAL_WIDTH == 1
+#define CAPLET_WAITS volatile
 typedef float real;
 typedef int real_mask;
 

@@ -76,7 +76,7 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
     if (!csg_start(ray, csg_begin(lane_data(block, lane)), &line)) continue;
     float t;
     int side;
-    while (csg_next(ray, &line, &t, &side)) list_add(list, t, slot + lane, instance, (uint)side);
+    while (csg_next(&line, &t, &side)) list_add(list, t, slot + lane, instance, (uint)side);
   }
 }
 
