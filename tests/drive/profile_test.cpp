@@ -134,7 +134,7 @@ TEST(Profile, ChunksAreParts) {
   buffers.sort.sort_keys.clear();
   Bindings bindings;
   buffers.bind(bindings);
-  for (const std::size_t chunk : {0, 64, 1024, 8192})
+  for (const std::size_t chunk : {std::size_t{0}, std::size_t{64}, std::size_t{1024}, std::size_t{8192}})
     for (const uint counted : {~0u, 0u, 1u, 1023u, 4999u, 6000u}) {
       buffers.queues.queue.write(std::vector<uint>(paths, 7777u));
       buffers.sort.sort_bins.clear();
