@@ -27,7 +27,8 @@ namespace {
 Scene measured_scene() {
   CapsulesShape capsules;
   for (int i = 0; i < 4096; ++i) {
-    const float x = static_cast<float>(i % 16), y = static_cast<float>(i / 16 % 16), z = static_cast<float>(i / 256);
+    const int row = i / 16, layer = i / 256;
+    const float x = static_cast<float>(i % 16), y = static_cast<float>(row % 16), z = static_cast<float>(layer);
     capsules.p0.emplace_back(x - 0.3f, y - 0.2f, z);
     capsules.p1.emplace_back(x + 0.3f, y + 0.2f, z);
     capsules.radius0.push_back(0.15f);

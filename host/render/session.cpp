@@ -184,7 +184,7 @@ void Session::clear() {
 }
 
 /// Leaves them out, but for the last one there is: its failure is thrown, and it may be asked again.
-void Session::part_with(Workers gone, std::exception_ptr last_failure) {
+void Session::part_with(const Workers& gone, const std::exception_ptr& last_failure) {
   const std::shared_ptr<Worker> last = gone.size() == workers_.size() && !gone.empty() ? gone.back() : nullptr;
   for (const auto& worker : gone) {
     if (worker == last) continue;
@@ -215,7 +215,7 @@ void Session::update(const FlatScene& scene, const SceneChanges& changes, const 
       gone.push_back(worker);
       if (gone.size() < workers_.size()) warn_of_lost(worker->device, failure, options_.patience);
     }
-  part_with(std::move(gone), failure);
+  part_with(gone, failure);
   before_.reset();
   again_.clear();
   first_ = next_ = options_.sample_begin;
@@ -255,7 +255,7 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
   run->asked = sample_count;
   run->progress = progress;
   const auto beats = [run](std::size_t i) { return run->workers[i]->renderer.beats(); };
-  const auto lost = [run, patience = options_.patience](std::size_t i, std::exception_ptr failure) {
+  const auto lost = [run, patience = options_.patience](std::size_t i, const std::exception_ptr& failure) {
     run->shares.lose(i, run->workers[i]->had);
     run->under_way[i] = 0;
     run->gone.push_back(run->workers[i]);
@@ -308,7 +308,7 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
 std::optional<Film> Session::gather() {
   const auto run = std::make_shared<Run>(workers_, Shares(layout().window, next_, 0, {}, {}));
   run->films.resize(workers_.size());
-  const auto lost = [run, patience = options_.patience](std::size_t i, std::exception_ptr failure) {
+  const auto lost = [run, patience = options_.patience](std::size_t i, const std::exception_ptr& failure) {
     run->gone.push_back(run->workers[i]);
     run->last_failure = failure;
     if (run->gone.size() < run->workers.size()) warn_of_lost(run->workers[i]->device, failure, patience);

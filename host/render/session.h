@@ -99,7 +99,7 @@ class Session {
   struct Run;
   using Workers = std::vector<std::shared_ptr<Worker>>;
   void clear();
-  void part_with(Workers gone, std::exception_ptr last_failure);
+  void part_with(const Workers& gone, const std::exception_ptr& last_failure);
   std::uint32_t run(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
                     std::optional<double> time_limit);
   std::optional<Film> gather();

@@ -102,8 +102,6 @@ static inline float list_end(const HitList* list, float t_end) {
 // capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
 // itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
 static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
-  __global const float* nodes = tree->nodes;
-  __global const float* leaves = tree->leaves;
   HitList list;
   list.tree = tree;
   list.sorted = sorted;
@@ -126,6 +124,8 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
     t_best = list_end(&list, t_best);
   }
 #else
+  __global const float* nodes = tree->nodes;
+  __global const float* leaves = tree->leaves;
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
   if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < ray.t_max)) return 0;
