@@ -6,11 +6,13 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <numbers>
+#include <utility>
 
 #include "base/check.h"
 #include "lower/detail/environment.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/light_table.h"
+#include "lower/detail/light_tree.h"
 
 namespace caplet {
 
@@ -42,7 +44,8 @@ class LightLowering {
   /// Luminance of the radiance of the brightest light so far, spread over all directions and the scene where it has none.
   double brightest() const { return brightest_; }
 
-  void add(const Light& light, std::vector<LightShare>& shares) {
+  /// `bounded`: takes the light where it is somewhere.
+  void add(const Light& light, std::vector<LightShare>& shares, std::vector<TreeLight>& bounded) {
     light_ = &light;
     LightRecord record{};
     record.slot = record.instance = record.geometry = CAPLET_NONE;
@@ -53,6 +56,17 @@ class LightLowering {
     brightest_ = std::max(brightest_, power / (4 * pi * pi * radius_ * radius_));
     const auto group = shares.empty() ? 0 : shares.back().group + 1;
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, group});
+    std::visit(
+        [&](const auto& model) {
+          if constexpr (requires { model.reach(); }) {
+            if (!(shares.back().power > 0)) return;
+            const LightReach reach = model.reach();
+            bounded.push_back({narrow<uint>(shares.size() - 1),
+                               {reach.position, reach.position, reach.axis, std::cos(reach.cone), std::cos(reach.reach),
+                                power / model.per_unit()}});
+          }
+        },
+        light.model);
   }
 
  private:
@@ -140,6 +154,37 @@ class LightLowering {
 
 bool is_infinite(const Light& light) { return std::holds_alternative<InfiniteLight>(light.model); }
 
+LightBounds bounds_of(const Emitter& emitter, double power) {
+  const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
+  LightBounds out{vector(emitter.min), vector(emitter.max), vector(emitter.axis)};
+  const bool one_way = out.axis != glm::dvec3(0);
+  if (!one_way) out.axis = {0, 0, 1};
+  out.cos_cone = one_way ? 1 : -1;
+  // Of a flat side its radiance by its area; of a convex solid a quarter of that, from everywhere in the mean.
+  out.intensity = power / (one_way ? pi : 4 * pi);
+  return out;
+}
+
+/// Makes the tree of `bounded` and takes it for one choice of `shares`, beside the lights that are in none: half of the random
+/// numbers by power, half evenly to groups, as light_table has it.
+void lower_many_lights(const std::vector<TreeLight>& bounded, std::vector<LightShare>& shares, FlatScene& out) {
+  lower_light_tree(bounded.size() >= CAPLET_LIGHT_TREE_FROM ? bounded : std::vector<TreeLight>{}, shares.size(), out);
+  out.lighting.tree_share = 0;
+  if (out.lighting.tree_nodes == 0) return;
+  std::vector<std::uint32_t> groups;  // of the others
+  double of_tree = 0, of_others = 0;
+  for (const TreeLight& light : bounded) of_tree += std::exchange(shares[light.light].power, 0);
+  for (const LightShare& share : shares) {
+    if (!(share.power > 0)) continue;
+    of_others += share.power;
+    groups.push_back(share.group);
+  }
+  std::ranges::sort(groups);
+  const auto others = static_cast<double>(std::distance(groups.begin(), std::ranges::unique(groups).begin()));
+  const double chance = 0.5 * of_tree / (of_tree + of_others) + 0.5 / (1 + others);
+  out.lighting.tree_share = others > 0 ? static_cast<uint>(std::clamp(chance, 0x1p-8, 1 - 0x1p-8) * 0x1p32) : CAPLET_NONE;
+}
+
 }  // namespace
 
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
@@ -148,6 +193,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.light_data.clear();
   out.lighting.environment_width = out.lighting.environment_height = out.lighting.environment_square = 0;
   std::vector<LightShare> shares;
+  std::vector<TreeLight> bounded;
   double brightest = 0;
   out.lights.reserve(emitters.size() + scene.lights.size());
   shares.reserve(emitters.size() + scene.lights.size());
@@ -174,13 +220,14 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     brightest = std::max(brightest, emitter.luminance);
     const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
+    if (shares.back().power > 0) bounded.push_back({narrow<uint>(shares.size() - 1), bounds_of(emitter, power)});
   }
   LightLowering lowering(spectra, environment, out);
   for (const Light& light : scene.lights)
-    if (!is_infinite(light)) lowering.add(light, shares);
+    if (!is_infinite(light)) lowering.add(light, shares, bounded);
   out.lighting.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
-    if (is_infinite(light)) lowering.add(light, shares);
+    if (is_infinite(light)) lowering.add(light, shares, bounded);
   if (out.lighting.environment_width == 0) {
     environment = {};
     out.environment_texels.clear();
@@ -188,10 +235,10 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   }
   out.lighting.radiance = static_cast<float>(std::max(brightest, lowering.brightest()));
   out.lighting.light_count = narrow<uint>(out.lights.size());
+  out.lighting.sampled_light_count =
+      narrow<uint>(std::ranges::count_if(shares, [](const LightShare& share) { return share.power > 0; }));
+  lower_many_lights(bounded, shares, out);
   out.light_alias = light_table(shares);
-  out.lighting.sampled_light_count = 0;
-  for (const AliasRecord& row : out.light_alias)
-    if (row.probability > 0) ++out.lighting.sampled_light_count;
 }
 
 }  // namespace caplet

@@ -284,12 +284,15 @@ struct LiveScene::State {
     const auto lights = to.lights;
     const auto data = to.light_data;
     const auto alias = to.light_alias;
+    const auto nodes = to.light_nodes, places = to.light_places;
     const LightingRecord lighting = to.lighting;
     const auto image = lowering->environment.image;
     lower_lights(scene, geometry().emitters, lowering->spectra, lowering->environment, to);
     add_differences(lights, to.lights, changes.lights);
     add_differences(data, to.light_data, changes.light_data);
     add_differences(alias, to.light_alias, changes.light_alias);
+    add_differences(nodes, to.light_nodes, changes.light_nodes);
+    add_differences(places, to.light_places, changes.light_places);
     if (!same_bytes(lighting, to.lighting)) changes.lighting.add(0, 1);
     if (image != lowering->environment.image) {
       changes.environment_texels.add(0, to.environment_texels.size());

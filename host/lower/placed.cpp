@@ -45,6 +45,34 @@ Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
   return box;
 }
 
+/// The image of the primitive's box, and the side of a flat one that emits.
+void set_reach(const FlatPrimitive& p, const Matrix& world_from_part, bool flipped, Emitter& emitter) {
+  double low[3], high[3];
+  primitive_box(p, low, high);
+  Bounds box;
+  for (int corner = 0; corner < 8; ++corner) {
+    dvec3 x;
+    for (int k = 0; k < 3; ++k) x[k] = (corner >> k) & 1 ? high[k] : low[k];
+    box.extend(apply_point(world_from_part, x));
+  }
+  dvec3 normal(0);
+  if (p.shape == shape_triangle) {
+    const auto corner = [&](int at) { return dvec3(p.data[at], p.data[at + 1], p.data[at + 2]); };
+    const dvec3 v0 = corner(triangle_at_v0);
+    normal = glm::cross(corner(triangle_at_v1) - v0, corner(triangle_at_v2) - v0);
+  } else if (p.shape == shape_disk) {
+    normal = dvec3(p.data[disk_at_n], p.data[disk_at_n + 1], p.data[disk_at_n + 2]);
+  }
+  normal = glm::transpose(glm::inverse(glm::dmat3(world_from_part))) * normal;
+  const double length = glm::length(normal);
+  const bool one_way = !emitter.two_sided && std::isfinite(length) && length > 0;
+  for (int k = 0; k < 3; ++k) {
+    emitter.min[k] = box.min[k];
+    emitter.max[k] = box.max[k];
+    emitter.axis[k] = one_way ? normal[k] / (flipped ? -length : length) : 0;
+  }
+}
+
 /// The ball around the image of the primitive's box, for kinds that are sampled by it.
 void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
   const bool has_round_end =
@@ -120,6 +148,8 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
     emitter.geometry = flat.primitive_geometry[part.primitives[at].id];
     emitter.area = areas[i];
     set_ball(part.primitives[at], world_from_part, emitter);
+    set_reach(part.primitives[at], world_from_part, (flat.geometries[emitter.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,
+              emitter);
     // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
     if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
     *out++ = emitter;

@@ -50,6 +50,16 @@ static inline int bsdf_is_specular(const Bsdf* b) {
   }
 }
 
+static inline int bsdf_is_opaque(const Bsdf* b) {
+  switch (b->kind) {
+#define MATERIAL(name, traits) \
+  case material_##name: return ((traits)&trait_opaque) != 0;
+#include "rows/materials.def"
+#undef MATERIAL
+    default: return 0;
+  }
+}
+
 // f |cos wi| and the solid-angle density with which bsdf_sample takes wi; 0 for delta scattering.
 static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   *pdf = 0.0f;

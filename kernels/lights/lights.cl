@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All lights: choice of one by the alias table (Walker 1977, Vose 1991), sampling of it, and the densities that multiple
-// importance sampling needs. The only switches over kinds of light.
+// All lights: choice of one by the alias table (Walker 1977, Vose 1991) or, where there are many, by the light tree (tree.cl), sampling of it,
+// and the densities that multiple importance sampling needs. The only switches over kinds of light.
 //
 // A light of lights.def is a file of this folder by its name, with
 //   int NAME_light_sample(scene, light, p, lambda, u, s)      as light_sample: fills wi, target, radiance and pdf (of wi alone; delta
@@ -13,6 +13,7 @@
 #define CAPLET_LIGHTS_LIGHTS_CL
 
 #include "lights/light_types.cl"
+#include "lights/tree.cl"
 #include "lights/{lights}.cl"
 
 enum {
@@ -39,6 +40,37 @@ static inline uint light_select(const Lights* lights, uint u, float* probability
   return chosen;
 }
 
+// One of all lights for what `at` takes, and the chance of that; CAPLET_NONE: none. u: 32 random bits.
+static inline uint light_choose(const Lights* lights, const LightReceiver* at, uint u, float* chance) {
+#ifdef CAPLET_LIGHT_TREE
+  const uint share = lights->lighting->tree_share;
+  if (u < share || share == CAPLET_NONE) {
+    const uint light = light_of_tree(lights, at, fmin((float)u / (float)share, 0x1.fffffep-1f), u, chance);
+    *chance *= (float)share * 0x1p-32f;
+    return light;
+  }
+  const uint rest = 0u - share;  // of 2^32
+  const uint light = light_select(lights, (uint)(((ulong)(u - share) << 32) / rest), chance);
+  *chance *= (float)rest * 0x1p-32f;
+  return light;
+#else
+  (void)at;
+  return light_select(lights, u, chance);
+#endif
+}
+
+// The chance that light_choose has for `light`.
+static inline float light_chance(const Lights* lights, uint light, const LightReceiver* at) {
+#ifdef CAPLET_LIGHT_TREE
+  const uint share = lights->lighting->tree_share;
+  if (lights->light_places[light] != CAPLET_NONE) return (float)share * 0x1p-32f * light_tree_chance(lights, light, at);
+  return (float)(share == CAPLET_NONE ? 0u : 0u - share) * 0x1p-32f * lights->light_alias[light].probability;
+#else
+  (void)at;
+  return lights->light_alias[light].probability;
+#endif
+}
+
 #define SAMPLE_LIGHT_OF(name, is_infinite, is_delta)                                             \
   case light_##name:                                                                             \
     s->infinite = is_infinite;                                                                   \
@@ -51,14 +83,15 @@ static inline uint light_select(const Lights* lights, uint u, float* probability
 #define SAMPLE_LIGHT_sky(name) SAMPLE_LIGHT_OF(name, 1, 0)
 #define SAMPLE_LIGHT_glow(name)
 
-// One light sample as seen from p (world). u_select: 32 random bits; u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
-static inline int light_sample(const Scene* scene, float3 p, float4 lambda, uint u_select, float2 u, LightSample* s) {
+// One light sample as seen from at.p. u_select: 32 random bits; u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
+static inline int light_sample(const Scene* scene, LightReceiver at, float4 lambda, uint u_select, float2 u, LightSample* s) {
   const Lights* lights = &scene->lights;
   if (lights->lighting->sampled_light_count == 0u) return 0;
+  const float3 p = at.p;
   float chance;
-  s->index = light_select(lights, u_select, &chance);
+  s->index = light_choose(lights, &at, u_select, &chance);
+  if (s->index == CAPLET_NONE || !(chance > 0.0f)) return 0;
   __global const LightRecord* light = lights->lights + s->index;
-  if (!(chance > 0.0f)) return 0;
   switch (light->kind) {
 #define LIGHT(name, way) SAMPLE_LIGHT_##way(name)
 #include "rows/lights.def"
@@ -76,12 +109,12 @@ static inline float4 light_emitted(const Spectra* spectra, const Lights* lights,
   return spectrum_eval(spectra, record->spectrum, lambda) * record->scale;
 }
 
-// Density (solid angle times chance of the light) that light_sample(p) has for the unit direction wi, which meets light `light` at
-// `hit`.
-static inline float light_area_pdf(const Scene* scene, uint light, float3 p, const Surface* hit, float3 wi) {
+// Density (solid angle times chance of the light) that light_sample has at `at` for the unit direction wi, which meets light `light` at `hit`.
+static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver at, const Surface* hit, float3 wi) {
   if (scene->lights.lighting->sampled_light_count == 0u) return 0.0f;
   __global const LightRecord* record = scene->lights.lights + light;
-  const float chance = scene->lights.light_alias[light].probability;
+  const float3 p = at.p;
+  const float chance = light_chance(&scene->lights, light, &at);
   switch (record->kind) {
 #define LIGHT_PDF_surface(name) \
   case light_##name: return chance * name##_light_pdf(scene, record, p, hit, wi);
@@ -100,6 +133,7 @@ static inline float light_area_pdf(const Scene* scene, uint light, float3 p, con
 // solid-angle density that the ray was made with; `specular`: no light sample could have made it (also camera rays).
 static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
   float4 sum = (float4)(0.0f);
+  const LightReceiver anywhere = {(float3)(0.0f), CAPLET_NONE};  // no infinite light is in the tree
   for (uint i = lights->lighting->infinite_begin; i < lights->lighting->light_count; ++i) {
     __global const LightRecord* light = lights->lights + i;
     float pdf = 0.0f;
@@ -110,7 +144,7 @@ static inline float4 light_infinite(const Spectra* spectra, const Lights* lights
 #define LIGHT_MET_sky(name)                                                                                \
   case light_##name: {                                                                                     \
     const float4 radiance = name##_light_radiance(spectra, lights, light, wi, lambda, &pdf);               \
-    pdf *= lights->lighting->sampled_light_count > 0u ? lights->light_alias[i].probability : 0.0f;         \
+    pdf *= lights->lighting->sampled_light_count > 0u ? light_chance(lights, i, &anywhere) : 0.0f;           \
     sum += radiance * (specular ? 1.0f : power_heuristic(bsdf_pdf, pdf));                                  \
     break;                                                                                                 \
   }

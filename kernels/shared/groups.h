@@ -53,6 +53,8 @@
   BUFFER(lights, LightRecord, IN)                                                                               \
   BUFFER(light_data, float, IN) /* lights.def */                                                                \
   BUFFER(light_alias, AliasRecord, IN)                                                                          \
+  BUFFER(light_nodes, uint, IN)  /* of the light tree, CAPLET_LIGHT_NODE each (lights/tree.cl) */               \
+  BUFFER(light_places, uint, IN) /* of each light and, behind them, of each of its nodes: where it stands in a node, or CAPLET_NONE */ \
   BUFFER(environment_texels, float, IN) /* 4 a texel: sigmoid c0 c1 c2, scale (times the illuminant) */         \
   BUFFER(environment_cdf, float, IN)    /* rows: marginal (height + 1), then height times (width + 1) conditional */ \
   GROUP_END(Lights)
@@ -105,6 +107,7 @@
   /* pdf of the last direction (solid angle), product of eta scales, bits of the light of the primitive that it */ \
   /* refracted through (or CAPLET_NONE), filter weight */                                                       \
   BUFFER(path_scatter, float4, STATE)                                                                           \
+  BUFFER(path_normal, uint, STATE) /* where there is a light tree: normal_bits of the last scattering */         \
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 

@@ -39,7 +39,8 @@ enum {
 
 // Traits of materials (materials.def).
 enum {
-  trait_dispersive = 1  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
+  trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
+  trait_opaque = 2       // it scatters light on the side alone that it comes from
 };
 
 enum {

@@ -18,6 +18,11 @@
 #define CAPLET_PACKED_NODE_FLOATS 24  // the same in bytes, for rays that are traced one at a time (kernels/trace/packed.cl)
 #define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
+// The light tree (kernels/lights/tree.cl).
+#define CAPLET_LIGHT_NODE 56            // numbers a node
+#define CAPLET_LIGHT_LEAF 0x80000000u   // of a child: a light
+#define CAPLET_LIGHT_TREE_FROM 16       // lights: fewer are chosen by the table alone
+
 #define CAPLET_CSG_MAX_OPERANDS 32
 #define CAPLET_TEXTURE_MAX_STEPS 32  // of a texture: itself, and the textures and constants that it is made of
 

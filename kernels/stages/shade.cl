@@ -49,12 +49,23 @@ static inline void store_layers(const Stage* g, uint path, const HitRecord* hit,
 #undef ID_LAYER
 }
 
+// As light samples of a point with this frame and BSDF see it: what lets nothing through takes light on the side that wo is on alone.
+static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 wo_local) {
+#ifdef CAPLET_LIGHT_TREE
+  if (bsdf_is_opaque(bsdf)) return normal_bits(wo_local.z < 0.0f ? -frame->n : frame->n);
+#else
+  (void)frame, (void)bsdf, (void)wo_local;
+#endif
+  return CAPLET_NONE;
+}
+
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
                                 const Bsdf* bsdf, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select, float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
-  if (!light_sample(scene, offset_origin(s->p, s->ng, s->error, wo), wavelengths, u_select, u, &light)) return;
+  const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), receiving_side(frame, bsdf, wo_local)};
+  if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface.
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
@@ -131,8 +142,15 @@ static void stage_item(const Stage* g, uint item) {
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
       // What a refracted ray finds of the primitive that it crossed has no other strategy.
-      if (!specular && as_uint(scatter.z) != s.light)
-        weight = power_heuristic(scatter.x, light_area_pdf(&scene, s.light, (float3)(ray.ox, ray.oy, ray.oz), &s, direction));
+      if (!specular && as_uint(scatter.z) != s.light) {
+#ifdef CAPLET_LIGHT_TREE
+        const uint side = g->carried.path_normal[path];
+#else
+        const uint side = CAPLET_NONE;
+#endif
+        const LightReceiver from = {(float3)(ray.ox, ray.oy, ray.oz), side};
+        weight = power_heuristic(scatter.x, light_area_pdf(&scene, s.light, from, &s, direction));
+      }
       g->radiance.path_radiance[path] += throughput * emitted * weight;
     }
   }
@@ -180,6 +198,9 @@ static void stage_item(const Stage* g, uint item) {
   g->rays.path_ray[path] = next;
   g->carried.path_throughput[path] = throughput;
   g->carried.path_scatter[path] = scatter;
+#ifdef CAPLET_LIGHT_TREE
+  g->carried.path_normal[path] = receiving_side(&frame, &bsdf, wo_local);
+#endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
   const uint position = atomic_inc(&g->counters.counters[counter_next]);
   g->queues.queue_next[position] = path;

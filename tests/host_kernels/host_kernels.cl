@@ -78,7 +78,8 @@ void HOST(offset_origin)(const HostSurface* surface, const float* direction, flo
 int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
   LightSample s;
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
-  if (!light_sample(&scene, three(p), four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
+  const LightReceiver at = {three(p), CAPLET_NONE};
+  if (!light_sample(&scene, at, four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
   vstore3(s.target, 0, out->target);
   vstore4(s.radiance, 0, out->radiance);
@@ -93,7 +94,8 @@ float HOST(light_area)(const HostGroups* g, const RayRecord* ray, const HitRecor
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, -d, four(lambda)), 0, emitted);
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
-  return light_area_pdf(&scene, s.light, (float3)(ray->ox, ray->oy, ray->oz), &s, d);
+  const LightReceiver at = {(float3)(ray->ox, ray->oy, ray->oz), CAPLET_NONE};
+  return light_area_pdf(&scene, s.light, at, &s, d);
 }
 
 void HOST(light_infinite)(const HostGroups* g, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {

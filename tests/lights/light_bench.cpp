@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <map>
 #include <random>
 
@@ -25,7 +26,7 @@ const char* const kernel_text = R"(
   const Scene scene = {{world, nodes, leaves, instances},                                                             \
                        {geometries, primitive_geometry, surface_materials, mesh_indices, mesh_normals, mesh_uvs},     \
                        {spectra, spectrum_tables},                                                                    \
-                       {lighting, lights, light_data, light_alias, environment_texels, environment_cdf}};             \
+                       {lighting, lights, light_data, light_alias, light_nodes, light_places, environment_texels, environment_cdf}};             \
   const uint i = (uint)get_global_id(0);                                                                              \
   if (i >= count) return;                                                                                             \
   const float4 lambda = (float4)(450.0f, 500.0f, 550.0f, 600.0f)
@@ -34,7 +35,8 @@ __kernel void sample_lights(SCENE, float px, float py, float pz, __global const 
   MAKE_SCENE;
   const float3 p = (float3)(px, py, pz);
   LightSample s;
-  const int some = light_sample(&scene, p, lambda, (uint)(u[3 * i] * 4294967296.0f), (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
+  const LightReceiver at = {p, CAPLET_NONE};
+  const int some = light_sample(&scene, at, lambda, (uint)(u[3 * i] * 4294967296.0f), (float2)(u[3 * i + 1], u[3 * i + 2]), &s);
   __global float* o = out + 11 * i;
   for (int k = 0; k < 11; ++k) o[k] = 0.0f;
   if (!some) return;
@@ -60,7 +62,8 @@ __kernel void area_densities(SCENE, uint light, float px, float py, float pz, __
   Surface hit;
   hit.p = vload3(2 * i, points);
   hit.ng = vload3(2 * i + 1, points);
-  out[i] = light_area_pdf(&scene, light, p, &hit, normalize(hit.p - p)) + 0.0f * lambda.x;
+  const LightReceiver at = {p, CAPLET_NONE};
+  out[i] = light_area_pdf(&scene, light, at, &hit, normalize(hit.p - p)) + 0.0f * lambda.x;
 }
 
 __kernel void sky(SCENE, __global const float* directions, __global float* out, uint count) {
@@ -94,22 +97,46 @@ __kernel void select_lights(SCENE, __global const uint* u, __global uint* out, u
   float chance;
   out[i] = light_select(&scene.lights, u[i], &chance) + (lambda.x > 0.0f ? 0u : 1u);
 }
+
+// What is received at a point by the side with a normal, or by all sides where that is 0.
+static inline LightReceiver receiver_of(__global const float* at) {
+  const float3 n = vload3(1, at);
+  const LightReceiver receiver = {vload3(0, at), dot(n, n) > 0.0f ? normal_bits(n) : CAPLET_NONE};
+  return receiver;
+}
+
+// A choice by each of `count` random numbers: the light, and the bits of its chance.
+__kernel void choices(SCENE, __global const float* at, __global const uint* u, __global uint* out, uint count) {
+  MAKE_SCENE;
+  const LightReceiver receiver = receiver_of(at);
+  float chance = lambda.x;
+  out[2 * i] = light_choose(&scene.lights, &receiver, u[i], &chance);
+  out[2 * i + 1] = as_uint(chance);
+}
+
+// The chance of each light.
+__kernel void chances(SCENE, __global const float* at, __global float* out, uint count) {
+  MAKE_SCENE;
+  const LightReceiver receiver = receiver_of(at);
+  out[i] = light_chance(&scene.lights, i, &receiver) + 0.0f * lambda.x;
+}
 )";
 
-Program& program_of(const Device& device, const RowMasks& rows) {
-  static std::map<RowMasks, Program> built;
-  const auto found = built.find(rows);
+Program& program_of(const Device& device, const RowMasks& rows, bool has_tree) {
+  static std::map<std::pair<RowMasks, bool>, Program> built;
+  const auto found = built.find({rows, has_tree});
   if (found != built.end()) return found->second;
   return built
-      .emplace(rows, Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows),
-                                          fmt::format("-DCAPLET_REAL_WIDTH={}", test_width())))
+      .emplace(std::pair(rows, has_tree), Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows),
+                                                               fmt::format("-DCAPLET_REAL_WIDTH={}{}", test_width(),
+                                                                           has_tree ? " -DCAPLET_LIGHT_TREE" : "")))
       .first->second;
 }
 
 }  // namespace
 
 LightBench::LightBench(const FlatScene& scene, const RowMasks& rows)
-    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows)) {}
+    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows, scene.lighting.tree_nodes > 0)) {}
 
 cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
   cl_uint index = 0;
@@ -210,6 +237,47 @@ std::vector<std::uint32_t> LightBench::select(const std::vector<std::uint32_t>& 
   kernel.setArg(at++, static_cast<cl_uint>(u.size()));
   launch(device_, kernel, u.size(), 1);
   return out.read();
+}
+
+namespace {
+
+std::vector<float> floats_of(const Receiver& at) {
+  std::vector<float> out;
+  for (const glm::dvec3& v : {at.p, at.normal})
+    for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(v[k]));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Choice> LightBench::choose(const Receiver& at, const std::vector<std::uint32_t>& u) {
+  const Buffer<float> receiver(device_, std::span<const float>(floats_of(at)));
+  const Buffer<std::uint32_t> numbers(device_, std::span<const std::uint32_t>(u));
+  Buffer<std::uint32_t> out(device_, 2 * u.size());
+  cl::Kernel kernel = program_->kernel("choices");
+  cl_uint index = bind_scene(kernel);
+  kernel.setArg(index++, receiver.handle());
+  kernel.setArg(index++, numbers.handle());
+  kernel.setArg(index++, out.handle());
+  kernel.setArg(index++, static_cast<cl_uint>(u.size()));
+  launch(device_, kernel, u.size(), 1);
+  const std::vector<std::uint32_t> values = out.read();
+  std::vector<Choice> choices(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) choices[i] = {values[2 * i], std::bit_cast<float>(values[2 * i + 1])};
+  return choices;
+}
+
+std::vector<double> LightBench::chances(const Receiver& at, std::size_t lights) {
+  const Buffer<float> receiver(device_, std::span<const float>(floats_of(at)));
+  Buffer<float> out(device_, lights);
+  cl::Kernel kernel = program_->kernel("chances");
+  cl_uint index = bind_scene(kernel);
+  kernel.setArg(index++, receiver.handle());
+  kernel.setArg(index++, out.handle());
+  kernel.setArg(index++, static_cast<cl_uint>(lights));
+  launch(device_, kernel, lights, 1);
+  const std::vector<float> values = out.read();
+  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(lights)};
 }
 
 }  // namespace caplet::test

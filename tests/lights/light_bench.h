@@ -24,6 +24,16 @@ struct SampledLight {
   bool infinite = false, delta = false, occluded = false;
 };
 
+/// Where light is received: at p by the side with this normal, or by all sides where that is 0.
+struct Receiver {
+  glm::dvec3 p{0}, normal{0};
+};
+/// A light, CAPLET_NONE: none, and the chance that it had.
+struct Choice {
+  std::uint32_t light = 0;
+  double chance = 0;
+};
+
 /// The device, its buffers for one scene, and the kernels.
 class LightBench {
  public:
@@ -41,6 +51,10 @@ class LightBench {
   std::vector<std::uint64_t> all_selections();
   /// The light that light_select chooses by each of the numbers.
   std::vector<std::uint32_t> select(const std::vector<std::uint32_t>& u);
+  /// The light that light_choose takes by each of the numbers.
+  std::vector<Choice> choose(const Receiver& at, const std::vector<std::uint32_t>& u);
+  /// light_chance of each of the first lights.
+  std::vector<double> chances(const Receiver& at, std::size_t lights);
 
  private:
   /// Returns the number of the next argument.

@@ -70,6 +70,33 @@ std::string with(std::string shape, const std::string& parameters) {
   return shape + parameters;
 }
 
+/// Twelve squares of two triangles in a plane, which look up, or down where they are turned: enough for a light tree.
+std::string panels(double z) {
+  std::string points, indices;
+  for (int i = 0; i < 12; ++i) {
+    const double x = -2 + 1.1 * (i % 4), y = -1.5 + 1.2 * (i / 4);
+    for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {0.6, 0.0}, {0.6, 0.5}, {0.0, 0.5}})
+      points += std::to_string(x + dx) + " " + std::to_string(y + dy) + " " + std::to_string(z + 0.2 * dx) + " ";
+    for (const int corner : {0, 1, 2, 0, 2, 3}) indices += std::to_string(4 * i + corner) + " ";
+  }
+  return "Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"integer indices\" [" + indices + "]\n";
+}
+/// Twenty small lamps of other shapes, round about.
+std::string round_lamps() {
+  std::string out;
+  for (int i = 0; i < 20; ++i) {
+    const double a = 0.7 * i, r = 1 + 0.1 * i;
+    const std::string at = "Translate " + std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a)) + " " +
+                           std::to_string(0.05 * i) + "\n";
+    const char* const shapes[] = {"Shape \"sphere\" \"float radius\" 0.08\n",
+                                  "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0.2 0.1 0] \"float radius\" 0.04\n",
+                                  "ReverseOrientation\nShape \"disk\" \"float radius\" 0.2\n",
+                                  "Shape \"cone\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 0.2] \"float radius\" [0.1 0.02]\n"};
+    out += "AttributeBegin\n" + at + shapes[i % 4] + "AttributeEnd\n";
+  }
+  return out;
+}
+
 std::string glass(double alpha) {
   return "Material \"dielectric\" \"float eta\" 1.5 \"bool remaproughness\" false \"float roughness\" " + std::to_string(alpha) +
          "\n";
@@ -114,6 +141,12 @@ std::vector<Case> cases() {
       {"onesided_triangles_mirrored",
        floor + "ObjectBegin \"lamp\"\n" + lamp + with(triangles, unseen) + "ObjectEnd\nScale 1 1 -1\nObjectInstance \"lamp\"\n",
        beside_it},
+      {"many_panels", floor + turned + panels(0.5), beside_it},
+      {"many_panels_mirrored",
+       floor + "ObjectBegin \"lamp\"\n" + lamp + panels(-0.5) + "ObjectEnd\nScale 1 1 -1\nObjectInstance \"lamp\"\n", beside_it},
+      {"many_panels_over_glass",
+       glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" + turned + panels(1.5), at_the_shape, 4096},
+      {"many_round_lamps", floor + lamp + round_lamps(), beside_it, 2048},
       {"box_within_box_lamp",
        glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + turned + "Scale 8 8 8\n" + box},
   };

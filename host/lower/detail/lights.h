@@ -24,12 +24,15 @@ struct Emitter {
   bool two_sided;
   bool by_ball;    // sampled by the bounding ball (kernels/lights/ball.cl)
   double ball[4];  // centre and radius, world
+  // What the light tree knows of it: the box in the world; the direction that it shines to, or 0 for all.
+  double min[3], max[3], axis[3];
 };
 
-/// Fills lights, light_data, light_alias, environment_* and the record `lighting`. Light i is emitter i for i <
-/// emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. They are selected by light_table.h;
-/// constant infinite lights are never selected, since BSDF sampling finds them as well. `world` must be set. `environment`: the
-/// image that `out` holds already, and then the one that it holds. Throws InputError for more than one image light.
+/// Fills lights, light_data, light_alias, light_nodes, light_places, environment_* and the record `lighting`. Light i is emitter
+/// i for i < emitters.size(); the scene's point, spot and distant lights follow, infinite ones last. They are selected by
+/// light_table.h, and CAPLET_LIGHT_TREE_FROM and more of those that are somewhere by light_tree.h; constant infinite lights are
+/// never selected, since BSDF sampling finds them as well. `world` must be set. `environment`: the image that `out` holds
+/// already, and then the one that it holds. Throws InputError for more than one image light.
 void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
                   LoweredEnvironment& environment, FlatScene& out);
 

@@ -33,6 +33,10 @@ struct SpotLight {
     return 2 * std::numbers::pi * ((1 - start) + (start - total) / 2);
   }
   double power(double) const { return per_unit(); }
+  LightReach reach() const {
+    const double start = std::acos(cos_falloff_start());
+    return {position, direction, start, total_angle - start};
+  }
   template <class Put>
   void data(Put&& put) const {
     put("position", position);
