@@ -103,6 +103,61 @@ void check_values(const fs::path& path, EnvironmentImage& image) {
   if (negative > 0) log::warn("{}: {} negative values taken as 0", path.string(), negative);
 }
 
+/// The channels of a texture: grey, three, or four where alpha is not 1 everywhere. `one` is what stands for 1.
+template <class Value>
+std::vector<Value> texture_channels(const std::vector<Value>& from, int channels, int alpha, Value one, int& kept) {
+  const auto step = static_cast<std::size_t>(channels);
+  const int colors = channels - (alpha >= 0 ? 1 : 0);
+  bool has_alpha = false;
+  if (alpha >= 0 && colors >= 3)
+    for (std::size_t i = static_cast<std::size_t>(alpha); i < from.size() && !has_alpha; i += step) has_alpha = from[i] != one;
+  kept = colors < 3 ? 1 : has_alpha ? 4 : 3;
+  if (kept == channels) return from;
+  std::vector<Value> out;
+  out.reserve(from.size() / step * static_cast<std::size_t>(kept));
+  for (std::size_t i = 0; i < from.size(); i += step)
+    out.insert(out.end(), from.begin() + static_cast<std::ptrdiff_t>(i), from.begin() + static_cast<std::ptrdiff_t>(i) + kept);
+  return out;
+}
+
+TextureImage texture_of(const image_files::StoredPixels& pixels, const ImageEncoding& encoding) {
+  TextureImage out;
+  out.width = pixels.width;
+  out.height = pixels.height;
+  if (!pixels.bytes.empty()) {
+    out.bytes = texture_channels<std::uint8_t>(pixels.bytes, pixels.channels, pixels.alpha, 255, out.channels);
+    for (std::size_t i = 0; i < 256; ++i)
+      out.decoded[i] = static_cast<float>(decoded_value(encoding, static_cast<double>(i) / 255));
+    return out;
+  }
+  out.floats = texture_channels<float>(pixels.floats, pixels.channels, pixels.alpha, 1, out.channels);
+  if (pixels.is_whole)
+    for (std::size_t i = 0; i < out.floats.size(); ++i)
+      if (out.channels != 4 || i % 4 != 3) out.floats[i] = static_cast<float>(decoded_value(encoding, out.floats[i]));
+  return out;
+}
+
+TextureImage texture_of(const fs::path& path, const LayeredImage& image) {
+  TextureImage out;
+  out.width = image.data_width;
+  out.height = image.data_height;
+  const std::array<const Channel*, 3> colors = color_channels(path, image);
+  if (colors[0] == colors[1] && colors[1] == colors[2]) {
+    out.floats = colors[0]->floats;
+    return out;
+  }
+  const EnvironmentImage rgb = rgb_of(path, image);
+  out.space = rgb.space;
+  const Channel* alpha = colors[0]->name == "R" ? image.find("A") : nullptr;
+  if (alpha && (alpha->floats.empty() || std::ranges::all_of(alpha->floats, [](float a) { return a == 1; }))) alpha = nullptr;
+  out.channels = alpha ? 4 : 3;
+  for (std::size_t i = 0; i < rgb.rgb.size() / 3; ++i) {
+    out.floats.insert(out.floats.end(), {rgb.rgb[3 * i], rgb.rgb[3 * i + 1], rgb.rgb[3 * i + 2]});
+    if (alpha) out.floats.push_back(alpha->floats[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 const Channel* LayeredImage::find(const std::string& name) const {
@@ -115,6 +170,16 @@ bool has_image_io() { return image_files::available(); }
 EnvironmentImage FileImageReader::read_rgb(const fs::path& path) const {
   EnvironmentImage image = is_exr(path) ? rgb_of(path, read_exr(path)) : rgb_of(image_files::read_linear(path));
   check_values(path, image);
+  return image;
+}
+
+TextureImage FileImageReader::read_texture(const fs::path& path, const ImageEncoding& encoding) const {
+  TextureImage image = is_exr(path) ? texture_of(path, read_exr(path)) : texture_of(image_files::read_stored(path), encoding);
+  for (std::size_t i = 0; i < image.floats.size(); ++i)
+    if (!std::isfinite(image.floats[i])) {
+      const std::size_t pixel = i / static_cast<std::size_t>(image.channels), width = static_cast<std::size_t>(image.width);
+      throw InputError(fmt::format("{}: pixel ({}, {}) is not finite", path.string(), pixel % width, pixel / width));
+    }
   return image;
 }
 

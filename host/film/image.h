@@ -83,6 +83,9 @@ bool has_image_io();
 class FileImageReader : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override;
+  /// Of files that hold bytes, bytes; of all others floats. `encoding` is that of whole numbers. One channel, or one and alpha,
+  /// is grey; alpha of colours is kept unless it is 1 everywhere. Negative values stay.
+  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override;
 };
 
 }  // namespace caplet

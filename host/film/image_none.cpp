@@ -19,6 +19,8 @@ bool available() { return false; }
 
 Pixels read_linear(const std::filesystem::path& path) { throw InputError(fmt::format("{}: {}", path.string(), reason)); }
 
+StoredPixels read_stored(const std::filesystem::path& path) { throw InputError(fmt::format("{}: {}", path.string(), reason)); }
+
 bool can_write(const std::filesystem::path&) { return false; }
 
 bool can_hold(const std::filesystem::path&, int, int) { return false; }

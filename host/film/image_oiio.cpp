@@ -85,22 +85,51 @@ OIIO::ImageSpec rgb8_spec(int width, int height) {
 
 std::string error_text(const std::string& text) { return text.empty() ? "unknown reason" : first_line(text); }
 
-}  // namespace
-
-bool available() { return true; }
-
-Pixels read_linear(const std::filesystem::path& path) {
-  const std::uintmax_t file_bytes = readable_file_bytes(path);
+/// Alpha is asked for as it is.
+std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
   OIIO::attribute("limits:imagesize_MB", static_cast<int>((max_image_pixels * 16) >> 20));
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &wanted);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &wanted);
   if (!input) {
     const std::string why = OIIO::geterror();
     throw InputError(fmt::format("{}: not a readable image: {}", path.string(), error_text(why)));
   }
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.deep || spec.depth > 1 || spec.nchannels < 1) throw InputError(fmt::format("{}: not a flat image", path.string()));
+  return input;
+}
+
+}  // namespace
+
+bool available() { return true; }
+
+StoredPixels read_stored(const std::filesystem::path& path) {
+  const std::uintmax_t file_bytes = readable_file_bytes(path);
+  const std::unique_ptr<OIIO::ImageInput> input = opened(path);
+  const OIIO::ImageSpec& spec = input->spec();
+  StoredPixels out;
+  out.channels = std::min(spec.nchannels, 4);
+  const bool is_bytes = spec.format == OIIO::TypeDesc::UINT8;
+  check_image_size(path, spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * (is_bytes ? 1 : sizeof(float)),
+                   file_bytes);
+  out.width = spec.width;
+  out.height = spec.height;
+  out.is_whole = !spec.format.is_floating_point();
+  if (spec.alpha_channel >= 0 && spec.alpha_channel < out.channels) out.alpha = spec.alpha_channel;
+  const std::size_t count =
+      static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height) * static_cast<std::size_t>(out.channels);
+  is_bytes ? out.bytes.resize(count) : out.floats.resize(count);
+  void* to = is_bytes ? static_cast<void*>(out.bytes.data()) : static_cast<void*>(out.floats.data());
+  if (!input->read_image(0, 0, 0, out.channels, is_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, to))
+    throw InputError(fmt::format("{}: broken image: {}", path.string(), error_text(input->geterror())));
+  return out;
+}
+
+Pixels read_linear(const std::filesystem::path& path) {
+  const std::uintmax_t file_bytes = readable_file_bytes(path);
+  const std::unique_ptr<OIIO::ImageInput> input = opened(path);
+  const OIIO::ImageSpec& spec = input->spec();
 
   Pixels out;
   out.channels = std::min(spec.nchannels, 4);

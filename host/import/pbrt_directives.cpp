@@ -4,6 +4,7 @@
 // The directives that set options, transforms, materials, lights and shapes.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -260,6 +261,31 @@ void Parser::medium_interface() {
   }
 }
 
+TextureContext Parser::texture_context() {
+  return {state_.ctm, [this](Parameters& parameters, const char* name, const ImageEncoding& encoding, std::string& problem) {
+            return texture_image(parameters, name, encoding, problem);
+          }};
+}
+
+std::shared_ptr<const TextureImage> Parser::texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
+                                                          std::string& problem) {
+  const std::string given = parameters.text(name, "");
+  const std::string file = resolve_file(given, parameters.where(name), parameters.main_file());
+  std::error_code ignored;
+  if (given.empty() || !std::filesystem::is_regular_file(file, ignored)) {
+    problem = "no such file " + in_quotes(file);
+    return nullptr;
+  }
+  const auto [found, fresh] =
+      texture_images_.try_emplace({std::filesystem::weakly_canonical(file, ignored).string(), encoding}, nullptr);
+  if (fresh || !found->second) try {
+      found->second = std::make_shared<TextureImage>(images_.read_texture(file, encoding));
+    } catch (const InputError& error) {
+      problem = error.messages().front();
+    }
+  return found->second;
+}
+
 void Parser::texture() {
   const std::string name = string_argument("a name");
   const SourceLocation kind_place = lexer_->place(lexer_->peek());
@@ -278,7 +304,7 @@ void Parser::texture() {
       known = std::find(table.refused.begin(), table.refused.end(), texture_class) != table.refused.end() ||
               check_name("Texture", texture_class, class_place, diagnostics_);
   if (!known) return;
-  const TextureValue value = make_texture(name, kind, texture_class, given, textures_, scene_);
+  const TextureValue value = make_texture(name, kind, texture_class, given, textures_, texture_context(), scene_);
   if (!textures_.emplace(name, value).second) diagnostics_.error(where_, "the texture " + in_quotes(name) + " is defined twice");
 }
 
@@ -376,7 +402,7 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
       diagnostics.error(statement.where, statement.refusal, statement.refusal);
     } else {
       statement.parameters.report_to(diagnostics);
-      Material material = make_material(statement.type, statement.parameters, textures_, scene_);
+      Material material = make_material(statement.type, statement.parameters, textures_, texture_context().images, scene_);
       material.name = statement.name;
       if (!aside.has_errors()) scene_.materials.push_back(std::move(material));
     }

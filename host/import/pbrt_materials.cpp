@@ -3,8 +3,12 @@
 #include "import/detail/pbrt_materials.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <filesystem>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/spelling.h"
 
 namespace caplet::pbrt {
 
@@ -153,8 +157,10 @@ struct MaterialReader {
 struct TextureReader {
   Parameters& parameters;
   const TextureTable& textures;
+  const TextureContext& context;
   bool is_float;
   std::string& refusal;
+  bool& failed;  // reported
 
   void operand(const char* name, TextureOperand& of) {
     if (is_float) return factor(name, of);
@@ -168,17 +174,72 @@ struct TextureReader {
       of.value = ConstantSpectrum{float_argument(parameters, name, fallback, textures, refusal)};
   }
   void number(const char* name, double& value) { value = parameters.number(name, value); }
-  void fixed(const char* name, int value) {
-    if (parameters.integer(name, value) != value)
-      parameters.error(name, "is not rendered yet unless it is " + std::to_string(value), "not rendered: " + std::string(name));
+  void flag(const char* name, int& value) { value = parameters.boolean(name, value != 0) ? 1 : 0; }
+  template <class Names>
+  void choice(const char* name, int& value, const Names& names) {
+    const std::string given = parameters.text(name, names[static_cast<std::size_t>(value)]);
+    const auto found = std::find(names.begin(), names.end(), given);
+    if (found != names.end()) {
+      value = static_cast<int>(found - names.begin());
+      return;
+    }
+    parameters.error(name, "is " + in_quotes(given) + "; the nearest known name is \"" +
+                               nearest_name(given, std::vector<std::string>(names.begin(), names.end())) + "\"");
   }
-  void mapping(double& uscale, double& vscale, double& udelta, double& vdelta) {
-    if (const std::string name = parameters.text("mapping", "uv"); name != "uv")
-      parameters.error("mapping", "is " + in_quotes(name) + ", which is not rendered yet; only \"uv\" is", "mapping " + name);
-    number("uscale", uscale);
-    number("vscale", vscale);
-    number("udelta", udelta);
-    number("vdelta", vdelta);
+  void image(std::shared_ptr<const TextureImage>& image) {
+    const ImageEncoding encoding = image_encoding(parameters);
+    if (!parameters.has("filename")) return error("\"string filename\" is missing");
+    std::string problem;
+    image = context.images(parameters, "filename", encoding, problem);
+    if (!image && refusal.empty())
+      refusal = "Texture \"imagemap\" (" + parameters.where().to_string() + "), whose image cannot be had: " + problem;
+  }
+  void mapping(TextureMapping& value) {
+    int kind = 0;
+    choice("mapping", kind, texture_mapping_names);
+    value.kind = static_cast<TextureMapping::Kind>(kind);
+    value.texture_from_world = glm::inverse(context.world_from_texture);
+    if (value.kind == TextureMapping::Kind::uv) {
+      number("uscale", value.uscale);
+      number("vscale", value.vscale);
+    }
+    if (value.kind == TextureMapping::Kind::planar) {
+      value.v1 = parameters.vector("v1", value.v1);
+      value.v2 = parameters.vector("v2", value.v2);
+    }
+    if (value.kind == TextureMapping::Kind::uv || value.kind == TextureMapping::Kind::planar) {
+      number("udelta", value.udelta);
+      number("vdelta", value.vdelta);
+    }
+  }
+  void board(TextureMapping& value) {
+    const int dimension = parameters.integer("dimension", 2);
+    if (dimension != 2 && dimension != 3) parameters.error("dimension", "must be 2 or 3");
+    if (dimension != 3) return mapping(value);
+    value.kind = TextureMapping::Kind::solid;
+    value.texture_from_world = glm::inverse(context.world_from_texture);
+  }
+  void place(glm::dmat4& value) { value = glm::inverse(context.world_from_texture); }
+  void direction(const char* name, glm::dvec3& value) {
+    const glm::dvec3 turned(context.world_from_texture * glm::dvec4(parameters.vector(name, value), 0));
+    if (glm::length(turned) > 0)
+      value = glm::normalize(turned);
+    else
+      parameters.error(name, "is no direction");
+  }
+  void count(const char* name, int& value, int low, int high) {
+    value = parameters.integer(name, value);
+    if (value < low || value > high)
+      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
+  }
+  void only(bool floats) {
+    if (is_float != floats) error(std::string("is a texture of ") + (floats ? "floats" : "spectra") + " alone");
+  }
+  void colors() {}
+  void vectors(std::shared_ptr<const TextureImage>&) {}
+  void error(const std::string& message) {
+    parameters.error(message);
+    failed = true;
   }
 };
 
@@ -199,12 +260,26 @@ std::optional<Spectrum> folded(const Model&) {
 
 }  // namespace
 
+ImageEncoding image_encoding(Parameters& parameters) {
+  const std::string name = parameters.text("encoding", "sRGB");
+  if (name == "sRGB") return {ImageEncoding::Kind::srgb, 1};
+  if (name == "linear") return {ImageEncoding::Kind::linear, 1};
+  if (name.starts_with("gamma ")) {
+    double gamma = 0;
+    const char* const end = name.data() + name.size();
+    const auto [at, error] = std::from_chars(name.data() + 6, end, gamma);
+    if (error == std::errc() && at == end && gamma > 0 && std::isfinite(gamma)) return {ImageEncoding::Kind::gamma, gamma};
+  }
+  parameters.error("encoding", "is " + in_quotes(name) + ", not \"sRGB\", \"linear\" or \"gamma X\" with X above 0");
+  return {};
+}
+
 TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
-                          Parameters& parameters, const TextureTable& textures, Scene& scene) {
+                          Parameters& parameters, const TextureTable& textures, const TextureContext& context, Scene& scene) {
   TextureValue value;
   value.is_float = kind == "float";
   value.spectrum = ConstantSpectrum{1};
-  bool known = false;
+  bool known = false, failed = false;
   if (texture_class == "constant") {
     known = true;
     if (value.is_float)
@@ -212,45 +287,55 @@ TextureValue make_texture(const std::string& name, const std::string& kind, cons
     else
       value.spectrum = texture_argument(parameters, "value", 1, textures, value.refusal);
   }
-#define TEXTURE_MODEL(type, Type)                                                             \
-  if (texture_class == #type) {                                                               \
-    known = true;                                                                             \
-    Type model;                                                                               \
-    Type::fields(model, TextureReader{parameters, textures, value.is_float, value.refusal});  \
-    if (const auto constant = folded(model)) {                                                \
-      value.spectrum = *constant;                                                             \
-      if (value.is_float) value.number = std::get<ConstantSpectrum>(*constant).value;         \
-    } else if (value.refusal.empty()) {                                                       \
-      value.texture = static_cast<std::uint32_t>(scene.textures.size());                      \
-      scene.textures.push_back({std::move(model), value.is_float, name, parameters.where()}); \
-    }                                                                                         \
+#define TEXTURE_MODEL(type, Type)                                                                             \
+  if (texture_class == #type) {                                                                               \
+    known = true;                                                                                             \
+    Type model;                                                                                               \
+    Type::fields(model, TextureReader{parameters, textures, context, value.is_float, value.refusal, failed}); \
+    if (const auto constant = folded(model)) {                                                                \
+      value.spectrum = *constant;                                                                             \
+      if (value.is_float) value.number = std::get<ConstantSpectrum>(*constant).value;                         \
+    } else if (value.refusal.empty() && !failed) {                                                            \
+      value.texture = static_cast<std::uint32_t>(scene.textures.size());                                      \
+      scene.textures.push_back({std::move(model), value.is_float, name, parameters.where()});                 \
+    }                                                                                                         \
   }
 #define OWN_TEXTURE_MODEL(name, Type)
 #include "scene/textures.def"
   if (!known) {
-    std::string missing;
-    if (texture_class == "imagemap") {
-      const std::string image = parameters.text("filename", "");
-      const std::string file = resolve_file(image, parameters.where("filename"), parameters.main_file());
-      std::error_code ignored;
-      if (image.empty() && !parameters.has("filename"))
-        parameters.error("\"filename\" is missing");
-      else if (!std::filesystem::is_regular_file(file, ignored))
-        missing = ", whose file " + in_quotes(file) + " does not exist";
-    }
-    value.refusal =
-        "Texture \"" + texture_class + "\" (" + parameters.where().to_string() + ")" + missing + ", which is not rendered yet";
+    value.refusal = "Texture \"" + texture_class + "\" (" + parameters.where().to_string() + "), which is not rendered yet";
     return value;
   }
   parameters.finish();
   return value;
 }
 
-Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, Scene& scene) {
+namespace {
+
+/// What bends the normals of a material. A displacement that is the same everywhere bends none.
+void read_bump(Parameters& parameters, const TextureTable& textures, const TextureImages& images, Material& material,
+               Scene& scene) {
+  if (const auto texture = parameters.texture("displacement", true, textures))
+    material.displacement = *texture;
+  else
+    parameters.number_or_texture("displacement", 0, textures);
+  if (!parameters.has("normalmap")) return;
+  if (parameters.has("displacement")) parameters.error("normalmap", "cannot be combined with \"displacement\"");
+  std::string problem;
+  const auto image = images(parameters, "normalmap", ImageEncoding{ImageEncoding::Kind::linear, 1}, problem);
+  if (!image) return parameters.error("normalmap", problem, "normalmap: " + problem);
+  if (image->channels < 3) return parameters.error("normalmap", "is an image in grey, which has no normals");
+  material.normalmap = static_cast<std::uint32_t>(scene.textures.size());
+  scene.textures.push_back({NormalmapTexture{image}, false, "", parameters.where("normalmap")});
+}
+
+}  // namespace
+
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
+                       Scene& scene) {
   Material material;
   material.where = parameters.where();
-  parameters.refuse("displacement");
-  parameters.refuse("normalmap");
+  read_bump(parameters, textures, images, material, scene);
 #define MATERIAL_MODEL(name, Type)                                              \
   if (type == #name) {                                                          \
     Type model;                                                                 \

@@ -313,6 +313,14 @@ glm::dvec3 Parameters::point(std::string_view name, const glm::dvec3& fallback) 
   return fallback;
 }
 
+glm::dvec3 Parameters::vector(std::string_view name, const glm::dvec3& fallback) {
+  const Parameter* parameter = values(name, {"vector3"});
+  if (!parameter) return fallback;
+  if (parameter->numbers.size() == 3) return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
+  error(name, "takes 1 vector, not " + std::to_string(parameter->numbers.size() / 3));
+  return fallback;
+}
+
 std::optional<Spectrum> Parameters::spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures) {
   const Parameter* parameter =
       textures ? values(name, {"rgb", "spectrum", "blackbody", "texture"}) : values(name, {"rgb", "spectrum", "blackbody"});

@@ -90,8 +90,10 @@ Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t 
   shape.material = material;
   shape.name = parameters.text("name", "");
   shape.one_sided = parameters.boolean("onesided", false);
-  if (parameters.number_or_texture("alpha", 1, context.textures) != 1)
-    parameters.error("alpha", "other than 1 is not rendered yet", "alpha");
+  TextureOperand alpha = 1;
+  if (alpha.texture = parameters.texture("alpha", true, context.textures); !alpha.texture)
+    alpha = parameters.number_or_texture("alpha", 1, context.textures);
+  if (alpha.texture || std::get<ConstantSpectrum>(alpha.value).value < 1) shape.alpha = alpha;
   // Surfaces first: capsules without a material of their own have the shape's.
   if (type == "capsules") set_materials(parameters, context.material_index, shape);
   const auto material_or_default = [&](const std::string& name, const SourceLocation& where) {

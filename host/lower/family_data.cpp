@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 
@@ -31,6 +32,10 @@ void FamilyData::put_rows(std::string_view name, const glm::dmat3& transposed) {
   float* at = field(name, 9);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) *at++ = static_cast<float>(transposed[r][c]);
+}
+
+void FamilyData::put_floats(std::string_view name, std::span<const float> values) {
+  std::ranges::copy(values, field(name, static_cast<std::uint32_t>(values.size())));
 }
 
 void FamilyData::finish() const {

@@ -14,6 +14,7 @@
 #include "base/check.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
+#include "lower/detail/textures.h"
 
 namespace caplet {
 
@@ -117,6 +118,7 @@ class GeometryLowering {
     record.primitive_begin = primitive_begin;
     record.surface_begin = add_surfaces(shape);
     record.light_offset = CAPLET_NONE;
+    record.alpha = alpha_of(shape);
     record.normal_begin = record.uv_begin = CAPLET_NONE;
     record.uv_space = append_uv_space(shape.geometry, m, out_.leaves);
     if (shape.emission) {
@@ -200,6 +202,15 @@ class GeometryLowering {
       extent.end = lengths();
     }
     return lowered;
+  }
+
+  /// The first step of a shape's alpha; shapes with the same one share it.
+  uint alpha_of(const Shape& shape) {
+    if (!shape.alpha) return CAPLET_NONE;
+    const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
+    const auto [found, fresh] = alphas_.try_emplace({shape.alpha->texture.value_or(CAPLET_NONE), number ? number->value : 0}, 0);
+    if (fresh) found->second = lower_alpha(scene_, *shape.alpha, spectra_, out_);
+    return found->second;
   }
 
   /// Rows of surface_materials where a shape's surfaces differ; CAPLET_NONE where they do not.
@@ -385,6 +396,7 @@ class GeometryLowering {
   const Scene& scene_;
   SpectrumTable& spectra_;
   FlatScene& out_;
+  std::map<std::pair<std::uint32_t, double>, uint> alphas_;
   bool reversed_ = false;  // of the shape being appended
   std::uint32_t group_ = 0;
   int kind_bits_ = 0;  // of leaf references

@@ -205,6 +205,7 @@ struct LiveScene::State {
 
   bool follow(const MaterialEdit& edit, const MaterialEdit& before) {
     if (!edit.textures.empty() || !before.textures.empty()) return false;  // other steps, and perhaps other kinds of them
+    if (scene.materials[edit.material].normalmap || scene.materials[edit.material].displacement) return false;
     flat().materials[edit.material] = lower_material(scene, edit.material, lowering->spectra, flat());
     changes.materials.add(edit.material, 1);
     changes.material_data.add(flat().materials[edit.material].data, material_stride);

@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "lower/camera.h"
 #include "lower/detail/filter.h"
+#include "lower/detail/images.h"
 #include "lower/detail/lowering.h"
 #include "lower/detail/materials.h"
 
@@ -15,6 +16,7 @@ namespace caplet {
 
 Lowering::Lowering(const Scene& scene) : spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
+  lower_images(scene, flat);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), spectra, flat));
   geometry = lower_geometry(scene, spectra, flat);

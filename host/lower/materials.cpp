@@ -82,6 +82,12 @@ MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumT
   const Material& material = scene.materials[index];
   MaterialRecord record{};
   record.data = index * material_stride;
+  record.bump = CAPLET_NONE;
+  if (const auto bump = material.normalmap ? material.normalmap : material.displacement) {
+    const std::optional<uint> last = material.normalmap ? std::nullopt : std::optional<uint>(texture_displacement);
+    record.bump = lower_texture(scene, *bump, TextureUse::number, last, spectra, out);
+    record.bump_kind = last.value_or(texture_normalmap);
+  }
   if (out.material_data.size() < record.data + material_stride) out.material_data.resize(record.data + material_stride);
   std::visit(
       [&](const auto& model) {

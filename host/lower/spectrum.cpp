@@ -93,6 +93,14 @@ std::uint32_t SpectrumTable::illuminant_table(ColorSpace space) {
   return add_table(tabulate(illuminant(space), [](double v) { return v; }));
 }
 
+std::uint32_t SpectrumTable::uplift_table(ColorSpace space) {
+  const auto [found, fresh] = uplift_tables_.try_emplace(space, narrow<std::uint32_t>(out_.spectrum_tables.size()));
+  if (!fresh) return found->second;
+  const std::vector<float>& table = sigmoid_table(space);
+  out_.spectrum_tables.insert(out_.spectrum_tables.end(), table.begin(), table.end());
+  return found->second;
+}
+
 std::uint32_t SpectrumTable::add_table(std::vector<float> table) {
   const auto [found, fresh] = tables_.try_emplace(std::move(table), narrow<std::uint32_t>(out_.spectrum_tables.size()));
   if (fresh) out_.spectrum_tables.insert(out_.spectrum_tables.end(), found->first.begin(), found->first.end());

@@ -38,6 +38,9 @@ class SpectrumTable {
   /// Luminance (CIE Y with the integral of y-bar as unit; 1 for rgb (1 1 1)) of the spectrum that add_illuminant makes.
   double illuminant_luminance(const Spectrum& spectrum) const;
 
+  /// First float in spectrum_tables of a space's sigmoids by colour (uplift.cl), added on first use.
+  std::uint32_t uplift_table(ColorSpace space);
+
   /// First float in spectrum_tables of a space's illuminant (luminance 1), added on first use.
   std::uint32_t illuminant_table(ColorSpace space);
 
@@ -49,6 +52,7 @@ class SpectrumTable {
 
   std::map<std::vector<float>, std::uint32_t> tables_;
   std::map<Key, std::uint32_t> records_;
+  std::map<ColorSpace, std::uint32_t> uplift_tables_;
   FlatScene& out_;
   ColorSpace space_;
 };

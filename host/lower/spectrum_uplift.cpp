@@ -93,6 +93,8 @@ glm::dvec3 color(const Response& response, const glm::dvec3& c, glm::dmat3* jaco
   return rgb;
 }
 
+double sqr(double x) { return x * x; }
+
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Gauss-Newton steps, damped (Levenberg-Marquardt) where they do not help. Returns the residual.
@@ -178,6 +180,35 @@ class ChromaticityTable {
   std::vector<glm::dvec3> cells_;
 };
 
+std::vector<float> make_sigmoid_table(ColorSpace space) {
+  constexpr std::size_t values = CAPLET_UPLIFT_VALUES, ratios = CAPLET_UPLIFT_RATIOS;
+  // Below this value coefficients go as one over its root to 4 digits, but are found with ever fewer.
+  constexpr double darkest = 2e-3;
+  const Response& coarse = response(space, false);
+  std::vector<float> table(CAPLET_UPLIFT_FLOATS);
+  const auto ratio_at = [](std::size_t node) { return sqr(static_cast<double>(node) / (ratios - 1)); };
+  tbb::parallel_for(std::size_t{0}, 3 * values * ratios, [&](std::size_t row) {
+    const std::size_t top = row / ratios / values, third = row % ratios;
+    const double value = std::max(darkest, 1 - sqr(1 - static_cast<double>(row / ratios % values) / (values - 1)));
+    const auto color_at = [&](double second) {
+      glm::dvec3 target;
+      target[static_cast<int>(top)] = value;
+      target[static_cast<int>((top + 1) % 3)] = value * second;
+      target[static_cast<int>((top + 2) % 3)] = value * ratio_at(third);
+      return target;
+    };
+    // From grey outwards: each solution starts the next.
+    glm::dvec3 c = constant(value);
+    for (int part = 1; part < 8; ++part) solve(coarse, glm::mix(glm::dvec3(value), color_at(1), part / 8.0), 1e-5 * value, 20, c);
+    for (std::size_t step = ratios; step-- > 0;) {
+      solve(coarse, color_at(ratio_at(step)), 1e-5 * value, 20, c);
+      const std::array<double, 3> found = in_nanometres(c);
+      for (std::size_t k = 0; k < 3; ++k) table[3 * (row * ratios + step) + k] = static_cast<float>(found[k] * std::sqrt(value));
+    }
+  });
+  return table;
+}
+
 const ChromaticityTable& chromaticity_table(ColorSpace space) {
   static std::array<std::unique_ptr<const ChromaticityTable>, 4> tables;
   static std::array<std::once_flag, 4> once;
@@ -189,6 +220,15 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
 }
 
 }  // namespace
+
+const std::vector<float>& sigmoid_table(ColorSpace space) {
+  static std::array<std::vector<float>, 4> tables;
+  static std::array<std::once_flag, 4> once;
+  const auto s = static_cast<std::size_t>(space);
+  // Isolated: see chromaticity_table.
+  std::call_once(once[s], [&] { tbb::this_task_arena::isolate([&] { tables[s] = make_sigmoid_table(space); }); });
+  return tables[s];
+}
 
 SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space) {
   const glm::dvec3 target = glm::clamp(rgb, 0.0, 1.0);

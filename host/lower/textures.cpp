@@ -2,10 +2,15 @@
 // Copyright Caplet authors
 #include "lower/detail/textures.h"
 
+#include <algorithm>
+#include <bit>
+#include <glm/matrix.hpp>
 #include <map>
 
 #include "base/check.h"
 #include "lower/detail/family_data.h"
+#include "lower/detail/images.h"
+#include "scene/texture_visitor.h"
 
 namespace caplet {
 
@@ -18,9 +23,10 @@ constexpr std::uint32_t kind_of = texture_count;
   constexpr std::uint32_t kind_of<Type> = texture_##name;
 #include "scene/textures.def"
 
-// Every row of textures.def has its model: `constant` is a constant operand, `extinction` comes after the texture of a metal.
+// Every row of textures.def has its model: `constant` is a constant operand, `extinction`, `displacement` and `alpha` come after
+// textures.
 #define TEXTURE_MODEL(name, Type) +1
-static_assert(2
+static_assert(4
 #include "scene/textures.def"
               == texture_count);
 
@@ -41,6 +47,9 @@ class Steps {
     return first_;
   }
 
+  /// A step of a constant, or those of a texture.
+  std::uint32_t operand(const TextureOperand& of, TextureUse use);
+
  private:
   struct Writer;
 
@@ -58,7 +67,6 @@ class Steps {
     out_.textures.push_back(record);
     return narrow<std::uint32_t>(out_.textures.size() - 1 - first_);
   }
-  std::uint32_t operand(const TextureOperand& of, TextureUse use);
 
   const Scene& scene_;
   SpectrumTable& spectra_;
@@ -68,19 +76,73 @@ class Steps {
 };
 
 /// Writes what scene/textures.def visits, once the operands are there.
-struct Steps::Writer {
+struct Steps::Writer : TextureVisitor {
+  Writer(FamilyData& to, const std::map<std::string_view, std::uint32_t>& steps, Steps& all, TextureUse what)
+      : data(to), operands(steps), of(all), use(what) {}
   FamilyData& data;
   const std::map<std::string_view, std::uint32_t>& operands;
+  Steps& of;
+  TextureUse use;
+  const TextureImage* last = nullptr;  // the image before "wrap"
 
   void operand(const char* name, const TextureOperand&) { data.put_index(name, operands.at(name)); }
   void factor(const char* name, const TextureOperand&) { data.put_index(name, operands.at(name)); }
   void number(const char* name, double value) { data.put(name, value); }
-  void fixed(const char*, int) {}
-  void mapping(double uscale, double vscale, double udelta, double vdelta) {
-    number("uscale", uscale);
-    number("vscale", vscale);
-    number("udelta", udelta);
-    number("vdelta", vdelta);
+  template <class Names>
+  void choice(const char* name, int value, const Names&) {
+    data.put_index(name, narrow<std::uint32_t>(value));
+    if (std::string_view(name) == "wrap") data.put_index("image", number_of(image_use(*last, value)));
+  }
+  void flag(const char* name, int value) { data.put_index(name, narrow<std::uint32_t>(value)); }
+  void image(const std::shared_ptr<const TextureImage>& image) {
+    last = image.get();
+    data.put_index("use", use == TextureUse::number      ? CAPLET_USE_NUMBER
+                          : use == TextureUse::unbounded ? CAPLET_USE_UNBOUNDED
+                                                         : CAPLET_USE_ALBEDO);
+    data.put_index("uplift", use == TextureUse::number || image->channels == 1 ? 0 : of.spectra_.uplift_table(image->space));
+  }
+  std::uint32_t number_of(const ImageUse& image) const {
+    const auto uses = image_uses(of.scene_.textures);
+    return narrow<std::uint32_t>(std::ranges::find(uses, image) - uses.begin());
+  }
+  void mapping(const TextureMapping& of_texture) {
+    std::array<float, 13> out{};
+    using Kind = TextureMapping::Kind;
+    static_assert(int(Kind::uv) == CAPLET_MAPPING_UV && int(Kind::spherical) == CAPLET_MAPPING_SPHERICAL &&
+                  int(Kind::cylindrical) == CAPLET_MAPPING_CYLINDRICAL && int(Kind::planar) == CAPLET_MAPPING_PLANAR &&
+                  int(Kind::solid) == CAPLET_MAPPING_SOLID);
+    out[0] = std::bit_cast<float>(static_cast<std::uint32_t>(of_texture.kind));
+    glm::dmat4 m = of_texture.texture_from_world;
+    if (of_texture.kind == Kind::planar) {
+      const glm::dvec3 &a = of_texture.v1, &b = of_texture.v2;
+      m = glm::transpose(glm::dmat4(glm::dvec4(a, of_texture.udelta), glm::dvec4(b, of_texture.vdelta), glm::dvec4(0),
+                                    glm::dvec4(0, 0, 0, 1))) *
+          m;
+    }
+    if (of_texture.kind == Kind::uv) {
+      const double values[] = {of_texture.uscale, of_texture.vscale, of_texture.udelta, of_texture.vdelta};
+      std::ranges::transform(values, out.begin() + 1, [](double value) { return static_cast<float>(value); });
+    } else {
+      rows_of(m, &out[1]);
+    }
+    data.put_floats("mapping", out);
+  }
+  void board(const TextureMapping& of_texture) { mapping(of_texture); }
+  void place(const glm::dmat4& m) {
+    std::array<float, 12> out;
+    rows_of(m, out.data());
+    data.put_floats("place", out);
+  }
+  void direction(const char* name, const glm::dvec3& v) { data.put(name, v); }
+  void count(const char* name, int value, int, int) { data.put_index(name, narrow<std::uint32_t>(value)); }
+  void colors() { data.put_index("uplift", of.spectra_.uplift_table(ColorSpace::srgb)); }
+  void vectors(const std::shared_ptr<const TextureImage>& image) {
+    data.put_index("image", number_of(image_use(*image, std::nullopt)));
+  }
+
+  static void rows_of(const glm::dmat4& m, float* to) {
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) *to++ = static_cast<float>(m[c][r]);
   }
 };
 
@@ -95,28 +157,23 @@ std::uint32_t Steps::operand(const TextureOperand& of, TextureUse use) {
 
 /// Calls visit(name, operand, whether it is of floats whatever the texture is of).
 template <class Visit>
-struct Operands {
+struct Operands : TextureVisitor {
+  explicit Operands(Visit calls) : visit(std::move(calls)) {}
   Visit visit;
   void operand(const char* name, const TextureOperand& of) { visit(name, of, false); }
   void factor(const char* name, const TextureOperand& of) { visit(name, of, true); }
-  void number(const char*, double) {}
-  void fixed(const char*, int) {}
-  void mapping(double, double, double, double) {}
 };
-template <class Visit>
-Operands(Visit) -> Operands<Visit>;  // clang before 17 does not deduce aggregates
 
 std::uint32_t Steps::add(std::uint32_t texture, TextureUse use) {
   if (const auto found = done_.find(texture); found != done_.end()) return found->second;
   const std::uint32_t step = std::visit(
       [&](const auto& model) {
         std::map<std::string_view, std::uint32_t> operands;
-        model.fields(model, Operands{[&](const char* name, const TextureOperand& of, bool is_factor) {
+        model.fields(model, Operands([&](const char* name, const TextureOperand& of, bool is_factor) {
                        operands[name] = operand(of, is_factor ? TextureUse::number : use);
-                     }});
-        return add_step(kind_of<std::decay_t<decltype(model)>>, [&](FamilyData& data) {
-          model.fields(model, Writer{data, operands});
-        });
+                     }));
+        return add_step(kind_of<std::decay_t<decltype(model)>>,
+                        [&](FamilyData& data) { model.fields(model, Writer(data, operands, *this, use)); });
       },
       scene_.textures[texture].model);
   done_[texture] = step;
@@ -128,6 +185,13 @@ void Steps::add_last(uint kind, std::uint32_t of) {
 }
 
 }  // namespace
+
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, SpectrumTable& spectra, FlatScene& out) {
+  Steps steps(scene, spectra, out);
+  const std::uint32_t value = steps.operand(alpha, TextureUse::number);
+  steps.add_last(texture_alpha, value);
+  return steps.finish();
+}
 
 std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
                             SpectrumTable& spectra, FlatScene& out) {

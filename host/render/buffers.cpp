@@ -110,13 +110,16 @@ void require_fit(const Device& device, const FlatScene& flat, const std::vector<
 }
 
 /// What each buffer of the paths holds of one path.
-std::vector<std::uint64_t> bytes_of_path(Layers of_film) {
+std::vector<std::uint64_t> bytes_of_path(Layers of_film, bool has_cones) {
   constexpr std::uint64_t count_ONE = 0, count_STATE = 1;
   std::vector<std::uint64_t> out;
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
-#define BUFFER(name, type, access) \
-  out.push_back((std::string_view(#name) == "path_layers" ? floats_per_path(of_film) : count_##access) * sizeof(type));
+#define BUFFER(name, type, access)                                                   \
+  out.push_back((std::string_view(#name) == "path_layers" ? floats_per_path(of_film) \
+                 : std::string_view(#name) == "path_cone" ? (has_cones ? 1 : 0)      \
+                                                          : count_##access) *        \
+                sizeof(type));
   PATH_GROUPS
 #undef GROUP_BEGIN
 #undef GROUP_END
@@ -143,12 +146,13 @@ SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat) { VIEW_
 #undef BUFFER
 
 // Every buffer of the paths has a place for each, but for these.
-PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film) {
+PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film, bool has_cones) {
 #define BUFFER(name, type, access) buffers.name = Buffer<type>(device, std::size_t{count_##access});
   constexpr std::size_t count_ONE = 1;
   const std::size_t count_STATE = paths;
   PATH_GROUPS
 #undef BUFFER
+  cones.path_cone = Buffer<float2>(device, has_cones ? paths : 1);
   layers.path_layers = Buffer<float>(device, paths * floats_per_path(of_film));
   sort.sort_bins = Buffer<uint>(device, sort_bins);
   counters.counters = Buffer<uint>(device, std::size_t{counter_count});
@@ -178,15 +182,15 @@ void PathBuffers::bind(Bindings& bindings) const {PATH_GROUPS}
 #undef BUFFER
 #undef GROUP_END
 
-std::uint64_t PathBuffers::largest_bytes_per_path(Layers of_film) {
+std::uint64_t PathBuffers::largest_bytes_per_path(Layers of_film, bool has_cones) {
   std::uint64_t largest = 0;
-  for (const std::uint64_t bytes : bytes_of_path(of_film)) largest = std::max(largest, bytes);
+  for (const std::uint64_t bytes : bytes_of_path(of_film, has_cones)) largest = std::max(largest, bytes);
   return largest;
 }
 
-std::uint64_t PathBuffers::bytes_per_path(Layers of_film) {
+std::uint64_t PathBuffers::bytes_per_path(Layers of_film, bool has_cones) {
   std::uint64_t all = 0;
-  for (const std::uint64_t bytes : bytes_of_path(of_film)) all += bytes;
+  for (const std::uint64_t bytes : bytes_of_path(of_film, has_cones)) all += bytes;
   return all;
 }
 

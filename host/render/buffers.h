@@ -67,15 +67,16 @@ struct SensorBuffers {
   void bind(Bindings& bindings) const;
 };
 
-/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them, for a film of such layers.
+/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them, for a film of such layers;
+/// has_cones: of a textured scene.
 struct PathBuffers {
   PATH_GROUPS
 
-  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film);
+  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film, bool has_cones = false);
   void bind(Bindings& bindings) const;
   /// Bytes on the device of each path, in all buffers or in the largest one.
-  static std::uint64_t bytes_per_path(Layers of_film);
-  static std::uint64_t largest_bytes_per_path(Layers of_film);
+  static std::uint64_t bytes_per_path(Layers of_film, bool has_cones = false);
+  static std::uint64_t largest_bytes_per_path(Layers of_film, bool has_cones = false);
 };
 
 #undef GROUP_BEGIN

@@ -9,6 +9,7 @@
 #include "lower/flat_scene.h"
 #include "render/buffers.h"
 #include "render/kernels.h"
+#include "shared/kinds.h"
 
 namespace caplet {
 
@@ -34,10 +35,15 @@ class DeviceScene {
   float light_radiance() const { return light_radiance_; }
   /// Whether camera rays have a stage of their own: where eight lanes are tested at a time.
   bool has_camera_stage() const { return has_camera_stage_; }
+  /// Whether there are shapes that let rays through, and whether anything is textured: of the kernels, which may know more than
+  /// there is.
+  bool has_alpha() const { return has_texture(texture_alpha); }
+  bool has_textures() const { return options_.rows.at("textures") != 0; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
  private:
+  bool has_texture(int kind) const { return (options_.rows.at("textures") >> kind & 1) != 0; }
   Device device_;
   StageOptions options_;
   SceneBuffers buffers_;

@@ -61,15 +61,17 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, c
   const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), drive.sort_fan) * sizeof(uint);
   // Drivers keep some for themselves: what kernels hold privately, for one.
   const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
-  return fitting_batch(wanted, PathBuffers::bytes_per_path(options.layers), PathBuffers::largest_bytes_per_path(options.layers),
-                       all - std::min(all, taken), device.info().max_allocation_bytes);
+  return fitting_batch(wanted, PathBuffers::bytes_per_path(options.layers, scene.has_textures()),
+                       PathBuffers::largest_bytes_per_path(options.layers, scene.has_textures()), all - std::min(all, taken),
+                       device.info().max_allocation_bytes);
 }
 
 /// Of `paths` paths, or of fewer where the device turns out to have less memory than it says.
 PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
-    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan), layers);
+    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan), layers,
+                       scene.has_textures());
   };
   while (paths > least_batch_paths) try {
       return made();
@@ -109,6 +111,8 @@ void Renderer::reset(const FlatView& view) {
     const Drive& drive = drive_of(scene_.device().profile());
     paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), drive.sort_fan));
   }
+  if (scene_.has_textures() && paths_.cones.path_cone.size() < batch_paths_)
+    paths_.cones.path_cone = Buffer<float2>(scene_.device(), batch_paths_);
   sensor_ = SensorBuffers(scene_.device(), view);
   FilmLayout layout;
   layout.width = narrow<int>(view.view.width);
@@ -126,7 +130,11 @@ void Renderer::reset(const FlatView& view) {
   film_.parts.clear();
   is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
-  if (!scene_.has_camera_stage()) std::erase(stages, Stage::extend_camera);
+  if (!scene_.has_camera_stage() || scene_.has_alpha()) std::erase(stages, Stage::extend_camera);
+  std::erase_if(stages, [&](Stage stage) {
+    if (scene_.has_alpha()) return stage == Stage::extend || stage == Stage::connect;
+    return stage == Stage::extend_alpha || stage == Stage::connect_alpha;
+  });
   if (!drive_of(scene_.device().profile()).counts_on_device)
     std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
   scene_.kernels().compile(stages, batch_paths_);
@@ -208,16 +216,18 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
   Kernels& kernels = scene_.kernels();
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
-  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
+  const Stage later = scene_.has_alpha() ? Stage::extend_alpha : Stage::extend;
+  const Stage connect = scene_.has_alpha() ? Stage::connect_alpha : Stage::connect;
+  Stage extend = scene_.has_camera_stage() && !scene_.has_alpha() ? Stage::extend_camera : later;
   while (paths > 0) {
     if (sorts) paths_.sort.sort_bins.clear();
     kernels.run(extend, bindings, paths);
-    extend = Stage::extend;
+    extend = later;
     kernels.run(Stage::shade, bindings, paths);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
     const uint next = counters[counter_next], shadow = counters[counter_shadow];
-    kernels.run(Stage::connect, bindings, shadow);
+    kernels.run(connect, bindings, shadow);
     if (!sorts)
       std::swap(paths_.queues.queue, paths_.queues.queue_next);
     else if (next > 0)
@@ -235,15 +245,17 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
   uint bounces = 0, shadows = 0;
-  Stage extend = scene_.has_camera_stage() ? Stage::extend_camera : Stage::extend;
+  const Stage later = scene_.has_alpha() ? Stage::extend_alpha : Stage::extend;
+  const Stage connect = scene_.has_alpha() ? Stage::connect_alpha : Stage::connect;
+  Stage extend = scene_.has_camera_stage() && !scene_.has_alpha() ? Stage::extend_camera : later;
   while (paths > 0) {
     const Clock::time_point start = Clock::now();
     for (int round = 0; round < rounds_unasked; ++round) {
       if (sorts) paths_.sort.sort_bins.clear();
       kernels.run(extend, bindings, paths, 0, counter_queued);
-      extend = Stage::extend;
+      extend = later;
       kernels.run(Stage::shade, bindings, paths, 0, counter_queued);
-      kernels.run(Stage::connect, bindings, paths, 0, counter_shadow);
+      kernels.run(connect, bindings, paths, 0, counter_shadow);
       if (sorts)
         sort(bindings, paths, counter_next);
       else

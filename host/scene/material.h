@@ -29,6 +29,8 @@ struct Material {
   std::string name;
   SourceLocation where;
   std::vector<TexturedField> textures = {};  // what of the model is replaced by textures
+  // What bends the surface's normal, by index in Scene::textures: heights along it (floats), or a NormalmapTexture; not both.
+  std::optional<std::uint32_t> displacement = {}, normalmap = {};
 };
 
 /// The texture that a field is, by its index in Scene::textures.

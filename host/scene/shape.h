@@ -15,6 +15,7 @@
 #include "scene/bounds.h"
 #include "scene/geometries.def"
 #include "scene/spectrum.h"
+#include "scene/texture_operand.h"
 
 namespace caplet {
 
@@ -38,6 +39,7 @@ struct Shape {
   glm::dmat4 world_from_object{1};       // in an object definition: object_from_shape
   std::uint32_t material = 0;            // index into Scene::materials
   std::vector<std::uint32_t> materials;  // empty, or one a surface
+  std::optional<TextureOperand> alpha;   // of floats: the chance that a ray is stopped, 0 to 1; none: 1
   bool one_sided = false;                // hits from inside (open shapes: from behind) are not seen
   std::optional<AreaEmission> emission;
   bool reverse_orientation = false;

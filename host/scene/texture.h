@@ -18,7 +18,7 @@ namespace caplet {
 template <class, class... Types>
 using TextureVariant = std::variant<Types...>;
 
-/// Floats or spectra by a surface's (u, v).
+/// Floats or spectra over a surface.
 struct Texture {
 #define TEXTURE_MODEL(name, Type) , Type
   TextureVariant<void
@@ -36,6 +36,9 @@ struct TexturedField {
   std::string field;
   std::uint32_t texture = 0;
 };
+
+/// The images of textures, each once, in the order in which they are named first.
+std::vector<const TextureImage*> images_of(const std::vector<Texture>& textures);
 
 /// The most textures and constants that a texture may consist of, itself among them.
 inline constexpr std::size_t most_texture_steps = 31;

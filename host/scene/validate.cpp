@@ -10,6 +10,7 @@
 #include <set>
 
 #include "scene/scene.h"
+#include "scene/texture_visitor.h"
 
 namespace caplet {
 
@@ -31,15 +32,12 @@ class Validator {
   void run() {
     const SourceLocation file{scene_.source};
     for (std::uint32_t i = 0; i < scene_.textures.size(); ++i)
-      std::visit(
-          [&](const auto& model) {
-            model.fields(model, TextureFields{*this, scene_.textures[i], i});
-          },
-          scene_.textures[i].model);
+      std::visit([&](const auto& model) { model.fields(model, TextureFields(*this, scene_.textures[i], i)); },
+                 scene_.textures[i].model);
     const bool textures_are_sound = said_.empty();
     for (const Material& material : scene_.materials) {
       std::visit([&](const auto& m) { m.fields(m, Fields{*this, material.where}); }, material.model);
-      if (textures_are_sound && !material.textures.empty()) textured(material);
+      if (textures_are_sound) textured(material);
     }
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
@@ -97,7 +95,8 @@ class Validator {
   }
 
   /// Of the calls of textures.def.
-  struct TextureFields {
+  struct TextureFields : TextureVisitor {
+    TextureFields(Validator& of, const Texture& one, std::uint32_t number) : validator(of), texture(one), index(number) {}
     Validator& validator;
     const Texture& texture;
     std::uint32_t index;
@@ -107,9 +106,39 @@ class Validator {
     void number(const char* name, double value) {
       if (!std::isfinite(value)) validator.error(texture.where, std::string(name) + " is not finite");
     }
-    void fixed(const char*, int) {}
-    void mapping(double uscale, double vscale, double udelta, double vdelta) {
-      for (const double value : {uscale, vscale, udelta, vdelta}) number("the mapping", value);
+    template <class Names>
+    void choice(const char* name, int value, const Names& names) {
+      if (value < 0 || value >= static_cast<int>(names.size()))
+        validator.error(texture.where, std::string(name) + " is none that there is");
+    }
+    void image(const std::shared_ptr<const TextureImage>& of) {
+      if (!of || of->width < 1 || of->height < 1 || (of->channels != 1 && of->channels != 3 && of->channels != 4) ||
+          (of->bytes.empty() ? of->floats.size() : of->bytes.size()) != of->values())
+        validator.error(texture.where, "the texture's image has the wrong size");
+    }
+    void mapping(const TextureMapping& of) {
+      for (const double value : {of.uscale, of.vscale, of.udelta, of.vdelta}) number("the mapping", value);
+      if (!finite(of.v1) || !finite(of.v2)) validator.error(texture.where, "the mapping is not finite");
+      if (of.kind != TextureMapping::Kind::uv) place(of.texture_from_world);
+    }
+    void board(const TextureMapping& of) { mapping(of); }
+    void direction(const char* name, const glm::dvec3& v) {
+      if (!(std::abs(glm::length(v) - 1) < 1e-6))
+        validator.error(texture.where, std::string(name) + " is no direction of unit length");
+    }
+    void count(const char* name, int value, int low, int high) {
+      if (value < low || value > high)
+        validator.error(texture.where,
+                        std::string(name) + " must lie between " + std::to_string(low) + " and " + std::to_string(high));
+    }
+    void only(bool is_float) {
+      if (texture.is_float != is_float)
+        validator.error(texture.where, "the texture is of " + std::string(is_float ? "floats" : "spectra") + " alone");
+    }
+    void vectors(const std::shared_ptr<const TextureImage>& of) { image(of); }
+    void place(const glm::dmat4& m) {
+      if (!moderate(m))
+        validator.error(texture.where, "the texture's transform has entries beyond 1e18, where 32-bit floats end");
     }
     void check(const char* name, const TextureOperand& of, bool is_float) {
       if (of.texture) {
@@ -143,7 +172,27 @@ class Validator {
     }
   };
 
+  /// A texture of floats at hand, of not too many parts.
+  void float_texture(std::uint32_t texture, const SourceLocation& where, const char* name) {
+    if (texture >= scene_.textures.size() || !scene_.textures[texture].is_float)
+      error(where, "the " + std::string(name) + " is not a texture of floats");
+    else
+      parts(texture);
+  }
+
+  void parts(std::uint32_t texture) {
+    if (texture_steps(scene_.textures, texture) > most_texture_steps)
+      error(scene_.textures[texture].where, "the texture \"" + scene_.textures[texture].name + "\" is made of more than " +
+                                                std::to_string(most_texture_steps) + " textures and constants");
+  }
+
   void textured(const Material& material) {
+    if (material.displacement) float_texture(*material.displacement, material.where, "displacement");
+    if (material.normalmap && (*material.normalmap >= scene_.textures.size() ||
+                               !std::holds_alternative<NormalmapTexture>(scene_.textures[*material.normalmap].model)))
+      error(material.where, "the normalmap is no image");
+    if (material.displacement && material.normalmap)
+      error(material.where, "the material has both a displacement and a normalmap");
     TexturedFields fields;
     std::visit([&](const auto& m) { m.fields(m, fields); }, material.model);
     std::set<std::string> seen;
@@ -153,10 +202,8 @@ class Validator {
         error(material.where, "the material has no " + one.field + " that may be a texture, or has it twice");
       else if (one.texture >= scene_.textures.size() || scene_.textures[one.texture].is_float != found->second)
         error(material.where, "the " + one.field + " is not a texture of " + (found->second ? "floats" : "spectra"));
-      else if (texture_steps(scene_.textures, one.texture) > most_texture_steps)
-        error(scene_.textures[one.texture].where, "the texture \"" + scene_.textures[one.texture].name +
-                                                      "\" is made of more than " + std::to_string(most_texture_steps) +
-                                                      " textures and constants");
+      else
+        parts(one.texture);
     }
   }
 
@@ -240,6 +287,17 @@ class Validator {
     transform(s.world_from_object, s.where);
     Report report(*this, s.where);
     check_geometry(s, report);
+    if (s.alpha) {
+      const auto* number_of = std::get_if<ConstantSpectrum>(&s.alpha->value);
+      if (s.alpha->texture)
+        float_texture(*s.alpha->texture, s.where, "alpha");
+      else if (!number_of || !std::isfinite(number_of->value))
+        error(s.where, "the alpha is not a finite number");
+      if (s.emission) error(s.where, "a shape with an \"alpha\" cannot be a light yet");
+    }
+    if (const auto* csg = std::get_if<CsgShape>(&s.geometry))
+      for (const auto& operand : csg->operands)
+        if (operand->alpha) error(operand->where, "an operand of a csg has no \"alpha\" of its own: give it to the csg");
     if (s.material >= scene_.materials.size()) error(s.where, "the shape has a material that does not exist");
     for (const std::uint32_t material : s.materials)
       if (material >= scene_.materials.size()) error(s.where, "a surface of the shape has a material that does not exist");

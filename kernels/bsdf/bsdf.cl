@@ -18,10 +18,10 @@
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/{materials}.cl"
 
-// Material number `material` where a surface has the coordinates uv, at four wavelengths (nm).
-static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, float2 uv, float4 lambda) {
+// Material number `material` at a place of a surface, at four wavelengths (nm).
+static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda) {
   __global const MaterialRecord* record = materials->materials + material;
-  const MaterialPoint m = {materials, materials->material_data + record->data, record->textured, {spectra, uv, lambda}};
+  const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
   Bsdf b;
   b.kind = record->kind;
   b.flags = record->flags;

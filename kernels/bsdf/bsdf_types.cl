@@ -44,7 +44,6 @@ typedef struct {
 
 // A material's data (materials.def) where it is looked at. textured: of its record.
 typedef struct {
-  const Materials* materials;
   __global const float* data;
   uint textured;
   TexturePoint point;
@@ -53,7 +52,7 @@ typedef struct {
 // Whether float `at` of the data is a texture.
 static inline int material_is_textured(const MaterialPoint* m, int at) { return any_texture && (m->textured >> at & 1u) != 0; }
 static inline float4 material_texture(const MaterialPoint* m, int at) {
-  return texture_eval(m->materials, as_uint(m->data[at]), &m->point);
+  return texture_eval(as_uint(m->data[at]), &m->point);
 }
 
 // A spectrum from 0 up; one of a reflectance; a number from 0 up. `at`: their place in the data (diffuse_at_reflectance).

@@ -34,4 +34,11 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
   return ray;
 }
 
+// How far apart the rays of neighbouring pixels are, at length 1 from the camera.
+static inline float camera_spread(__global const CameraRecord* camera, float2 raster) {
+  const float3 direction = (float3)(camera->screen_min_x + raster.x * camera->screen_per_pixel_x,
+                                    camera->screen_min_y + raster.y * camera->screen_per_pixel_y, 1.0f);
+  return 0.5f * (fabs(camera->screen_per_pixel_x) + fabs(camera->screen_per_pixel_y)) / length(direction);
+}
+
 #endif

@@ -21,6 +21,9 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_turn 9
 #define CAPLET_FLOATS_OF_spectrum 1
 #define CAPLET_FLOATS_OF_texture 1
+#define CAPLET_FLOATS_OF_number 1
+#define CAPLET_FLOATS_OF_matrix 12
+#define CAPLET_FLOATS_OF_mapping 13
 
 // spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
 // textures, which share names with lights: mix_texture_at_amount, mix_texture_floats.
@@ -64,6 +67,9 @@ enum {
 #define CAPLET_FIELD_spectrum(function, at) \
   CAPLET_ACCESSOR(CAPLET_UINT) function(CAPLET_DATA data) { return CAPLET_BITS(data[at]); }
 #define CAPLET_FIELD_texture(function, at) CAPLET_FIELD_spectrum(function, at)
+#define CAPLET_FIELD_number(function, at) CAPLET_FIELD_spectrum(function, at)
+#define CAPLET_FIELD_matrix(function, at) CAPLET_FIELD_vector(function, at)
+#define CAPLET_FIELD_mapping(function, at) CAPLET_FIELD_vector(function, at)
 #define MATERIAL(name, traits)
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/materials.def"
@@ -85,6 +91,9 @@ enum {
 #undef CAPLET_FIELD_turn
 #undef CAPLET_FIELD_spectrum
 #undef CAPLET_FIELD_texture
+#undef CAPLET_FIELD_number
+#undef CAPLET_FIELD_matrix
+#undef CAPLET_FIELD_mapping
 
 #ifdef __cplusplus
 

@@ -36,7 +36,7 @@
 #define GROUP_SPECTRA                                                  \
   GROUP_BEGIN(Spectra, spectra)                                        \
   BUFFER(spectra, SpectrumRecord, IN)                                  \
-  BUFFER(spectrum_tables, float, IN) /* CAPLET_LAMBDA_COUNT a table */ \
+  BUFFER(spectrum_tables, float, IN) /* CAPLET_LAMBDA_COUNT a table, or CAPLET_UPLIFT_FLOATS */ \
   GROUP_END(Spectra)
 
 #define GROUP_MATERIALS             \
@@ -45,6 +45,8 @@
   BUFFER(material_data, float, IN)  /* materials.def */ \
   BUFFER(textures, TextureRecord, IN) \
   BUFFER(texture_data, float, IN)  /* textures.def */ \
+  BUFFER(images, ImageRecord, IN) \
+  BUFFER(texels, uint, IN)  /* by ImageRecord */ \
   GROUP_END(Materials)
 
 #define GROUP_LIGHTS                                                                                            \
@@ -111,6 +113,12 @@
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 
+// Of textured scenes: how wide a path's ray is where it begins (world), and how much wider with each unit of length.
+#define GROUP_CONES                     \
+  GROUP_BEGIN(Cones, cones)             \
+  BUFFER(path_cone, float2, STATE)      \
+  GROUP_END(Cones)
+
 #define GROUP_LAYERS                                                                            \
   GROUP_BEGIN(Layers, layers)                                                                   \
   BUFFER(path_layers, float, STATE) /* BatchRecord.layer_floats a path: the HIT_ and ID_LAYERs of layers.def */ \
@@ -171,7 +179,7 @@
 #define SCENE_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
-  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_LAYERS GROUP_SHADOWS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
+  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
 #define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 

@@ -118,6 +118,26 @@ enum {
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
 
+// Fields of textures (textures.def): what spectra of an image are
+#define CAPLET_USE_ALBEDO 0u     // from 0 to 1
+#define CAPLET_USE_UNBOUNDED 1u  // from 0 up
+#define CAPLET_USE_NUMBER 2u     // floats
+// What lies beyond an image
+#define CAPLET_WRAP_REPEAT 0u
+#define CAPLET_WRAP_BLACK 1u
+#define CAPLET_WRAP_CLAMP 2u
+#define CAPLET_WRAP_OCTAHEDRAL 3u
+#define CAPLET_FILTER_POINT 0u
+#define CAPLET_FILTER_BILINEAR 1u
+#define CAPLET_FILTER_TRILINEAR 2u
+#define CAPLET_FILTER_EWA 3u
+// Which coordinates a texture has; the last: those of space
+#define CAPLET_MAPPING_UV 0u
+#define CAPLET_MAPPING_SPHERICAL 1u
+#define CAPLET_MAPPING_CYLINDRICAL 2u
+#define CAPLET_MAPPING_PLANAR 3u
+#define CAPLET_MAPPING_SOLID 4u
+
 #ifdef __cplusplus
 }
 #endif

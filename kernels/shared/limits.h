@@ -12,6 +12,11 @@
 // Steps of the table that wavelengths are sampled by.
 #define CAPLET_WAVELENGTH_CELLS 1024
 
+// The table of sigmoids by colour (math/uplift.cl): which channel is the largest, its value, and the two others as parts of it.
+#define CAPLET_UPLIFT_VALUES 24
+#define CAPLET_UPLIFT_RATIOS 32
+#define CAPLET_UPLIFT_FLOATS (3 * CAPLET_UPLIFT_VALUES * CAPLET_UPLIFT_RATIOS * CAPLET_UPLIFT_RATIOS * 3)
+
 // The tree.
 #define CAPLET_WIDTH 8
 #define CAPLET_NODE_FLOATS 56     // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references

@@ -12,6 +12,9 @@
 namespace caplet {
 using uint = std::uint32_t;
 using ulong = std::uint64_t;
+struct float2 {
+  float x, y;
+};
 struct float4 {
   float x, y, z, w;
 };

@@ -8,7 +8,9 @@
 #include "math/spectrum.cl"
 #include "shapes/surface.cl"
 #include "bsdf/bsdf.cl"
+#include "bsdf/bump.cl"
 #include "lights/lights.cl"
+#include "stages/cone.cl"
 #include "stages/layers.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
@@ -61,16 +63,18 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
-                                const Bsdf* bsdf, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select, float2 u) {
+                                const Bsdf* bsdf, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
+                                float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
   const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), receiving_side(frame, bsdf, wo_local)};
   if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
-  // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface.
+  // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface. Bent ones may: their
+  // directions are those of pbrt-v4 (docs/textures.md).
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
   const int crosses = dot(light.wi, s->ng) * dot(wo, s->ng) < 0.0f;
-  if (transmitted != crosses) return;
+  if (transmitted != crosses && !bent) return;
   // A refracted ray sees its own primitive from the other side than this sample did: it alone finds that light.
   if (transmitted && light.index == s->primitive_light) return;
   float bsdf_pdf;
@@ -135,7 +139,7 @@ static void stage_item(const Stage* g, uint item) {
     return;
   }
 
-  const Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
+  Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
   const float3 wo = -direction;
   if (any_surface_light && s.light != CAPLET_NONE) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, wo, wavelengths);
@@ -155,9 +159,20 @@ static void stage_item(const Stage* g, uint item) {
     }
   }
 
+  TexturePlace place = texture_place(s.uv);
+  place.p = s.p;
+  place.n = s.ng;
+  float2 cone = (float2)(0.0f);
+  if (has_cones) {
+    cone = g->cones.path_cone[path];
+    cone.x = fabs(cone.x + cone.y * (hit.t * length(direction)));
+    cone_footprint(&place, direction, cone.x, s.dpdu, s.dpdv);
+  }
+  const int bent = any_bump != 0 && g->materials.materials[s.material].bump != CAPLET_NONE;
+  if (bent) s.ns = bump_normal(&g->materials, &g->spectra, s.material, &place, s.ns, s.dpdu, s.dpdv);
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
-  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, s.uv, wavelengths);
+  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
   if (depth >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
@@ -170,13 +185,13 @@ static void stage_item(const Stage* g, uint item) {
   const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, &scene, path, &s, &frame, &bsdf, wo_local, wo, throughput, wavelengths,
+    sample_light(g, &scene, path, &s, &frame, &bsdf, bent, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
   if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &sample)) return;
   const float3 wi = to_world(&frame, sample.wi);
-  if (sample.transmitted != (dot(wi, s.ng) * dot(wo, s.ng) < 0.0f)) return;
+  if (!bent && sample.transmitted != (dot(wi, s.ng) * dot(wo, s.ng) < 0.0f)) return;
   throughput *= sample.weight;
   scatter.x = sample.pdf;
   scatter.y *= sample.eta_scale;
@@ -191,6 +206,16 @@ static void stage_item(const Stage* g, uint item) {
   }
   if (!(max4(fabs(throughput)) > 0.0f)) return;
 
+  if (has_cones) {
+    if (sample.specular) {
+      const float side = dot(wo, s.ng) < 0.0f ? -1.0f : 1.0f;
+      const float reach = fmax(cone.x, 1e3f * s.error);
+      // eta_scale: the squared index of the side of wi over that of wo.
+      cone = cone_turned(cone.x, cone.y, side * surface_bend(&g->tree, &g->surfaces, &ray, &hit, &s, reach), fabs(dot(wo, s.ng)),
+                         sample.transmitted ? rsqrt(sample.eta_scale) : 0.0f);
+    }
+    g->cones.path_cone[path] = cone;
+  }
   const float3 origin = offset_origin(s.p, s.ng, s.error, wi);
   RayRecord next;
   next.ox = origin.x; next.oy = origin.y; next.oz = origin.z; next.t_min = 0.0f;

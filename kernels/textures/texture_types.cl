@@ -10,11 +10,26 @@
 #include "math/vector.cl"
 #include "shared/families.h"
 
-// A point of a surface, seen at four wavelengths (nm).
+// A point of a surface, in the world, and what of it one look takes in: a parallelogram, by its sides.
 typedef struct {
-  const Spectra* spectra;
   float2 uv;
+  float3 p, n;         // n: geometric normal, unit
+  float3 dpdx, dpdy;   // the sides
+  float2 duvdx, duvdy; // along them
+} TexturePlace;
+
+// A place at four wavelengths (nm).
+typedef struct {
+  const Materials* materials;
+  const Spectra* spectra;
+  TexturePlace place;
   float4 lambda;
 } TexturePoint;
+
+// The point with coordinates uv of a surface in the plane z = 0.
+static inline TexturePlace texture_place(float2 uv) {
+  const TexturePlace place = {uv, (float3)(uv.x, uv.y, 0.0f), (float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), (float2)(0.0f)};
+  return place;
+}
 
 #endif

@@ -20,7 +20,8 @@ enum {
 };
 
 // The texture whose first step is number `first`: its steps in order, the last of which is its value.
-static inline float4 texture_eval(const Materials* materials, uint first, const TexturePoint* at) {
+static inline float4 texture_eval(uint first, const TexturePoint* at) {
+  const Materials* materials = at->materials;
   float4 values[CAPLET_TEXTURE_MAX_STEPS];
   values[0] = (float4)(0.0f);
   const uint steps = materials->textures[first].steps;

@@ -21,9 +21,10 @@ const char* const kernel_text = R"CL(
 __kernel void straight_back(__global const MaterialRecord* materials, __global const float* material_data,
                             __global const SpectrumRecord* spectra, __global const float* spectrum_tables, __global float* out, uint count) {
   if (get_global_id(0) >= count) return;
-  const Materials all = {materials, material_data, 0, 0};  // no textures
+  const Materials all = {materials, material_data, 0, 0, 0, 0};  // no textures
   const Spectra values = {spectra, spectrum_tables};
-  const Bsdf b = bsdf_make(&all, &values, 0, (float2)(0.0f), (float4)(550.0f));
+  const TexturePlace place = texture_place((float2)(0.0f));
+  const Bsdf b = bsdf_make(&all, &values, 0, &place, (float4)(550.0f));
   const float3 up = (float3)(0.0f, 0.0f, 1.0f);
   float pdf;
   bsdf_eval(&b, up, up, &pdf);

@@ -154,6 +154,49 @@ TEST(ImageFiles, AlphaIsMultipliedIn) {
   EXPECT_NEAR(image.rgb[2], 128 / 255.0, 1e-6);
 }
 
+// As textures take them: bytes as they are, with what they stand for.
+TEST(ImageFiles, OfTexturesKeepTheirBytesAndTheirEncoding) {
+  const auto path = test::temporary_folder() / "texture.ppm";
+  test::write_bytes(path, std::string("P6\n2 1\n255\n") + std::string("\x00\xff\x80\x0a\x40\xc0", 6));
+  const TextureImage srgb = FileImageReader().read_texture(path, {});
+  EXPECT_EQ(srgb.width, 2);
+  EXPECT_EQ(srgb.channels, 3);
+  EXPECT_EQ(srgb.bytes, (std::vector<std::uint8_t>{0, 255, 128, 10, 64, 192}));
+  EXPECT_NEAR(srgb.decoded[128], 0.2158605, 1e-6);
+  EXPECT_EQ(srgb.decoded[255], 1);
+  const TextureImage linear = FileImageReader().read_texture(path, {ImageEncoding::Kind::linear, 1});
+  EXPECT_FLOAT_EQ(linear.decoded[128], 128 / 255.f);
+  const TextureImage gamma = FileImageReader().read_texture(path, {ImageEncoding::Kind::gamma, 2});
+  EXPECT_NEAR(gamma.decoded[128], 128. * 128 / (255 * 255), 1e-6);
+}
+
+TEST(ImageFiles, OfTexturesHaveFloatsOfSixteenBits) {
+  const auto path = test::temporary_folder() / "deep.pgm";
+  test::write_bytes(path, std::string("P5\n2 1\n65535\n") + std::string("\x80\x00\xff\xff", 4));
+  const TextureImage image = FileImageReader().read_texture(path, {ImageEncoding::Kind::linear, 1});
+  EXPECT_EQ(image.channels, 1);
+  ASSERT_EQ(image.floats.size(), 2u);
+  EXPECT_NEAR(image.floats[0], 32768 / 65535.0, 2e-5);
+  EXPECT_NEAR(image.floats[1], 1, 2e-5);
+  // IEC 61966-2-1 at 0.5000076.
+  EXPECT_NEAR(FileImageReader().read_texture(path, {}).floats[0], 0.2140482, 2e-5);
+}
+
+TEST(ImageFiles, OfTexturesKeepAlphaThatIsNotOne) {
+  const auto path = test::temporary_folder() / "leaf.tga";
+  std::string bytes(18, '\0');
+  bytes[2] = 2;
+  bytes[12] = bytes[14] = 1;
+  bytes[16] = 32;
+  bytes[17] = 0x28;
+  test::write_bytes(path, bytes + std::string("\xff\x80\x40\x20", 4));
+  const TextureImage leaf = FileImageReader().read_texture(path, {});
+  EXPECT_EQ(leaf.channels, 4);
+  EXPECT_EQ(leaf.bytes, (std::vector<std::uint8_t>{0x40, 0x80, 0xff, 0x20}));
+  test::write_bytes(path, bytes + std::string("\xff\x80\x40\xff", 4));
+  EXPECT_EQ(FileImageReader().read_texture(path, {}).channels, 3);
+}
+
 TEST(ImageFiles, BrokenFilesAreRefusedByName) {
   const auto folder = test::temporary_folder();
   EXPECT_THAT(error_of(folder / "none.png"), AllOf(HasSubstr("none.png"), HasSubstr("no such file")));

@@ -67,6 +67,13 @@ class MemoryFile {
 class OnePixel : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path&) const override { return {1, 1, {1, 1, 1}}; }
+  TextureImage read_texture(const std::filesystem::path&, const ImageEncoding&) const override {
+    TextureImage image;
+    image.width = image.height = 1;
+    image.channels = 3;
+    image.floats = {1, 1, 1};
+    return image;
+  }
 };
 
 /// What holds for every scene that was imported and validated: indices in range, sizes positive (a tapered capsule may end in a

@@ -92,9 +92,8 @@ const Bad bad_scenes[] = {
     {"MissingTexture",
      "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\n"
      "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"",
-     "scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"imagemap\" (scene.pbrt:2:1), whose file "
-     "\"no-such.png\" "
-     "does not exist, which is not rendered yet"},
+     "scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"imagemap\" (scene.pbrt:2:1), whose image cannot be "
+     "had: no such file \"no-such.png\""},
     {"MissingEnvironment", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"no-such.exr\"\nShape \"sphere\"",
      "scene.pbrt:2:24: LightSource \"infinite\": \"filename\" no such file \"no-such.exr\""},
     {"UndefinedMaterial",
@@ -156,9 +155,9 @@ TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
 
 TEST(BadInput, ReferenceToARefusedTextureNamesIt) {
   const auto found = complaints(
-      "WorldBegin\nTexture \"t\" \"spectrum\" \"marble\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape "
+      "WorldBegin\nTexture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape "
       "\"sphere\"");
-  EXPECT_THAT(found, testing::ElementsAre("scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"marble\" "
+  EXPECT_THAT(found, testing::ElementsAre("scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses Texture \"ptex\" "
                                           "(scene.pbrt:2:1), which is not rendered yet"));
 }
 
@@ -174,17 +173,25 @@ TEST(BadInput, TexturesOfTexturesSayWhere) {
               ElementsAre("scene.pbrt:4:32: Texture \"t\": \"tex\" needs a spectrum texture, not the float texture \"f\""));
   EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"mix\" \"texture amount\" \"c\""),
               ElementsAre("scene.pbrt:4:30: Texture \"t\": \"amount\" needs a float texture, not the spectrum texture \"c\""));
-  EXPECT_THAT(
-      of("Texture \"t\" \"spectrum\" \"checkerboard\" \"string mapping\" \"planar\""),
-      ElementsAre("scene.pbrt:4:39: Texture \"t\": \"mapping\" is \"planar\", which is not rendered yet; only \"uv\" is"));
-  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3"),
-              ElementsAre("scene.pbrt:4:39: Texture \"t\": \"dimension\" is not rendered yet unless it is 2"));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"checkerboard\" \"string mapping\" \"plane\""),
+              ElementsAre("scene.pbrt:4:39: Texture \"t\": \"mapping\" is \"plane\"; the nearest known name is \"planar\""));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 4"),
+              ElementsAre("scene.pbrt:4:39: Texture \"t\": \"dimension\" must be 2 or 3"));
+  EXPECT_THAT(of("Texture \"t\" \"spectrum\" \"fbm\""),
+              ElementsAre("scene.pbrt:4:1: Texture \"t\": is a texture of floats alone"));
+  EXPECT_THAT(of("Texture \"t\" \"float\" \"marble\""),
+              ElementsAre("scene.pbrt:4:1: Texture \"t\": is a texture of spectra alone"));
+  EXPECT_THAT(of("Texture \"t\" \"float\" \"fbm\" \"integer octaves\" -1"),
+              ElementsAre("scene.pbrt:4:27: Texture \"t\": \"octaves\" must lie between 0 and 64"));
+  EXPECT_THAT(of("Texture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [0 0 0]"),
+              ElementsAre("scene.pbrt:4:36: Texture \"t\": \"dir\" is no direction"));
   EXPECT_THAT(
       of("Material \"dielectric\" \"texture roughness\" \"c\""),
       ElementsAre(
           "scene.pbrt:4:23: Material \"dielectric\": \"roughness\" needs a float texture, not the spectrum texture \"c\""));
-  EXPECT_THAT(of("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"texture alpha\" \"f\""),
-              testing::Contains("scene.pbrt:4:53: Shape \"trianglemesh\": \"alpha\" takes no texture other than constants here"));
+  EXPECT_THAT(of("Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"texture alpha\" \"c\""),
+              testing::Contains(
+                  "scene.pbrt:4:53: Shape \"trianglemesh\": \"alpha\" needs a float texture, not the spectrum texture \"c\""));
   std::string deep = "Texture \"t0\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"float scale\" .5";
   for (int i = 1; i <= 14; ++i)
     deep += "\nTexture \"t" + std::to_string(i) + "\" \"spectrum\" \"scale\" \"texture tex\" \"t" + std::to_string(i - 1) +

@@ -58,7 +58,7 @@ TEST(Errors, OfFeaturesOfManyStatementsAreGrouped) {
       complaints(text),
       ElementsAre("scene.pbrt:4:1: Shape \"loopsubdiv\" is not rendered yet (and 9999 more of this kind)",
                   "scene.pbrt:2:1: Material \"hair\" is not rendered yet (and 9999 more of this kind)",
-                  "scene.pbrt:5:47: MakeNamedMaterial \"0\": \"normalmap\" is not rendered yet (and 9999 more of this kind)"));
+                  "scene.pbrt:5:47: MakeNamedMaterial \"0\": \"normalmap\" no such file \"n.png\" (and 9999 more of this kind)"));
 }
 
 TEST(Errors, StopReadingWhereEverythingIsWrong) {

@@ -26,6 +26,19 @@ class StubImages : public ImageReader {
     image.rgb.assign(static_cast<std::size_t>(3 * image.width * image.height), 0.5f);
     return image;
   }
+  /// Floats from 0 up, as large: of three channels, but of one called "grey".
+  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override {
+    ++textures_read;
+    const std::string name = path.stem().string();
+    if (name == "broken") throw InputError(path.string() + ": broken image");
+    TextureImage image;
+    image.width = image.height = 4;
+    image.channels = name == "grey" ? 1 : 3;
+    for (std::size_t i = 0; i < image.values(); ++i)
+      image.floats.push_back(static_cast<float>(decoded_value(encoding, static_cast<double>(i) / 64)));
+    return image;
+  }
+  mutable int textures_read = 0;
 };
 
 inline void write_file(const std::filesystem::path& path, const std::string& text) {

@@ -263,10 +263,10 @@ TEST(Textures, ThatVaryAreOfTheScene) {
   const auto& checks = std::get<CheckerboardTexture>(scene.textures[0].model);
   EXPECT_EQ(scene.textures[0].name, "checks");
   EXPECT_FALSE(scene.textures[0].is_float);
-  EXPECT_EQ(checks.uscale, 8);
-  EXPECT_EQ(checks.vscale, 4);
-  EXPECT_EQ(checks.udelta, .5);
-  EXPECT_EQ(checks.vdelta, .25);
+  EXPECT_EQ(checks.mapping.uscale, 8);
+  EXPECT_EQ(checks.mapping.vscale, 4);
+  EXPECT_EQ(checks.mapping.udelta, .5);
+  EXPECT_EQ(checks.mapping.vdelta, .25);
   EXPECT_EQ(std::get<RgbSpectrum>(checks.tex1.value).rgb, glm::dvec3(1, 0, 0));
   EXPECT_EQ(std::get<ConstantSpectrum>(checks.tex2.value).value, 0);  // pbrt-v4: 1 and 0 where nothing is given
   const auto& rough = std::get<CheckerboardTexture>(scene.textures[1].model);

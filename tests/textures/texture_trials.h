@@ -14,15 +14,20 @@
 namespace caplet::test {
 
 struct TextureTrial {
-  /// At (u, v), by hand.
+  /// At (u, v), or at a place, by hand.
   struct Value {
     double u, v, value;
+    std::array<float, 3> p = {static_cast<float>(u), static_cast<float>(v), 0}, n = {0, 0, 1};
+    std::array<float, 3> dpdx = {}, dpdy = {};    // the sides of what is seen
+    std::array<float, 2> duvdx = {}, duvdy = {};  // along them
   };
   /// Of floats, the last of them the one on trial. The test tries the same with spectra that are constant over wavelengths.
   std::vector<Texture> textures;
   std::vector<Value> values;
   double tolerance = 4 * 0x1p-24;  // relative: products, a sum and a root
-  std::string field = "alpha_u";   // what of a material it is
+  std::string field = "alpha_u";   // what of a material it is; "step": none, but the value of the steps of `last`
+  bool of_floats = true, of_spectra = true;
+  int last = -1;  // a step that lowering puts in
 };
 
 struct TextureOnTrial {

@@ -21,6 +21,16 @@ struct Pixels {
 bool available();
 /// Throws InputError naming the file, or naming the build option where this is not built.
 Pixels read_linear(const std::filesystem::path& path);
+/// Values as the file holds them, whole numbers from 0 to 1: bytes of a file of bytes, floats otherwise; of `is_whole` numbers.
+/// Alpha is not multiplied in. Throws as read_linear does.
+struct StoredPixels {
+  int width = 0, height = 0, channels = 0;
+  int alpha = -1;
+  bool is_whole = false;
+  std::vector<std::uint8_t> bytes;
+  std::vector<float> floats;
+};
+StoredPixels read_stored(const std::filesystem::path& path);
 /// Whether a file of that extension can be written.
 bool can_write(const std::filesystem::path& path);
 /// Whether a file of that extension, which can be written, can be of that size.

@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,11 +12,25 @@
 
 namespace caplet::pbrt {
 
+/// The image that a parameter names, read once however often it is named; null where it cannot be had, and `problem` says why.
+using TextureImages = std::function<std::shared_ptr<const TextureImage>(Parameters& parameters, const char* name,
+                                                                        const ImageEncoding& encoding, std::string& problem)>;
+
+/// What textures take of where they stand.
+struct TextureContext {
+  glm::dmat4 world_from_texture;
+  TextureImages images;
+};
+
+/// The "encoding" of an image.
+ImageEncoding image_encoding(Parameters& parameters);
+
 /// What a Texture statement (`kind` "float" or "spectrum", a known class) comes to. One that varies is added to the scene.
 TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
-                          Parameters& parameters, const TextureTable& textures, Scene& scene);
+                          Parameters& parameters, const TextureTable& textures, const TextureContext& context, Scene& scene);
 
 /// The material of an accepted type. The scene gets the textures that its remapped roughness takes.
-Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, Scene& scene);
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
+                       Scene& scene);
 
 }  // namespace caplet::pbrt

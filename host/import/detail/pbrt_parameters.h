@@ -77,6 +77,7 @@ class Parameters {
   bool boolean(std::string_view name, bool fallback);
   std::string text(std::string_view name, const std::string& fallback);
   glm::dvec3 point(std::string_view name, const glm::dvec3& fallback);
+  glm::dvec3 vector(std::string_view name, const glm::dvec3& fallback);
   /// All values of a parameter whose type is one of `types`; null when it is not there.
   const Parameter* values(std::string_view name, std::initializer_list<std::string_view> types);
   std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures = nullptr);

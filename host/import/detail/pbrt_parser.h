@@ -9,10 +9,12 @@
 #include <optional>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "base/spelling.h"
 #include "import/detail/pbrt_lexer.h"
+#include "import/detail/pbrt_materials.h"
 #include "import/detail/pbrt_names.h"
 #include "import/detail/pbrt_parameters.h"
 #include "scene/image_reader.h"
@@ -124,6 +126,9 @@ class Parser {
   void world_begin();
 
   // Help for directives
+  TextureContext texture_context();
+  std::shared_ptr<const TextureImage> texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
+                                                    std::string& problem);
   void multiply(const glm::dmat4& matrix);
   void open_block();
   void close_block(const std::string& opener);
@@ -177,6 +182,7 @@ class Parser {
   std::map<std::string, std::uint32_t> uses_by_name_;
   std::map<std::string, Medium> media_;
   TextureTable textures_;
+  std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images_;
   SharedParameters all_attributes_;
 };
 

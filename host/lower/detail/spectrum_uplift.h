@@ -6,6 +6,7 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "scene/spectrum.h"
 
@@ -21,6 +22,11 @@ struct SigmoidFit {
 /// colours a sigmoid can all have; the nearest it finds for the colours of wider spaces that no reflectance can have. Grey is
 /// exactly constant.
 SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space);
+
+/// The sigmoids of colours: CAPLET_UPLIFT_FLOATS floats, coefficients times the root of the largest channel's value, over which
+/// channel is the largest, its value v (node i of n at v = 1 - (1 - i / (n - 1))^2), then the third channel and the second in
+/// parts of it (nodes at the squares). What follows `top` is second. Made on first use.
+const std::vector<float>& sigmoid_table(ColorSpace space);
 
 /// The colour of a sigmoid under the space's illuminant.
 glm::dvec3 sigmoid_rgb(const std::array<double, 3>& coefficients, ColorSpace space);

@@ -20,4 +20,7 @@ enum class TextureUse { albedo, unbounded, number };
 std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
                             SpectrumTable& spectra, FlatScene& out);
 
+/// The same of a shape's alpha.
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, SpectrumTable& spectra, FlatScene& out);
+
 }  // namespace caplet

@@ -2,14 +2,15 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/texture_mapping.h"
 #include "scene/texture_operand.h"
 
 namespace caplet {
 
-/// Bilinear in (s, t) = (uscale u + udelta, vscale v + vdelta): v01 at (0, 1), v10 at (1, 0).
+/// Bilinear in (s, t): v01 at (0, 1), v10 at (1, 0).
 struct BilerpTexture {
   TextureOperand v00 = 0, v01 = 1, v10 = 0, v11 = 1;
-  double uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
+  TextureMapping mapping = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -17,7 +18,7 @@ struct BilerpTexture {
     visit.operand("v01", self.v01);
     visit.operand("v10", self.v10);
     visit.operand("v11", self.v11);
-    visit.mapping(self.uscale, self.vscale, self.udelta, self.vdelta);
+    visit.mapping(self.mapping);
   }
 };
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Images of textures -> their records and texels.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lower/flat_scene.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// An image as textures look it up: with what lies beyond its edges (CAPLET_WRAP_...), or as it is.
+struct ImageUse {
+  const TextureImage* image;
+  std::optional<int> wrap;
+
+  bool operator==(const ImageUse&) const = default;
+};
+
+/// Each once, in the order in which textures name them first.
+std::vector<ImageUse> image_uses(const std::vector<Texture>& textures);
+/// One as image_uses has it: where the sides are powers of two, all have wrap 0.
+ImageUse image_use(const TextureImage& image, std::optional<int> wrap);
+
+/// Fills `images`, in the order of image_uses, and `texels`. Images of imagemaps whose sides are no powers of two are resampled to the
+/// next ones by Lanczos' filter of radius 2, as pbrt-v4's are, and have mip levels, down to one texel: a level has half the sides of
+/// that before, at least 1, and its texels are the means of what they cover. Throws InputError where they need more words than 32
+/// bits number.
+void lower_images(const Scene& scene, FlatScene& out);
+
+}  // namespace caplet

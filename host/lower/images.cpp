@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "lower/detail/images.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "scene/texture_visitor.h"
+
+namespace caplet {
+
+namespace {
+
+struct Level {
+  std::size_t width, height;
+  std::vector<float> values;  // linear
+};
+
+/// What it covers, both sides of which are powers of two.
+Level halved(const Level& from, std::size_t channels) {
+  Level to{std::max<std::size_t>(1, from.width / 2), std::max<std::size_t>(1, from.height / 2), {}};
+  to.values.resize(to.width * to.height * channels);
+  const std::size_t across = from.width / to.width, down = from.height / to.height;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, to.height, 16), [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t y = range.begin(); y < range.end(); ++y)
+      for (std::size_t x = 0; x < to.width; ++x)
+        for (std::size_t c = 0; c < channels; ++c) {
+          double sum = 0;
+          for (std::size_t j = 0; j < down; ++j)
+            for (std::size_t i = 0; i < across; ++i)
+              sum += static_cast<double>(from.values[((down * y + j) * from.width + across * x + i) * channels + c]);
+          to.values[(y * to.width + x) * channels + c] = static_cast<float>(sum / static_cast<double>(across * down));
+        }
+  });
+  return to;
+}
+
+/// sin(pi x) / (pi x).
+double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
+
+/// Along one axis: the four texels about a new one's centre, by Lanczos' filter.
+struct Taps {
+  Taps(std::size_t i, std::size_t from, std::size_t to) {
+    const double center = (static_cast<double>(i) + 0.5) * static_cast<double>(from) / static_cast<double>(to);
+    first = static_cast<int>(std::floor(center - 1.5));
+    double sum = 0;
+    for (int j = 0; j < 4; ++j) {
+      const double x = first + j + 0.5 - center;
+      weights[j] = std::abs(x) < 2 ? sinc(x) * sinc(x / 2) : 0;
+      sum += weights[j];
+    }
+    for (double& weight : weights) weight /= sum;
+  }
+  int first;
+  double weights[4];
+};
+
+/// The texel that (x, y) stands for, or none (kernels/textures/images.cl).
+std::optional<std::size_t> wrapped(int x, int y, int width, int height, int wrap) {
+  const auto repeated = [](int v, int n) { return (v % n + n) % n; };
+  const auto beyond = [&] { return x < 0 || y < 0 || x >= width || y >= height; };
+  if (wrap == CAPLET_WRAP_BLACK && beyond()) return std::nullopt;
+  if (wrap == CAPLET_WRAP_REPEAT) {
+    x = repeated(x, width);
+    y = repeated(y, height);
+  } else if (wrap == CAPLET_WRAP_OCTAHEDRAL) {
+    if (x < 0 || x >= width) {
+      x = x < 0 ? -1 - x : 2 * width - 1 - x;
+      y = height - 1 - y;
+    }
+    if (y < 0 || y >= height) {
+      y = y < 0 ? -1 - y : 2 * height - 1 - y;
+      x = width - 1 - x;
+    }
+  }
+  x = std::clamp(x, 0, width - 1);
+  y = std::clamp(y, 0, height - 1);
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+Level resampled(const Level& from, std::size_t channels, int wrap) {
+  Level to{std::bit_ceil(from.width), std::bit_ceil(from.height), {}};
+  to.values.resize(to.width * to.height * channels);
+  const int width = narrow<int>(from.width), height = narrow<int>(from.height);
+  std::vector<Taps> columns;
+  for (std::size_t x = 0; x < to.width; ++x) columns.emplace_back(x, from.width, to.width);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, to.height, 16), [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t y = range.begin(); y < range.end(); ++y) {
+      const Taps rows(y, from.height, to.height);
+      for (std::size_t x = 0; x < to.width; ++x) {
+        double sums[4] = {};
+        for (int j = 0; j < 4; ++j)
+          for (int i = 0; i < 4; ++i)
+            if (const auto at = wrapped(columns[x].first + i, rows.first + j, width, height, wrap))
+              for (std::size_t c = 0; c < channels; ++c)
+                sums[c] += rows.weights[j] * columns[x].weights[i] * static_cast<double>(from.values[*at * channels + c]);
+        for (std::size_t c = 0; c < channels; ++c)
+          to.values[(y * to.width + x) * channels + c] = static_cast<float>(std::max(0.0, sums[c]));
+      }
+    }
+  });
+  return to;
+}
+
+bool has_powers_of_two(const TextureImage& image) {
+  return std::has_single_bit(static_cast<unsigned>(image.width)) && std::has_single_bit(static_cast<unsigned>(image.height));
+}
+
+struct Uses : TextureVisitor {
+  std::vector<ImageUse> found = {};
+  const TextureImage* last = nullptr;
+
+  void image(const std::shared_ptr<const TextureImage>& of) { last = of.get(); }
+  template <class Names>
+  void choice(const char* name, int value, const Names&) {
+    if (std::string_view(name) == "wrap") add(image_use(*last, value));
+  }
+  void vectors(const std::shared_ptr<const TextureImage>& of) { add(image_use(*of, std::nullopt)); }
+  void add(const ImageUse& use) {
+    if (std::ranges::find(found, use) == found.end()) found.push_back(use);
+  }
+};
+
+/// The byte whose meaning is nearest.
+std::uint8_t encoded(const std::array<float, 256>& decoded, float value) {
+  const auto above = std::ranges::lower_bound(decoded, value);
+  if (above == decoded.begin()) return 0;
+  const auto at = static_cast<std::size_t>(above - decoded.begin());
+  return static_cast<std::uint8_t>(at == 256 || value - decoded[at - 1] <= decoded[at] - value ? at - 1 : at);
+}
+
+class ImageLowering {
+ public:
+  ImageLowering(const ImageUse& use, FlatScene& out)
+      : image_(*use.image), wrap_(use.wrap), out_(out), channels_(static_cast<std::size_t>(use.image->channels)) {}
+
+  ImageRecord run() {
+    ImageRecord record{};
+    record.channels = narrow<uint>(channels_);
+    record.decode = CAPLET_NONE;
+    if (!image_.bytes.empty()) {
+      record.decode = narrow<uint>(out_.texels.size());
+      for (const float value : image_.decoded) out_.texels.push_back(std::bit_cast<uint>(value));
+    }
+    Level level{static_cast<std::size_t>(image_.width), static_cast<std::size_t>(image_.height), {}};
+    if (wrap_) level.values = linear();
+    const bool is_new = wrap_ && !has_powers_of_two(image_);
+    if (is_new) level = resampled(level, channels_, *wrap_);
+    record.levels = wrap_ ? narrow<uint>(std::bit_width(std::max(level.width, level.height))) : 1;
+    record.levels_begin = narrow<uint>(out_.texels.size());
+    out_.texels.resize(out_.texels.size() + 3 * std::size_t{record.levels});
+    for (uint i = 0; i < record.levels; ++i) {
+      if (i > 0) level = halved(level, channels_);
+      uint* of = &out_.texels[record.levels_begin + 3 * i];
+      of[0] = narrow<uint>(out_.texels.size());
+      of[1] = narrow<uint>(level.width);
+      of[2] = narrow<uint>(level.height);
+      if (i > 0 || is_new)
+        add(level);
+      else
+        image_.bytes.empty() ? add_floats(image_.floats) : add_bytes(image_.bytes);
+    }
+    return record;
+  }
+
+ private:
+  bool is_alpha(std::size_t i) const { return channels_ == 4 && i % 4 == 3; }
+
+  std::vector<float> linear() const {
+    if (image_.bytes.empty()) return image_.floats;
+    std::vector<float> out(image_.bytes.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = is_alpha(i) ? static_cast<float>(image_.bytes[i]) / 255.f : image_.decoded[image_.bytes[i]];
+    return out;
+  }
+
+  void add(const Level& level) {
+    if (image_.bytes.empty()) return add_floats(level.values);
+    std::vector<std::uint8_t> bytes(level.values.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      bytes[i] = is_alpha(i) ? static_cast<std::uint8_t>(std::lround(std::min(level.values[i], 1.f) * 255.f))
+                             : encoded(image_.decoded, level.values[i]);
+    add_bytes(bytes);
+  }
+
+  void add_floats(const std::vector<float>& values) {
+    for (const float value : values) out_.texels.push_back(std::bit_cast<uint>(value));
+  }
+
+  void add_bytes(const std::vector<std::uint8_t>& bytes) {
+    const std::size_t at = out_.texels.size();
+    out_.texels.resize(at + (bytes.size() + 3) / 4);
+    // Four to a word as they lie in memory: devices read them as bytes.
+    std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(&out_.texels[at]));
+  }
+
+  const TextureImage& image_;
+  std::optional<int> wrap_;
+  FlatScene& out_;
+  std::size_t channels_;
+};
+
+}  // namespace
+
+ImageUse image_use(const TextureImage& image, std::optional<int> wrap) {
+  return {&image, wrap && has_powers_of_two(image) ? std::optional(0) : wrap};
+}
+
+std::vector<ImageUse> image_uses(const std::vector<Texture>& textures) {
+  Uses uses;
+  for (const Texture& texture : textures) std::visit([&](const auto& model) { model.fields(model, uses); }, texture.model);
+  return uses.found;
+}
+
+void lower_images(const Scene& scene, FlatScene& out) {
+  const std::vector<ImageUse> uses = image_uses(scene.textures);
+  double words =
+      0;  // at most: sides grow to twice themselves; mip levels take a third, of long images as much again as the first
+  for (const ImageUse& use : uses)
+    words += 512 + 8 * static_cast<double>(use.image->values() + 4) / (use.image->bytes.empty() ? 1 : 4);
+  if (words > static_cast<double>(std::numeric_limits<uint>::max()))
+    throw InputError(SourceLocation{scene.source}, "the images of textures have more texels than 32 bits number");
+  for (const ImageUse& use : uses) out.images.push_back(ImageLowering(use, out).run());
+}
+
+}  // namespace caplet

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "scene/texture_operand.h"
+
+namespace caplet {
+
+/// amount tex1 + (1 - amount) tex2, amount the magnitude of the cosine between the surface's normal and `dir`.
+struct DirectionmixTexture {
+  TextureOperand tex1 = 0, tex2 = 1;
+  glm::dvec3 dir{0, 1, 0};  // world, unit
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.operand("tex1", self.tex1);
+    visit.operand("tex2", self.tex2);
+    visit.direction("dir", self.dir);
+  }
+};
+
+}  // namespace caplet

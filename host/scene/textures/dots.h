@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include "scene/texture_mapping.h"
+#include "scene/texture_operand.h"
+
+namespace caplet {
+
+/// Disks in the unit squares of (s, t), at random.
+struct DotsTexture {
+  TextureOperand inside = 1, outside = 0;
+  TextureMapping mapping = {};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.operand("inside", self.inside);
+    visit.operand("outside", self.outside);
+    visit.mapping(self.mapping);
+  }
+};
+
+}  // namespace caplet

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "scene/texture_image.h"
+#include "scene/texture_mapping.h"
+#include "scene/texture_operand.h"
+
+namespace caplet {
+
+/// In the order of CAPLET_WRAP_... and CAPLET_FILTER_... (kernels/shared/kinds.h).
+inline constexpr std::array<const char*, 4> texture_wrap_names = {"repeat", "black", "clamp", "octahedralsphere"};
+inline constexpr std::array<const char*, 4> texture_filter_names = {"point", "bilinear", "trilinear", "EWA"};
+
+/// `scale` times an image at (s, t); its bottom row is at t = 0. invert: 1 less that, from 0 up.
+struct ImagemapTexture {
+  std::shared_ptr<const TextureImage> image;
+  int wrap = 0, filter = 1;
+  double maxanisotropy = 8, scale = 1;
+  int invert = 0;
+  TextureMapping mapping = {};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.image(self.image);
+    visit.choice("wrap", self.wrap, texture_wrap_names);
+    visit.choice("filter", self.filter, texture_filter_names);
+    visit.number("maxanisotropy", self.maxanisotropy);
+    visit.number("scale", self.scale);
+    visit.flag("invert", self.invert);
+    visit.mapping(self.mapping);
+  }
+};
+
+}  // namespace caplet

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <memory>
+
+#include "scene/texture_image.h"
+
+namespace caplet {
+
+/// Normals of surfaces: Material::normalmap.
+struct NormalmapTexture {
+  std::shared_ptr<const TextureImage> image;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.vectors(self.image);
+  }
+};
+
+}  // namespace caplet

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Shading normals by a material's normal map or displacement (Pharr, Jakob and Humphreys 2023, 10.5.3 and 10.5.4).
+#ifndef CAPLET_BSDF_BUMP_CL
+#define CAPLET_BSDF_BUMP_CL
+
+#include "textures/textures.cl"
+
+enum {
+  any_normalmap = 0
+#define TEXTURE(name) || texture_##name == texture_normalmap
+#include "rows/textures.def"
+#undef TEXTURE
+  ,
+  any_displacement = 0
+#define TEXTURE(name) || texture_##name == texture_displacement
+#include "rows/textures.def"
+#undef TEXTURE
+  ,
+  any_bump = any_normalmap | any_displacement
+};
+
+// The shading normal of material number `material` at a place whose own is ns, of unit length, on the side of the geometric normal of
+// the place. dpdu, dpdv: derivatives of the point.
+static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float3 ns, float3 dpdu,
+                                 float3 dpdv) {
+  const uint bump = materials->materials[material].bump;
+  if (bump == CAPLET_NONE) return ns;
+  TexturePoint at = {materials, spectra, *place, (float4)(550.0f)};
+  float3 n = ns;
+  if (any_normalmap != 0 && (any_displacement == 0 || materials->materials[material].bump_kind == texture_normalmap)) {
+    const Frame frame = frame_from_tangent(ns, dpdu);
+    const float4 turned = texture_eval(bump, &at);
+    n = to_world(&frame, turned.xyz);
+  } else {
+    const float3 normal = cross(dpdu, dpdv);
+    if (!(dot(normal, normal) > 0.0f)) return ns;
+    // Half of what is seen at once, or little where that is not known.
+    float2 step = 0.5f * (fabs(place->duvdx) + fabs(place->duvdy));
+    step = (float2)(step.x > 0.0f ? step.x : 5e-4f, step.y > 0.0f ? step.y : 5e-4f);
+    float height[3];
+#pragma unroll 1
+    for (int i = 0; i < 3; ++i) {
+      const float2 move = (float2)(i == 1 ? step.x : 0.0f, i == 2 ? step.y : 0.0f);
+      at.place.uv = place->uv + move;
+      at.place.p = place->p + move.x * dpdu + move.y * dpdv;
+      height[i] = texture_eval(bump, &at).x;
+    }
+    n = cross(dpdu + (height[1] - height[0]) / step.x * ns, dpdv + (height[2] - height[0]) / step.y * ns);
+  }
+  const float scale = max3(fabs(n));
+  if (!(scale > 0.0f && scale < INFINITY)) return ns;
+  n = normalize(n / scale);
+  return dot(n, place->n) < 0.0f ? -n : n;
+}
+
+#endif

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Closest hit of every ray in the queue, where shapes let some of them through.
+#include "trace/alpha.cl"
+
+static void stage_item(const Stage* g, uint item) {
+  const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
+  const uint path = g->queues.queue[item];
+  g->rays.path_hit[path] = trace_stopped(&scene, g->rays.path_ray[path]);
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// How far a surface is moved along its normal: of it, where a material has one, the change alone is rendered (bsdf/bump.cl).
+#ifndef CAPLET_TEXTURES_DISPLACEMENT_CL
+#define CAPLET_TEXTURES_DISPLACEMENT_CL
+
+#include "textures/texture_types.cl"
+
+static inline float4 displacement_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+  (void)at;
+  return values[displacement_texture_tex(data)];
+}
+
+#endif

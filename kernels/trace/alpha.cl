@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Rays among shapes that do not stop all of them: by a number that follows from the ray, the point and the primitive alone.
+#ifndef CAPLET_TRACE_ALPHA_CL
+#define CAPLET_TRACE_ALPHA_CL
+
+#include "math/rng.cl"
+#include "shapes/surface.cl"
+#include "textures/textures.cl"
+#include "trace/trace.cl"
+
+// What hits are asked about.
+typedef struct {
+  Tree tree;
+  Surfaces surfaces;
+  Spectra spectra;
+  Materials materials;
+} AlphaScene;
+
+static inline int alpha_stops(const AlphaScene* scene, const RayRecord* ray, const HitRecord* hit) {
+  const uint primitive = as_uint(scene->tree.leaves[hit->slot]);
+  const uint alpha = scene->surfaces.geometries[scene->surfaces.primitive_geometry[primitive]].alpha;
+  if (alpha == CAPLET_NONE) return 1;
+  const Surface s = surface_at(&scene->tree, &scene->surfaces, ray, hit);
+  TexturePoint at = {&scene->materials, &scene->spectra, texture_place(s.uv), (float4)(550.0f)};
+  at.place.p = s.p;
+  at.place.n = s.ng;
+  const float chance = texture_eval(alpha, &at).x;
+  uint number = hash_combine(as_uint(ray->ox), as_uint(ray->oy));
+  number = hash_combine(hash_combine(number, as_uint(ray->oz)), as_uint(ray->dx));
+  number = hash_combine(hash_combine(number, as_uint(ray->dy)), as_uint(ray->dz));
+  number = hash_combine(hash_combine(number, as_uint(hit->t)), primitive);
+  return unit_float(number) < chance;
+}
+
+// The nearest hit that stops the ray.
+static inline HitRecord trace_stopped(const AlphaScene* scene, RayRecord ray) {
+  for (;;) {
+    const HitRecord hit = trace_closest(&scene->tree, ray);
+    if (hit.slot == CAPLET_NONE || alpha_stops(scene, &ray, &hit)) return hit;
+    ray.t_min = hit.t;  // what is nearer has been asked
+  }
+}
+
+#endif
