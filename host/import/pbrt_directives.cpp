@@ -4,7 +4,6 @@
 // The directives that set options, transforms, materials, lights and shapes.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -321,98 +320,6 @@ const Object* Parser::finished_object(const std::string& name, std::string& prob
   problem = "names the object " + in_quotes(name) + ", which is being defined (" + object.where.to_string() +
             "): a csg cannot hold itself";
   return nullptr;
-}
-
-namespace {
-
-/// Calls `visit` with every index of a material that a shape has.
-void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit) {
-  visit(shape.material);
-  for (std::uint32_t& material : shape.materials) visit(material);
-  if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    for (std::uint32_t& material : capsules->materials) visit(material);
-  if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
-    for (std::shared_ptr<const Shape>& operand : csg->operands) {
-      auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
-      each_material(*own, visit);
-      operand = std::move(own);
-    }
-}
-
-void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visit) {
-  for (Shape& shape : scene.shapes) each_material(shape, visit);
-  for (Object& object : scene.objects)
-    for (Shape& shape : object.shapes) each_material(shape, visit);
-}
-
-}  // namespace
-
-/// For each Material statement: does a shape have its material?
-std::vector<bool> Parser::used_materials() {
-  std::vector<bool> used(materials_.size(), false);
-  each_material(scene_, [&](std::uint32_t& index) {
-    const MaterialUse& use = uses_[index];
-    if (use.statement) used[*use.statement] = true;
-    if (const auto found = use.statement ? named_materials_.end() : named_materials_.find(use.name);
-        found != named_materials_.end())
-      used[found->second] = true;
-  });
-  return used;
-}
-
-/// The index in the scene of each statement's material. One that cannot be rendered is an error where a shape has it; of the
-/// others a warning tells.
-std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used) {
-  std::vector<std::uint32_t> index_of_statement;
-  std::size_t left_out = 0;
-  std::string first_left_out;
-  for (std::size_t i = 0; i < materials_.size(); ++i) {
-    MaterialStatement& statement = materials_[i];
-    index_of_statement.push_back(static_cast<std::uint32_t>(scene_.materials.size()));
-    if (statement.type.empty()) continue;
-    Diagnostics aside;
-    Diagnostics& diagnostics = used[i] ? diagnostics_ : aside;
-    if (!statement.refusal.empty()) {
-      diagnostics.error(statement.where, statement.refusal, statement.refusal);
-    } else {
-      statement.parameters.report_to(diagnostics);
-      Material material = make_material(statement.type, statement.parameters, textures_, scene_);
-      material.name = statement.name;
-      if (!aside.has_errors()) scene_.materials.push_back(std::move(material));
-    }
-    if (!aside.has_errors()) continue;
-    try {
-      aside.finish();
-    } catch (const InputError& error) {
-      if (left_out++ == 0) first_left_out = error.messages().front();
-    }
-  }
-  if (left_out > 0 && !diagnostics_.has_errors())
-    diagnostics_.warning({}, first_left_out + " (no shape has this material" +
-                                 (left_out > 1 ? ", nor " + std::to_string(left_out - 1) + " others that are wrong)" : ")"));
-  return index_of_statement;
-}
-
-void Parser::resolve_materials() {
-  const std::vector<std::uint32_t> index_of_statement = make_materials(used_materials());
-  std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
-  for (std::size_t i = 1; i < uses_.size(); ++i) {
-    const MaterialUse& use = uses_[i];
-    const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
-    if (use.statement || named != named_materials_.end())
-      index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
-    else
-      diagnostics_.error(use.where,
-                         "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
-  }
-  bool uses_default = false;
-  const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
-  index_of_use[0] = default_index;
-  each_material(scene_, [&](std::uint32_t& material) {
-    uses_default = uses_default || material == 0;
-    material = index_of_use[material];
-  });
-  if (uses_default) scene_.materials.push_back({DiffuseMaterial{}, "default", {main_file_}});
 }
 
 }  // namespace caplet::pbrt

@@ -21,6 +21,7 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_turn 9
 #define CAPLET_FLOATS_OF_spectrum 1
 #define CAPLET_FLOATS_OF_texture 1
+#define CAPLET_FLOATS_OF_material 1
 
 // spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
 // textures, which share names with lights: mix_texture_at_amount, mix_texture_floats.
@@ -64,6 +65,7 @@ enum {
 #define CAPLET_FIELD_spectrum(function, at) \
   CAPLET_ACCESSOR(CAPLET_UINT) function(CAPLET_DATA data) { return CAPLET_BITS(data[at]); }
 #define CAPLET_FIELD_texture(function, at) CAPLET_FIELD_spectrum(function, at)
+#define CAPLET_FIELD_material(function, at) CAPLET_FIELD_spectrum(function, at)
 #define MATERIAL(name, traits)
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/materials.def"
@@ -85,6 +87,7 @@ enum {
 #undef CAPLET_FIELD_turn
 #undef CAPLET_FIELD_spectrum
 #undef CAPLET_FIELD_texture
+#undef CAPLET_FIELD_material
 
 #ifdef __cplusplus
 

@@ -39,7 +39,9 @@ enum {
 
 // Traits of materials (materials.def).
 enum {
-  trait_dispersive = 1  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
+  trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
+  trait_stochastic = 2,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
+  trait_metal_base = 4   // a coat over a metal (layered.cl)
 };
 
 enum {

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,11 @@ namespace caplet::pbrt {
 TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
                           Parameters& parameters, const TextureTable& textures, Scene& scene);
 
+/// The index in the scene of the material that a mix names; none with the reason in `problem`.
+using PartFinder = std::function<std::optional<std::uint32_t>(const std::string& name, std::string& problem)>;
+
 /// The material of an accepted type. The scene gets the textures that its remapped roughness takes.
-Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, Scene& scene);
+Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures,
+                       const PartFinder& part_named, Scene& scene);
 
 }  // namespace caplet::pbrt
