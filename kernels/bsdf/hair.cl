@@ -107,7 +107,7 @@ static inline float hair_longitudinal(float sin_i, float cos_i, float sin_o, flo
 // A logistic distribution over [-pi, pi].
 static inline float hair_logistic_end(float width) { return 1.0f / (1.0f + exp(CAPLET_PI / width)); }
 static inline float hair_azimuthal(float angle, float width) {
-  angle -= 2.0f * CAPLET_PI * rint(angle / (2.0f * CAPLET_PI));
+  angle -= 2.0f * CAPLET_PI * floor(angle / (2.0f * CAPLET_PI) + 0.5f);
   const float e = exp(-fabs(angle) / width);
   return e / (width * sqr(1.0f + e) * (1.0f - 2.0f * hair_logistic_end(width)));
 }

@@ -159,7 +159,7 @@ TEST(Interfaces, AreNotSeen) {
       "Material \"interface\" Shape \"sphere\" MakeNamedMaterial \"i\" \"string type\" \"interface\"\n"
       "ObjectBegin \"o\" NamedMaterial \"i\" Shape \"sphere\" Material \"diffuse\" Shape \"disk\" ObjectEnd ObjectInstance "
       "\"o\"\n"
-      "Shape \"sphere\" \"float radius\" 3");
+      "Material \"diffuse\" Shape \"sphere\" \"float radius\" 3");
   ASSERT_EQ(scene.shapes.size(), 1u);
   EXPECT_EQ(std::get<SphereShape>(scene.shapes[0].geometry).radius, 3);
   EXPECT_EQ(scene.objects.at(0).shapes.size(), 1u);
