@@ -3,6 +3,7 @@
 #include "import/detail/pbrt_materials.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -76,7 +77,7 @@ double float_argument(Parameters& parameters, const char* name, double fallback,
 
 double alpha_from_roughness(Parameters& parameters, const char* name, double roughness, bool remap) {
   if (roughness < 0) {
-    parameters.error(parameters.has(name) ? name : "roughness", "must not be negative");
+    parameters.error(name, "must not be negative");
     return 0;
   }
   return remap ? std::sqrt(roughness) : roughness;
@@ -90,10 +91,17 @@ std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene&
   return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
+/// Absorption of hair per radius by the concentrations of its pigments (Chiang et al. 2016; d'Eon et al. 2011), by sRGB
+/// components.
+Spectrum melanin(double eumelanin, double pheomelanin) {
+  return RgbSpectrum{eumelanin * glm::dvec3(0.419, 0.697, 1.37) + pheomelanin * glm::dvec3(0.187, 0.4, 1.05), ColorSpace::srgb};
+}
+
 /// Reads what scene/materials.def visits.
 struct MaterialReader {
   Parameters& parameters;
   const TextureTable& textures;
+  const PartFinder& part_named;
   Material& material;
   Scene& scene;
 
@@ -111,36 +119,86 @@ struct MaterialReader {
   void number(const char* name, double& value, double low, double high) {
     if (textured(name, name, true)) return;
     value = parameters.number_or_texture(name, value, textures);
-    if (!(value >= low && value <= high))
+    if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
+  }
+  void whole(const char* name, int& value, int low, int high) {
+    value = parameters.integer(name, value);
+    if (value < low || value > high)
       parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
   }
-  void roughness(double& alpha_u, double& alpha_v) {
-    const auto texture = parameters.texture("roughness", true, textures);
-    const double both = texture ? 0 : parameters.number_or_texture("roughness", 0, textures);
+  void parts(std::array<std::uint32_t, 2>& materials) {
+    const Parameter* given = parameters.values("materials", {"string"});
+    if (!given || given->strings.size() != 2) {
+      if (given || !parameters.has("materials"))
+        parameters.error("materials", given ? "takes the names of 2 materials, not of " + std::to_string(given->strings.size())
+                                            : "is missing");
+      return;
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      std::string problem;
+      if (const auto found = part_named(given->strings[i], problem))
+        materials[i] = *found;
+      else
+        parameters.error("materials", problem);
+    }
+  }
+  void pigment(Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
+    const char* const color = parameters.has("reflectance") ? "reflectance" : "color";
+    const bool has_color = parameters.has(color), has_melanin = parameters.has("eumelanin") || parameters.has("pheomelanin");
+    if (parameters.has("sigma_a") + has_color + has_melanin > 1)
+      parameters.error(has_color ? color : "sigma_a", "cannot be combined with other ways to say the colour");
+    if (has_color) {
+      Spectrum value = ConstantSpectrum{0.5};
+      if (const auto texture = parameters.texture(color, false, textures))
+        material.textures.push_back({"reflectance", *texture});
+      else if (auto given = parameters.spectrum(color, SpectrumUse::albedo, &textures))
+        value = *std::move(given);
+      reflectance = value;
+    } else if (parameters.has("sigma_a")) {
+      unbounded("sigma_a", sigma_a);
+    } else {
+      const auto amount = [&](const char* name, double fallback) {
+        const double value = parameters.number_or_texture(name, fallback, textures);
+        if (value < 0) parameters.error(name, "must not be negative");
+        return std::max(value, 0.0);
+      };
+      const double eumelanin = amount("eumelanin", has_melanin ? 0 : 1.3), pheomelanin = amount("pheomelanin", 0);
+      sigma_a = melanin(eumelanin, pheomelanin);
+    }
+  }
+  void roughness(double& alpha_u, double& alpha_v, const char* prefix = "") {
+    const char* const both_name = named(prefix, "roughness");
+    const auto texture = parameters.texture(both_name, true, textures);
+    const double both = texture ? 0 : parameters.number_or_texture(both_name, 0, textures);
     const bool remap = parameters.boolean("remaproughness", true);
     const auto alpha = [&](const char* name, const char* field, double& value) {
       const auto own = parameters.texture(name, true, textures);
       if (const auto used = own || parameters.has(name) ? own : texture)
-        material.textures.push_back({field, remap ? root_of(*used, parameters.where(own ? name : "roughness"), scene) : *used});
+        material.textures.push_back({field, remap ? root_of(*used, parameters.where(own ? name : both_name), scene) : *used});
       else
-        value = alpha_from_roughness(parameters, name, parameters.number_or_texture(name, both, textures), remap);
+        value = alpha_from_roughness(parameters, parameters.has(name) ? name : both_name,
+                                     parameters.number_or_texture(name, both, textures), remap);
     };
-    alpha("uroughness", "alpha_u", alpha_u);
-    alpha("vroughness", "alpha_v", alpha_v);
+    alpha(named(prefix, "uroughness"), named(prefix, "alpha_u"), alpha_u);
+    alpha(named(prefix, "vroughness"), named(prefix, "alpha_v"), alpha_v);
   }
-  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
-    const bool has_indices = parameters.has("eta") || parameters.has("k");
+  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance, const char* prefix = "") {
+    const char *const eta_name = named(prefix, "eta"), *const k_name = named(prefix, "k");
+    const bool has_indices = parameters.has(eta_name) || parameters.has(k_name);
     if (parameters.has("reflectance")) {
-      if (has_indices) parameters.error("reflectance", "cannot be combined with \"eta\" or \"k\"");
+      if (has_indices)
+        parameters.error("reflectance", "cannot be combined with " + in_quotes(eta_name) + " or " + in_quotes(k_name));
       reflectance = ConstantSpectrum{0.5};
       albedo("reflectance", *reflectance);
     } else {
       eta = named_spectrum("metal-Cu-eta").value_or(ConstantSpectrum{1});
       k = named_spectrum("metal-Cu-k").value_or(ConstantSpectrum{1});
-      unbounded("eta", eta);
-      unbounded("k", k);
+      unbounded(eta_name, eta);
+      unbounded(k_name, k);
     }
   }
+
+  const char* named(const char* prefix, const char* name) { return *prefix ? parameters.kept(prefix + std::string(name)) : name; }
 
   void spectrum(const char* name, SpectrumUse use, Spectrum& value) {
     if (textured(name, name, false)) return;
@@ -332,15 +390,15 @@ void read_bump(Parameters& parameters, const TextureTable& textures, const Textu
 }  // namespace
 
 Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
-                       Scene& scene) {
+                       const PartFinder& part_named, Scene& scene) {
   Material material;
   material.where = parameters.where();
   read_bump(parameters, textures, images, material, scene);
-#define MATERIAL_MODEL(name, Type)                                              \
-  if (type == #name) {                                                          \
-    Type model;                                                                 \
-    Type::fields(model, MaterialReader{parameters, textures, material, scene}); \
-    material.model = std::move(model);                                          \
+#define MATERIAL_MODEL(name, Type)                                                          \
+  if (type == #name) {                                                                      \
+    Type model;                                                                             \
+    Type::fields(model, MaterialReader{parameters, textures, part_named, material, scene}); \
+    material.model = std::move(model);                                                      \
   }
 #include "scene/materials.def"
   parameters.finish();

@@ -58,6 +58,7 @@ const std::vector<NameTable>& name_tables() {
       {"MakeNamedMedium", {}, {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}},
       table_of("Material",
                {
+                   "interface",
 #define MATERIAL_MODEL(name, Type) #name,
 #include "scene/materials.def"
                },

@@ -39,40 +39,57 @@ struct MaterialWriter {
   const Material& material;
   FlatScene& out;
 
-  /// Whether the scene's `parameter` is a texture: then field `name` is, with a last step of this kind if there is one.
-  bool textured(std::string_view parameter, std::string_view name, TextureUse use, std::optional<uint> last = {}) {
+  /// Names of fields have underscores for the dots of parameters.
+  static std::string field_of(std::string name) {
+    std::ranges::replace(name, '.', '_');
+    return name;
+  }
+  /// Whether the scene's `parameter` is a texture: then the field of `name` is, with a last step of this kind if there is one.
+  bool textured(const std::string& parameter, const std::string& name, TextureUse use, std::optional<uint> last = {}) {
     const auto texture = texture_of(material, parameter);
     if (!texture) return false;
     for (const FamilyField& field : material_fields[record.kind])
-      if (field.name == name) record.textured |= 1u << field.at;
-    data.put_index(name, lower_texture(scene, *texture, use, last, spectra, out));
+      if (field.name == field_of(name)) record.textured |= 1u << field.at;
+    data.put_index(field_of(name), lower_texture(scene, *texture, use, last, spectra, out));
     return true;
   }
-  bool textured(std::string_view name, TextureUse use) { return textured(name, name, use); }
+  bool textured(const std::string& name, TextureUse use) { return textured(name, name, use); }
 
-  void albedo(const char* name, const Spectrum& value) {
-    if (!textured(name, TextureUse::albedo)) data.put_index(name, spectra.add_reflectance(value));
+  void albedo(const std::string& name, const Spectrum& value) {
+    if (!textured(name, TextureUse::albedo)) data.put_index(field_of(name), spectra.add_reflectance(value));
   }
-  void unbounded(const char* name, const Spectrum& value) {
-    if (!textured(name, TextureUse::unbounded)) data.put_index(name, spectra.add_unbounded(value));
+  void unbounded(const std::string& name, const Spectrum& value) {
+    if (!textured(name, TextureUse::unbounded)) data.put_index(field_of(name), spectra.add_unbounded(value));
   }
-  void index(const char* name, const Spectrum& value) {
-    data.put_index(name, spectra.add_unbounded(value));
+  void index(const std::string& name, const Spectrum& value) {
+    data.put_index(field_of(name), spectra.add_unbounded(value));
     if ((material_traits[record.kind] & trait_dispersive) != 0 && !is_constant(value)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
   }
-  void number(const char* name, double value, double, double) {
-    if (!textured(name, TextureUse::number)) data.put(name, value);
+  void number(const std::string& name, double value, double, double) {
+    if (!textured(name, TextureUse::number)) data.put(field_of(name), value);
   }
-  void roughness(double alpha_u, double alpha_v) {
-    number("alpha_u", alpha_u, 0, 0);
-    number("alpha_v", alpha_v, 0, 0);
+  void whole(const char* name, int value, int, int) { data.put(name, value); }
+  void parts(const std::array<std::uint32_t, 2>& materials) {
+    data.put_index("first", materials[0]);
+    data.put_index("second", materials[1]);
   }
-  void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
-    unbounded("eta", reflectance ? ConstantSpectrum{1} : eta);
+  void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+    data.put("is_color", reflectance ? 1 : 0);
+    if (reflectance ? textured("reflectance", "pigment", TextureUse::albedo)
+                    : textured("sigma_a", "pigment", TextureUse::unbounded))
+      return;
+    data.put_index("pigment", reflectance ? spectra.add_reflectance(*reflectance) : spectra.add_unbounded(sigma_a));
+  }
+  void roughness(double alpha_u, double alpha_v, const std::string& prefix = "") {
+    number(prefix + "alpha_u", alpha_u, 0, 0);
+    number(prefix + "alpha_v", alpha_v, 0, 0);
+  }
+  void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
+    unbounded(prefix + "eta", reflectance ? ConstantSpectrum{1} : eta);
     if (!reflectance)
-      unbounded("k", k);
-    else if (!textured("reflectance", "k", TextureUse::albedo, texture_extinction))
-      data.put_index("k", spectra.add_extinction(*reflectance));
+      unbounded(prefix + "k", k);
+    else if (!textured("reflectance", prefix + "k", TextureUse::albedo, texture_extinction))
+      data.put_index(field_of(prefix + "k"), spectra.add_extinction(*reflectance));
   }
 };
 

@@ -104,7 +104,13 @@ void check(const Scene& scene, const MaterialEdit& edit) {
   const Material& material = at(scene.materials, edit.material, "material");
   Scene one;
   if (!edit.textures.empty()) one.textures = scene.textures;
-  one.materials.push_back({edit.to, material.name, material.where, edit.textures});
+  if (std::holds_alternative<MixMaterial>(edit.to)) {
+    one.materials = scene.materials;
+    one.textures = scene.textures;
+    one.materials[edit.material] = {edit.to, material.name, material.where, edit.textures};
+  } else {
+    one.materials.push_back({edit.to, material.name, material.where, edit.textures});
+  }
   check_alone(std::move(one), scene);
 }
 

@@ -33,6 +33,9 @@ struct Material {
   std::optional<std::uint32_t> displacement = {}, normalmap = {};
 };
 
+/// What is said of a number that is not within these: "must lie between", or "must be from ... up" where `high` is infinite.
+std::string must_lie_within(double low, double high);
+
 /// The texture that a field is, by its index in Scene::textures.
 inline std::optional<std::uint32_t> texture_of(const Material& material, std::string_view field) {
   for (const TexturedField& one : material.textures)

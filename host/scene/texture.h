@@ -30,8 +30,8 @@ struct Texture {
   SourceLocation where;
 };
 
-/// A parameter that is a texture: the field by its name in kernels/shared/materials.def ("reflectance" of a metal too), and the
-/// index into Scene::textures.
+/// A parameter that is a texture: the field by its name in kernels/shared/materials.def ("reflectance" of a metal too) with the
+/// dots of scene files ("interface.alpha_u"), and the index into Scene::textures.
 struct TexturedField {
   std::string field;
   std::uint32_t texture = 0;

@@ -3,6 +3,7 @@
 //
 // What the model may not hold.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -39,6 +40,7 @@ class Validator {
       std::visit([&](const auto& m) { m.fields(m, Fields{*this, material.where}); }, material.model);
       if (textures_are_sound) textured(material);
     }
+    mixes();
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
       for (const Shape& one : object.shapes) shape(one);
@@ -163,12 +165,19 @@ class Validator {
     void unbounded(const char* name, const Spectrum&) { is_float[name] = false; }
     void index(const char*, const Spectrum&) {}
     void number(const char* name, double, double, double) { is_float[name] = true; }
-    void roughness(double, double) { is_float["alpha_u"] = is_float["alpha_v"] = true; }
-    void metal(const Spectrum&, const Spectrum&, const std::optional<Spectrum>& reflectance) {
+    void whole(const char*, int, int, int) {}
+    void parts(const std::array<std::uint32_t, 2>&) {}
+    void pigment(const Spectrum&, const std::optional<Spectrum>& reflectance) {
+      is_float[reflectance ? "reflectance" : "sigma_a"] = false;
+    }
+    void roughness(double, double, const std::string& prefix = "") {
+      is_float[prefix + "alpha_u"] = is_float[prefix + "alpha_v"] = true;
+    }
+    void metal(const Spectrum&, const Spectrum&, const std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
       if (reflectance)
         is_float["reflectance"] = false;
       else
-        is_float["eta"] = is_float["k"] = false;
+        is_float[prefix + "eta"] = is_float[prefix + "k"] = false;
     }
   };
 
@@ -207,6 +216,33 @@ class Validator {
     }
   }
 
+  /// Parts of mixes are materials that there are, and no mix is one of its own parts.
+  void mixes() {
+    enum class State { unseen, open, done };
+    std::vector<State> states(scene_.materials.size(), State::unseen);
+    std::vector<std::uint32_t> open;  // each a part of the one before
+    for (std::uint32_t i = 0; i < states.size(); ++i) {
+      if (states[i] == State::unseen) open.push_back(i);
+      while (!open.empty()) {
+        const std::uint32_t at = open.back();
+        const auto* mix = std::get_if<MixMaterial>(&scene_.materials[at].model);
+        const bool first_time = states[at] == State::unseen;
+        states[at] = first_time && mix ? State::open : State::done;
+        if (states[at] == State::done) {
+          open.pop_back();
+          continue;
+        }
+        for (const std::uint32_t part : mix->materials)
+          if (part >= states.size())
+            error(scene_.materials[at].where, "a mix has a material that does not exist");
+          else if (states[part] == State::open)
+            error(scene_.materials[at].where, "a mix is a part of itself");
+          else if (states[part] == State::unseen)
+            open.push_back(part);
+      }
+    }
+  }
+
   /// Of the calls of materials.def and lights.def.
   struct Fields {
     Validator& validator;
@@ -216,16 +252,23 @@ class Validator {
     void unbounded(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
     void index(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
     void number(const char* name, double value, double low, double high) {
-      if (!(value >= low && value <= high))
-        validator.error(where, std::string(name) + " must lie between " + std::to_string(low) + " and " + std::to_string(high));
+      if (!(value >= low && value <= high && std::isfinite(value)))
+        validator.error(where, std::string(name) + ' ' + must_lie_within(low, high));
     }
-    void roughness(double u, double v) {
+    void whole(const char* name, int value, int low, int high) { number(name, value, low, high); }
+    void parts(const std::array<std::uint32_t, 2>&) {}  // mixes()
+    void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+      unbounded("sigma_a", sigma_a);
+      if (reflectance) albedo("reflectance", *reflectance);
+    }
+    void roughness(double u, double v, const char* = "") {
       if (!(u >= 0 && v >= 0 && std::isfinite(u) && std::isfinite(v)))
         validator.error(where, "the roughness must be finite and from 0 up");
     }
-    void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
-      unbounded("eta", eta);
-      unbounded("k", k);
+    void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance,
+               const std::string& prefix = "") {
+      unbounded((prefix + "eta").c_str(), eta);
+      unbounded((prefix + "k").c_str(), k);
       if (reflectance) albedo("reflectance", *reflectance);
     }
 

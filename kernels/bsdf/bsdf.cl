@@ -4,34 +4,39 @@
 // The one door to all BSDFs. Local frame: n = (0, 0, 1) outward, wo and wi unit and away from the surface, z < 0: inside.
 // Dispersive materials (bsdf_is_dispersive) act at the hero wavelength, component 0, alone: components 1..3 of what they evaluate
 // and of their weights are 0. The caller makes up for them once a path, by 4 on component 0 (or by a quarter of its pdf).
+// Of stochastic materials (trait_stochastic) values are unbiased estimates and weights those of a path through them; their densities are
+// fit for weighing strategies against each other, integrate to 1 at most, and are the same at each call.
 //
 // A material of materials.def is a file of this folder by its name, with
 //   void NAME_make(m, b)                            its parameters (material_albedo and its like) at a point
 //   int NAME_is_specular(b)                         nothing but delta scattering
 //   float4 NAME_eval(b, inside, wo, wi, pdf)        f |cos wi| and its density; *pdf is 0 before. Not asked of what is specular
 //   int NAME_sample(b, inside, smooth, wo, u_component, u, s)   smooth: NAME_is_specular
-//   float4 NAME_albedo(b, wo)
-// in a frame mirrored so that wo.z > 0; inside: it was not.
+//   float4 NAME_directional_albedo(b, wo)
+// in a frame mirrored so that wo.z > 0; inside: it was not. That of a CHOICE has
+//   uint NAME_part(m, u)                            the material in its place; *u, in [0, 1) and used up, is in [0, 1) again
 #ifndef CAPLET_BSDF_BSDF_CL
 #define CAPLET_BSDF_BSDF_CL
 
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/{materials}.cl"
 
-// Material number `material` at a place of a surface, at four wavelengths (nm).
+// Material number `material`, which bsdf_chosen gave, at a place of a surface, at four wavelengths (nm).
 static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda) {
   __global const MaterialRecord* record = materials->materials + material;
   const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
   Bsdf b;
   b.kind = record->kind;
   b.flags = record->flags;
-  b.reflectance = b.eta = b.k = (float4)(0.0f);
-  b.alpha_u = b.alpha_v = 0.0f;
+  b.random = 0u;
+  b.reflectance = b.transmittance = b.eta = b.k = (float4)(0.0f);
+  b.alpha_u = b.alpha_v = b.tilt = 0.0f;
   switch (b.kind) {
 #define MATERIAL(name, traits) \
   case material_##name:        \
     name##_make(&m, &b);       \
     break;
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: break;
@@ -39,11 +44,30 @@ static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra,
   return b;
 }
 
+// The material that is chosen where a surface has `material`, which is that or a part of a mix. u in [0, 1).
+static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda, float u) {
+  for (;;) {
+    __global const MaterialRecord* record = materials->materials + material;
+    const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
+    switch (record->kind) {
+#define MATERIAL(name, traits)
+#define CHOICE(name, traits)           \
+  case material_##name:                \
+    material = name##_part(&m, &u);    \
+    break;
+#include "rows/materials.def"
+#undef MATERIAL
+      default: return material;
+    }
+  }
+}
+
 // Nothing but delta scattering.
 static inline int bsdf_is_specular(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
   case material_##name: return name##_is_specular(b);
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: return 0;
@@ -54,6 +78,7 @@ static inline int bsdf_is_opaque(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
   case material_##name: return ((traits)&trait_opaque) != 0;
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: return 0;
@@ -72,6 +97,7 @@ static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   switch (b->kind) {
 #define MATERIAL(name, traits) \
   case material_##name: return name##_eval(b, inside, wo, wi, pdf);
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: return (float4)(0.0f);
@@ -90,6 +116,7 @@ static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float
   case material_##name:                                                      \
     scattered = name##_sample(b, inside, smooth, wo, u_component, u, s); \
     break;
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: break;
@@ -105,7 +132,8 @@ static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float
 static inline float4 bsdf_albedo(const Bsdf* b, float3 wo) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return name##_albedo(b, wo);
+  case material_##name: return name##_directional_albedo(b, wo);
+#define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
     default: return (float4)(0.0f);

@@ -12,9 +12,28 @@
 #include "textures/textures.cl"
 
 enum {
-  // Whether some material of the program's may be dispersive.
+  // Whether some material of the program's may be dispersive; has values that are estimates; stands for others; is a coat over a metal.
   any_dispersive_material = 0
 #define MATERIAL(name, traits) || ((traits)&trait_dispersive) != 0
+#include "rows/materials.def"
+#undef MATERIAL
+};
+enum {
+  any_stochastic_material = 0
+#define MATERIAL(name, traits) || ((traits)&trait_stochastic) != 0
+#include "rows/materials.def"
+#undef MATERIAL
+};
+enum {
+  any_choice_material = 0
+#define MATERIAL(name, traits)
+#define CHOICE(name, traits) || 1
+#include "rows/materials.def"
+#undef MATERIAL
+};
+enum {
+  any_metal_base = 0
+#define MATERIAL(name, traits) || ((traits)&trait_metal_base) != 0
 #include "rows/materials.def"
 #undef MATERIAL
 };
@@ -23,12 +42,22 @@ enum {
 // refraction wo + eta wi vanishes.
 #define CAPLET_ETA_MATCHED 1e-4f
 
-// A BSDF at four wavelengths: what <name>_make takes from a material's data. A field is one material's or several's; eta is relative to
-// the outside (whose index is 1).
+// What is over the base of a coated material (layered.cl): an interface of relative index eta, and a layer of that thickness below it.
 typedef struct {
-  uint kind, flags;
-  float4 reflectance, eta, k;
+  float4 albedo;
+  float eta, alpha_u, alpha_v;
+  float thickness, g;
+  int max_depth, samples;
+} BsdfCoat;
+
+// A BSDF at four wavelengths: what <name>_make takes from a material's data. A field is one material's or several's; eta is relative to
+// the outside (whose index is 1). random: the key of the numbers that estimates take (trait_stochastic); the caller's, after _make.
+typedef struct {
+  uint kind, flags, random;
+  float4 reflectance, transmittance, eta, k;
   float alpha_u, alpha_v;
+  float tilt;  // of hair's scales, radians
+  BsdfCoat coat;
 } Bsdf;
 
 // weight = f |cos wi| / pdf at each wavelength. pdf: solid angle; the probability itself where `specular`. eta_scale: 1, and the
@@ -67,6 +96,10 @@ static inline float4 material_albedo(const MaterialPoint* m, int at) {
 static inline float material_number(const MaterialPoint* m, int at) {
   if (material_is_textured(m, at)) return fmax(material_texture(m, at).x, 0.0f);
   return m->data[at];
+}
+// A number of either sign.
+static inline float material_signed(const MaterialPoint* m, int at) {
+  return material_is_textured(m, at) ? material_texture(m, at).x : m->data[at];
 }
 
 // Roughness as GGX takes it (kinds.h).

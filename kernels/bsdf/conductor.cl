@@ -48,6 +48,6 @@ static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3
   return s->pdf > 0.0f;
 }
 
-static inline float4 conductor_albedo(const Bsdf* b, float3 wo) { return fresnel_conductor(fabs(wo.z), b->eta, b->k); }
+static inline float4 conductor_directional_albedo(const Bsdf* b, float3 wo) { return fresnel_conductor(fabs(wo.z), b->eta, b->k); }
 
 #endif

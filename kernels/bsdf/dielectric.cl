@@ -77,7 +77,7 @@ static inline int dielectric_sample(const Bsdf* b, int inside, int smooth, float
   return s->pdf > 0.0f && !isinf(s->pdf);
 }
 
-static inline float4 dielectric_albedo(const Bsdf* b, float3 wo) {
+static inline float4 dielectric_directional_albedo(const Bsdf* b, float3 wo) {
   (void)b, (void)wo;
   return (float4)(1.0f);
 }

@@ -32,7 +32,7 @@ static inline int diffuse_sample(const Bsdf* b, int inside, int smooth, float3 w
   return s->wi.z > 0.0f;
 }
 
-static inline float4 diffuse_albedo(const Bsdf* b, float3 wo) {
+static inline float4 diffuse_directional_albedo(const Bsdf* b, float3 wo) {
   (void)wo;
   return b->reflectance;
 }

@@ -34,6 +34,13 @@ static inline float ggx_visible_over_cos(float3 wo, float3 m, float alpha_u, flo
 // G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Separable Smith: G2 = G1 G1.
 static inline float ggx_masking(float3 wi, float alpha_u, float alpha_v) { return ggx_g1(wi, alpha_u, alpha_v); }
 
+// The same for height-correlated masking (Heitz 2014, 99): G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
+static inline float ggx_correlated_masking(float3 wo, float3 wi, float alpha_u, float alpha_v) {
+  const float zo = fabs(wo.z), zi = fabs(wi.z);
+  const float so = ggx_stretched(wo, alpha_u, alpha_v), si = ggx_stretched(wi, alpha_u, alpha_v);
+  return zi * (so + zo) / (zi * so + zo * si);
+}
+
 // A normal visible from wo (wo.z > 0). u in [0, 1)^2.
 static inline float3 ggx_sample_visible(float3 wo, float alpha_u, float alpha_v, float2 u) {
   const float3 w = normalize((float3)(alpha_u * wo.x, alpha_v * wo.y, wo.z));

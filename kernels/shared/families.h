@@ -24,6 +24,7 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_number 1
 #define CAPLET_FLOATS_OF_matrix 12
 #define CAPLET_FLOATS_OF_mapping 13
+#define CAPLET_FLOATS_OF_material 1
 
 // spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
 // textures, which share names with lights: mix_texture_at_amount, mix_texture_floats.
@@ -70,6 +71,7 @@ enum {
 #define CAPLET_FIELD_number(function, at) CAPLET_FIELD_spectrum(function, at)
 #define CAPLET_FIELD_matrix(function, at) CAPLET_FIELD_vector(function, at)
 #define CAPLET_FIELD_mapping(function, at) CAPLET_FIELD_vector(function, at)
+#define CAPLET_FIELD_material(function, at) CAPLET_FIELD_spectrum(function, at)
 #define MATERIAL(name, traits)
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/materials.def"
@@ -94,6 +96,7 @@ enum {
 #undef CAPLET_FIELD_number
 #undef CAPLET_FIELD_matrix
 #undef CAPLET_FIELD_mapping
+#undef CAPLET_FIELD_material
 
 #ifdef __cplusplus
 

@@ -40,7 +40,9 @@ enum {
 // Traits of materials (materials.def).
 enum {
   trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
-  trait_opaque = 2       // it scatters light on the side alone that it comes from
+  trait_opaque = 2,      // it scatters light on the side alone that it comes from
+  trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
+  trait_metal_base = 8   // a coat over a metal (layered.cl)
 };
 
 enum {

@@ -43,6 +43,11 @@ typedef struct {
   uint seed;  // of the pixel
 } PathSample;
 
+// A key for numbers that a scattering takes beside those of dimensions.def.
+static inline uint path_hash(PathSample at, uint depth) {
+  return hash_combine(hash_combine(at.seed ^ 0xb5297a4du, at.sample), depth);
+}
+
 // Where pixel number `pixel` of a batch is in the full image. A window's pixels are numbered tile by tile of 8 x 8, so that camera rays
 // of near numbers are neighbours: tiles in rows from the top left, within each likewise; those at the right and lower edges are smaller.
 static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {

@@ -168,11 +168,17 @@ static void stage_item(const Stage* g, uint item) {
     cone.x = fabs(cone.x + cone.y * (hit.t * length(direction)));
     cone_footprint(&place, direction, cone.x, s.dpdu, s.dpdv);
   }
-  const int bent = any_bump != 0 && g->materials.materials[s.material].bump != CAPLET_NONE;
-  if (bent) s.ns = bump_normal(&g->materials, &g->spectra, s.material, &place, s.ns, s.dpdu, s.dpdv);
+  uint material = s.material;
+  if (any_choice_material) {
+    const PathSample here = path_sample(g->batch.batch, g->view.view->seed, path);
+    const float u = sampler_2d(here.seed, here.sample, SCATTERING_SAMPLE(roulette, depth)).y;
+    material = bsdf_chosen(&g->materials, &g->spectra, material, &place, wavelengths, u);
+  }
+  const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
+  if (bent) s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv);
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
-  const Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, s.material, &place, wavelengths);
+  Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
   if (depth >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
@@ -183,6 +189,7 @@ static void stage_item(const Stage* g, uint item) {
   }
 
   const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
+  if (any_stochastic_material) bsdf.random = path_hash(at, depth);
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
     sample_light(g, &scene, path, &s, &frame, &bsdf, bent, wo_local, wo, throughput, wavelengths,

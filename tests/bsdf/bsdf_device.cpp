@@ -13,19 +13,34 @@ namespace {
 
 const char* const kernels = R"CL(
 #include "bsdf/bsdf.cl"
+#include "math/rng.cl"
 
-#define BSDF uint kind, uint flags, float reflectance, float eta, float k, float alpha_u, float alpha_v
+#define BSDF uint kind, uint flags, uint key, __global const float* p
 
-// The same value at all four wavelengths.
-#define MAKE_BSDF                                                                                    \
-  Bsdf b;                                                                                            \
-  b.kind = kind;                                                                                     \
-  b.flags = flags;                                                                                   \
-  b.reflectance = (float4)(reflectance);                                                             \
-  b.eta = (float4)(eta);                                                                             \
-  b.k = (float4)(k);                                                                                 \
-  b.alpha_u = alpha_u;                                                                               \
-  b.alpha_v = alpha_v;
+// The same value at all four wavelengths. Numbers of estimates differ from call to call.
+static Bsdf given_bsdf(uint kind, uint flags, uint random, __global const float* p) {
+  Bsdf b;
+  b.kind = kind;
+  b.flags = flags;
+  b.random = random;
+  b.reflectance = (float4)(p[0]);
+  b.eta = (float4)(p[1]);
+  b.k = (float4)(p[2]);
+  b.alpha_u = p[3];
+  b.alpha_v = p[4];
+  b.transmittance = (float4)(p[5]);
+  b.coat.eta = p[6];
+  b.coat.alpha_u = p[7];
+  b.coat.alpha_v = p[8];
+  b.coat.thickness = p[9];
+  b.coat.albedo = (float4)(p[10]);
+  b.coat.g = p[11];
+  b.coat.max_depth = (int)p[12];
+  b.coat.samples = (int)p[13];
+  b.tilt = p[14];
+  return b;
+}
+#define MAKE_BSDF Bsdf b = given_bsdf(kind, flags, hash_combine(hash_mix(key), i), p);
 
 __kernel void sample_bsdf(BSDF, float4 wo, __global const float* u, __global float* out, uint count) {
   const uint i = (uint)get_global_id(0);
@@ -49,7 +64,9 @@ __kernel void evaluate_bsdf(BSDF, __global const float* wo, __global const float
   MAKE_BSDF
   float pdf, exchanged_pdf;
   const float3 o = vload3(i, wo), d = vload3(i, wi);
-  const float value = bsdf_eval(&b, o, d, &pdf).x, exchanged = bsdf_eval(&b, d, o, &exchanged_pdf).x;
+  const float value = bsdf_eval(&b, o, d, &pdf).x;
+  b.random = hash_mix(b.random + 1u);
+  const float exchanged = bsdf_eval(&b, d, o, &exchanged_pdf).x;
   vstore4((float4)(value, pdf, exchanged, exchanged_pdf), i, out);
 }
 
@@ -66,6 +83,7 @@ __kernel void integrate_bsdf(BSDF, float4 wo, int rows, int columns, int steps, 
     for (int x = 0; x < steps; ++x) {
       const float phi = ((float)(column + x) + 0.5f) * width;
       float pdf;
+      b.random = hash_mix(b.random + 1u);
       line_values += bsdf_eval(&b, wo.xyz, (float3)(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)), &pdf).x;
       line_densities += pdf;
     }
@@ -88,6 +106,11 @@ std::vector<float> flat(const std::vector<Direction>& directions) {
 
 }  // namespace
 
+std::vector<float> BsdfParameters::values() const {
+  return {reflectance,  eta,       k,      alpha_u, alpha_v,   transmittance, coat_eta, coat_alpha_u,
+          coat_alpha_v, thickness, albedo, g,       max_depth, samples,       tilt};
+}
+
 Direction direction(double theta, double phi) {
   return {static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::sin(theta) * std::sin(phi)),
           static_cast<float>(std::cos(theta))};
@@ -103,12 +126,12 @@ std::vector<float> random_numbers(std::size_t count, unsigned seed) {
 BsdfOnDevice::BsdfOnDevice(const RowMasks& rows)
     : device_(test_device()), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels, rows), "")) {}
 
-cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf) const {
+cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf, const Buffer<float>& values) const {
   cl::Kernel kernel = program_.kernel(name);
   kernel.setArg(0, cl_uint{bsdf.kind});
   kernel.setArg(1, cl_uint{bsdf.flags});
-  cl_uint argument = 2;
-  for (const float value : {bsdf.reflectance, bsdf.eta, bsdf.k, bsdf.alpha_u, bsdf.alpha_v}) kernel.setArg(argument++, value);
+  kernel.setArg(2, cl_uint{key});
+  kernel.setArg(3, values.handle());
   return kernel;
 }
 
@@ -116,11 +139,13 @@ std::vector<SampleRow> BsdfOnDevice::sample(const BsdfParameters& bsdf, const Di
   const std::size_t count = u.size() / 3;
   const Buffer<float> numbers(device_, std::span<const float>(u));
   const Buffer<float> out(device_, 12 * count);
-  cl::Kernel run = kernel("sample_bsdf", bsdf);
-  run.setArg(7, four(wo));
-  run.setArg(8, numbers.handle());
-  run.setArg(9, out.handle());
-  run.setArg(10, static_cast<cl_uint>(count));
+  const std::vector<float> values_of_bsdf = bsdf.values();
+  const Buffer<float> parameters(device_, std::span<const float>(values_of_bsdf));
+  cl::Kernel run = kernel("sample_bsdf", bsdf, parameters);
+  run.setArg(4, four(wo));
+  run.setArg(5, numbers.handle());
+  run.setArg(6, out.handle());
+  run.setArg(7, static_cast<cl_uint>(count));
   launch(device_, run, count, 64);
   const std::vector<float> values = out.read();
   std::vector<SampleRow> rows(count);
@@ -138,11 +163,13 @@ std::vector<EvalRow> BsdfOnDevice::evaluate(const BsdfParameters& bsdf, const st
   const Buffer<float> wo_buffer(device_, std::span<const float>(wo_values)),
       wi_buffer(device_, std::span<const float>(wi_values));
   const Buffer<float> out(device_, 4 * count);
-  cl::Kernel run = kernel("evaluate_bsdf", bsdf);
-  run.setArg(7, wo_buffer.handle());
-  run.setArg(8, wi_buffer.handle());
-  run.setArg(9, out.handle());
-  run.setArg(10, static_cast<cl_uint>(count));
+  const std::vector<float> values_of_bsdf = bsdf.values();
+  const Buffer<float> parameters(device_, std::span<const float>(values_of_bsdf));
+  cl::Kernel run = kernel("evaluate_bsdf", bsdf, parameters);
+  run.setArg(4, wo_buffer.handle());
+  run.setArg(5, wi_buffer.handle());
+  run.setArg(6, out.handle());
+  run.setArg(7, static_cast<cl_uint>(count));
   launch(device_, run, count, 64);
   const std::vector<float> values = out.read();
   std::vector<EvalRow> rows(count);
@@ -154,13 +181,15 @@ std::vector<float> BsdfOnDevice::integrate(const BsdfParameters& bsdf, const Dir
                                            int steps) const {
   const auto count = static_cast<std::size_t>(rows * columns);
   const Buffer<float> out(device_, 2 * count);
-  cl::Kernel run = kernel("integrate_bsdf", bsdf);
-  run.setArg(7, four(wo));
-  run.setArg(8, cl_int{rows});
-  run.setArg(9, cl_int{columns});
-  run.setArg(10, cl_int{steps});
-  run.setArg(11, out.handle());
-  run.setArg(12, static_cast<cl_uint>(count));
+  const std::vector<float> values_of_bsdf = bsdf.values();
+  const Buffer<float> parameters(device_, std::span<const float>(values_of_bsdf));
+  cl::Kernel run = kernel("integrate_bsdf", bsdf, parameters);
+  run.setArg(4, four(wo));
+  run.setArg(5, cl_int{rows});
+  run.setArg(6, cl_int{columns});
+  run.setArg(7, cl_int{steps});
+  run.setArg(8, out.handle());
+  run.setArg(9, static_cast<cl_uint>(count));
   launch(device_, run, count, 16);
   return out.read();
 }

@@ -19,6 +19,12 @@ struct BsdfParameters {
   std::string name;
   uint kind = material_diffuse, flags = 0;
   float reflectance = 1, eta = 1.5f, k = 0, alpha_u = 0, alpha_v = 0;
+  float transmittance = 0;
+  float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0, max_depth = 100, samples = 1;
+  float tilt = 0;  // radians
+
+  /// All of them in the order in which kernels take them.
+  std::vector<float> values() const;
 };
 
 using Direction = std::array<float, 3>;
@@ -39,6 +45,8 @@ struct EvalRow {
 
 class BsdfOnDevice {
  public:
+  /// Numbers of estimates are keyed by `key` and the number of the sample or value.
+  uint key = 0;
   /// Kernels: for the rows of the lists that a mask names.
   explicit BsdfOnDevice(const RowMasks& rows = {});
   /// u: three numbers (component, u.x, u.y) a sample.
@@ -50,7 +58,7 @@ class BsdfOnDevice {
   std::vector<float> integrate(const BsdfParameters& bsdf, const Direction& wo, int rows, int columns, int steps) const;
 
  private:
-  cl::Kernel kernel(const char* name, const BsdfParameters& bsdf) const;
+  cl::Kernel kernel(const char* name, const BsdfParameters& bsdf, const Buffer<float>& values) const;
   Device device_;
   Program program_;
 };

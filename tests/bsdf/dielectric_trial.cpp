@@ -26,6 +26,7 @@ BsdfParameters glass(float alpha_u, float alpha_v, float eta = 1.5f) {
 
 BsdfTrial dielectric_trial() {
   BsdfTrial trial;
+  trial.bends = true;
   for (const auto& [u, v] : roughnesses)
     trial.cases.push_back({glass(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.4, std::numbers::pi - 1.2}});
   trial.unlike = {{glass(0.3f, 0.3f), glass(0.3f, 0.3f, 1.55f)}};

@@ -18,11 +18,26 @@ namespace caplet::test {
 struct KnownValue {
   BsdfParameters bsdf;
   Direction wo, wi;
-  double value, pdf;
-  double tolerance;  // relative, of both
+  double value, pdf;  // a negative density: that it is not known
+  double tolerance;   // relative, of both
+};
+
+/// What a sample must be: by u_component alone, for delta scattering.
+struct KnownSample {
+  BsdfParameters bsdf;
+  Direction wo;
+  float u_component;
+  Direction wi;
+  double weight, pdf;
+  double tolerance;
 };
 
 struct BsdfTrial {
+  /// Values are estimates and densities approximate (trait_stochastic): means are compared, and weights with values
+  /// (estimates_test.cpp).
+  bool estimates = false;
+  bool bends = false;  // transmission scales radiance by the index squared
+  bool reciprocal = true;
   /// One that scatters over directions, and the polar angles of wo at which it is tried.
   struct Case {
     BsdfParameters bsdf;
@@ -32,6 +47,7 @@ struct BsdfTrial {
   /// Two whose densities differ by little: samples of the first are not of the second.
   std::vector<std::array<BsdfParameters, 2>> unlike;
   std::vector<KnownValue> values;
+  std::vector<KnownSample> samples;
   /// Of the scene, such that lowering it gives this kind.
   Material model;
   /// The most that f |cos wi| integrates to, and that a sample weighs.
@@ -53,6 +69,7 @@ struct MaterialOnTrial {
 const std::vector<MaterialOnTrial>& materials_on_trial();
 
 #define MATERIAL(name, ...) BsdfTrial name##_trial();
+#define CHOICE(name, ...)
 #include "shared/materials.def"
 #undef MATERIAL
 

@@ -102,9 +102,14 @@ void HOST(light_infinite)(const HostGroups* g, const float* direction, const flo
   vstore4(light_infinite(&g->spectra, &g->lights, three(direction), four(lambda), last_pdf, specular), 0, out);
 }
 
-int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* u, HostBsdfSample* out) {
+static Bsdf host_bsdf(const HostGroups* g, uint material, const float* lambda) {
   const TexturePlace place = texture_place((float2)(0.0f));
-  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, &place, four(lambda));
+  const uint chosen = bsdf_chosen(&g->materials, &g->spectra, material, &place, four(lambda), 0.3f);
+  return bsdf_make(&g->materials, &g->spectra, chosen, &place, four(lambda));
+}
+
+int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* u, HostBsdfSample* out) {
+  const Bsdf b = host_bsdf(g, material, lambda);
   BsdfSample s;
   if (!bsdf_sample(&b, three(wo), u[0], (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
@@ -117,16 +122,14 @@ int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, c
 }
 
 float HOST(bsdf_eval)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* wi, float* f) {
-  const TexturePlace place = texture_place((float2)(0.0f));
-  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, &place, four(lambda));
+  const Bsdf b = host_bsdf(g, material, lambda);
   float pdf;
   vstore4(bsdf_eval(&b, three(wo), three(wi), &pdf), 0, f);
   return pdf;
 }
 
 void HOST(bsdf_albedo)(const HostGroups* g, uint material, const float* lambda, const float* wo, float* albedo) {
-  const TexturePlace place = texture_place((float2)(0.0f));
-  const Bsdf b = bsdf_make(&g->materials, &g->spectra, material, &place, four(lambda));
+  const Bsdf b = host_bsdf(g, material, lambda);
   vstore4(bsdf_albedo(&b, three(wo)), 0, albedo);
 }
 

@@ -177,9 +177,32 @@ Shape ModelMaker::shape(unsigned kind) {
 Material ModelMaker::material() {
   Material out;
   const double u = numbers_.fraction(), v = numbers_.below(2) == 0 ? u : numbers_.fraction();
-  switch (numbers_.below(3)) {
+  const auto layer = [&] {
+    CoatLayer coat;
+    coat.thickness = numbers_.fraction();
+    coat.albedo = spectrum(1);
+    coat.g = 1.8 * numbers_.fraction() - 0.9;
+    coat.max_depth = static_cast<int>(numbers_.below(20));
+    return coat;
+  };
+  switch (numbers_.below(8)) {
     case 0:
       out.model = DiffuseMaterial{spectrum(1)};
+      break;
+    case 2:
+      out.model = ThinDielectricMaterial{spectrum(2)};
+      break;
+    case 3:
+      out.model = DiffuseTransmissionMaterial{spectrum(1), spectrum(1), numbers_.fraction()};
+      break;
+    case 4:
+      out.model = CoatedDiffuseMaterial{spectrum(1), spectrum(2), u, v, layer()};
+      break;
+    case 5:
+      out.model = CoatedConductorMaterial{spectrum(2), u, v, spectrum(4), spectrum(4), std::nullopt, v, u, layer()};
+      break;
+    case 6:
+      out.model = HairMaterial{spectrum(4), std::nullopt, 1 + u, u, v, 4 * v};
       break;
     case 1:
       out.model = ConductorMaterial{spectrum(4), spectrum(4), std::nullopt, u, v};

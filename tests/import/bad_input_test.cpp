@@ -128,8 +128,8 @@ const Bad bad_scenes[] = {
      "scene.pbrt: the image of 100000 x 100000 pixels is larger than 2^28 pixels"},
     {"BadCrop", "Film \"rgb\" \"float cropwindow\" [0 1 .5 .5]\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:12: Film \"rgb\": \"cropwindow\" must be x min, x max, y min, y max within 0 and 1"},
-    {"RefusedMaterial", "WorldBegin\nMaterial \"coateddiffuse\" \"float roughness\" 0\nShape \"sphere\"",
-     "scene.pbrt:2:1: Material \"coateddiffuse\" is not rendered yet"},
+    {"RefusedMaterial", "WorldBegin\nMaterial \"subsurface\" \"float roughness\" 0\nShape \"sphere\"",
+     "scene.pbrt:2:1: Material \"subsurface\" is not rendered yet"},
     {"RefusedMedium",
      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\nMediumInterface \"fog\" \"\"\nShape \"sphere\"",
      "scene.pbrt:3:17: the medium \"fog\" is a MakeNamedMedium \"homogeneous\" (scene.pbrt:1:1), which is not rendered yet"},
@@ -146,7 +146,7 @@ const Bad bad_scenes[] = {
 INSTANTIATE_TEST_SUITE_P(Import, BadScene, testing::ValuesIn(bad_scenes), [](const auto& row) { return row.param.name; });
 
 TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
-  EXPECT_EQ(complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"hair\"\nShape \"sphere\"").size(), 3u);
+  EXPECT_EQ(complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"subsurface\"\nShape \"sphere\"").size(), 3u);
   std::string many = "WorldBegin\n";
   for (int i = 0; i < 50; ++i) many += "Shape \"sphere\" \"float radius\" -1\n";
   EXPECT_EQ(complaints(many).size(), 21u);

@@ -29,8 +29,11 @@ ImageEncoding image_encoding(Parameters& parameters);
 TextureValue make_texture(const std::string& name, const std::string& kind, const std::string& texture_class,
                           Parameters& parameters, const TextureTable& textures, const TextureContext& context, Scene& scene);
 
+/// The index in the scene of the material that a mix names; none with the reason in `problem`.
+using PartFinder = std::function<std::optional<std::uint32_t>(const std::string& name, std::string& problem)>;
+
 /// The material of an accepted type. The scene gets the textures that its remapped roughness takes.
 Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
-                       Scene& scene);
+                       const PartFinder& part_named, Scene& scene);
 
 }  // namespace caplet::pbrt

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <forward_list>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -92,6 +93,9 @@ class Parameters {
   /// Everything not asked for is an error that lists the nearest name asked for.
   void finish();
 
+  /// A name that is no literal, to ask for.
+  const char* kept(std::string name) { return kept_.emplace_front(std::move(name)).c_str(); }
+
   /// `kind` as for Diagnostics::error.
   void error(std::string_view name, const std::string& message, const std::string& kind = {});
   void error(const std::string& message) { diagnostics_->error(where_, owner_ + ": " + message); }
@@ -118,6 +122,7 @@ class Parameters {
   ColorSpace space_;
   Diagnostics* diagnostics_;
   std::vector<std::string_view> asked_;
+  std::forward_list<std::string> kept_;
 };
 
 }  // namespace caplet::pbrt

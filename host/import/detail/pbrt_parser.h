@@ -55,6 +55,7 @@ class Parser {
     std::string name;
     SourceLocation where;
   };
+  class MaterialMaking;
   struct Medium {
     SourceLocation where;
     std::string type;
@@ -152,6 +153,8 @@ class Parser {
   std::vector<bool> used_materials();
   std::vector<std::uint32_t> make_materials(const std::vector<bool>& used);
   void resolve_materials();
+  void drop_interfaces(const std::vector<std::uint32_t>& index_of_use);
+  void make_hair_one_sided();
   void resolve_instances();
   void present();
 

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Once all is read: which materials are used, made of their statements, and which a shape has.
+#include <algorithm>
+#include <functional>
+
+#include "import/detail/pbrt_materials.h"
+#include "import/detail/pbrt_parser.h"
+
+namespace caplet::pbrt {
+
+namespace {
+
+constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
+
+/// Calls `visit` with every index of a material that a shape has.
+void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit) {
+  visit(shape.material);
+  for (std::uint32_t& material : shape.materials) visit(material);
+  if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    for (std::uint32_t& material : capsules->materials) visit(material);
+  if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
+    for (std::shared_ptr<const Shape>& operand : csg->operands) {
+      auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
+      each_material(*own, visit);
+      operand = std::move(own);
+    }
+}
+
+void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visit) {
+  for (Shape& shape : scene.shapes) each_material(shape, visit);
+  for (Object& object : scene.objects)
+    for (Shape& shape : object.shapes) each_material(shape, visit);
+}
+
+}  // namespace
+
+/// For each Material statement: does a shape have its material, or a mix that a shape has?
+std::vector<bool> Parser::used_materials() {
+  std::vector<bool> used(materials_.size(), false);
+  std::vector<std::size_t> to_follow;
+  const auto use = [&](std::size_t statement) {
+    if (!used[statement]) to_follow.push_back(statement);
+    used[statement] = true;
+  };
+  const auto use_name = [&](const std::string& name) {
+    if (const auto found = named_materials_.find(name); found != named_materials_.end()) use(found->second);
+  };
+  each_material(scene_, [&](std::uint32_t& index) {
+    const MaterialUse& one = uses_[index];
+    if (one.statement)
+      use(*one.statement);
+    else
+      use_name(one.name);
+  });
+  while (!to_follow.empty()) {
+    MaterialStatement& statement = materials_[to_follow.back()];
+    to_follow.pop_back();
+    if (statement.type != "mix") continue;
+    Diagnostics aside;  // what is wrong is said when the mix is made
+    statement.parameters.report_to(aside);
+    if (const Parameter* parts = statement.parameters.values("materials", {"string"}))
+      for (const std::string& name : parts->strings) use_name(name);
+    statement.parameters.report_to(diagnostics_);
+  }
+  return used;
+}
+
+/// Makes the materials of the statements, parts of mixes before these.
+class Parser::MaterialMaking {
+ public:
+  MaterialMaking(Parser& parser, const std::vector<bool>& used) : parser_(parser), used_(used), made_(used.size()) {}
+
+  void make(std::size_t statement) {
+    Made& made = made_[statement];
+    if (made.state != State::unseen) return;
+    made.state = State::open;
+    make_unseen(statement);
+    made.state = State::done;
+  }
+
+  std::vector<std::uint32_t> indices() const {
+    std::vector<std::uint32_t> out;
+    for (const Made& made : made_) out.push_back(made.index);
+    return out;
+  }
+  std::size_t left_out = 0;
+  std::string first_left_out;
+
+ private:
+  enum class State { unseen, open, done };
+  struct Made {
+    State state = State::unseen;
+    std::uint32_t index = 0;  // in the scene
+    bool sound = false;
+  };
+
+  void make_unseen(std::size_t number) {
+    MaterialStatement& statement = parser_.materials_[number];
+    Made& made = made_[number];
+    if (statement.type.empty()) return;
+    Diagnostics aside;
+    Diagnostics& diagnostics = used_[number] ? parser_.diagnostics_ : aside;
+    if (!statement.refusal.empty()) {
+      diagnostics.error(statement.where, statement.refusal, statement.refusal);
+    } else if (statement.type == "interface") {
+      statement.parameters.report_to(diagnostics);
+      statement.parameters.finish();
+      made.index = interface_material;
+    } else {
+      statement.parameters.report_to(diagnostics);
+      const PartFinder part_named = [this](const std::string& name, std::string& problem) { return part(name, problem); };
+      Material material = make_material(statement.type, statement.parameters, parser_.textures_, parser_.texture_context().images,
+                                        part_named, parser_.scene_);
+      material.name = statement.name;
+      made.index = static_cast<std::uint32_t>(parser_.scene_.materials.size());
+      made.sound = !aside.has_errors();
+      if (made.sound) parser_.scene_.materials.push_back(std::move(material));
+    }
+    if (!aside.has_errors()) return;
+    try {
+      aside.finish();
+    } catch (const InputError& error) {
+      if (left_out++ == 0) first_left_out = error.messages().front();
+    }
+  }
+
+  std::optional<std::uint32_t> part(const std::string& name, std::string& problem) {
+    const auto found = parser_.named_materials_.find(name);
+    if (found == parser_.named_materials_.end()) {
+      problem =
+          "names the material " + in_quotes(name) + ", which is not defined" + parser_.nearest(name, parser_.named_materials_);
+      return std::nullopt;
+    }
+    const Made& made = made_[found->second];
+    if (made.state == State::open) {
+      problem = "names the material " + in_quotes(name) + ", of which this is a part";
+      return std::nullopt;
+    }
+    make(found->second);
+    if (made.sound) return made.index;
+    problem = "names the material " + in_quotes(name) +
+              (made.index == interface_material ? ", an interface, of which no mix is made yet" : ", which is wrong itself");
+    return std::nullopt;
+  }
+
+  Parser& parser_;
+  const std::vector<bool>& used_;
+  std::vector<Made> made_;
+};
+
+/// The index in the scene of each statement's material, or interface_material. One that cannot be rendered is an error where a
+/// shape has it; of the others a warning tells.
+std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used) {
+  MaterialMaking making(*this, used);
+  for (std::size_t i = 0; i < materials_.size(); ++i) making.make(i);
+  if (making.left_out > 0 && !diagnostics_.has_errors())
+    diagnostics_.warning(
+        {}, making.first_left_out + " (no shape has this material" +
+                (making.left_out > 1 ? ", nor " + std::to_string(making.left_out - 1) + " others that are wrong)" : ")"));
+  return making.indices();
+}
+
+void Parser::resolve_materials() {
+  const std::vector<std::uint32_t> index_of_statement = make_materials(used_materials());
+  std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
+  for (std::size_t i = 1; i < uses_.size(); ++i) {
+    const MaterialUse& use = uses_[i];
+    const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
+    if (use.statement || named != named_materials_.end())
+      index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
+    else
+      diagnostics_.error(use.where,
+                         "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
+  }
+  drop_interfaces(index_of_use);
+  bool uses_default = false;
+  const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
+  index_of_use[0] = default_index;
+  each_material(scene_, [&](std::uint32_t& material) {
+    uses_default = uses_default || material == 0;
+    material = index_of_use[material];
+  });
+  if (uses_default) scene_.materials.push_back({DiffuseMaterial{}, "default", {main_file_}});
+  make_hair_one_sided();
+}
+
+/// Takes out shapes whose material lets all light pass: without media nothing of them is seen.
+void Parser::drop_interfaces(const std::vector<std::uint32_t>& index_of_use) {
+  const auto is_interface = [&](std::uint32_t use) { return use != 0 && index_of_use[use] == interface_material; };
+  const auto passes = [&](Shape& shape) {
+    const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+    if (is_interface(shape.material) && shape.materials.empty() && !(capsules && !capsules->materials.empty()) &&
+        !std::holds_alternative<CsgShape>(shape.geometry)) {
+      if (shape.emission) diagnostics_.warning(shape.where, "the shape emits nothing, as its material is \"interface\"");
+      return true;
+    }
+    bool some = false;
+    each_material(shape, [&](std::uint32_t& use) { some = some || is_interface(use); });
+    if (some) diagnostics_.error(shape.where, "a part of a shape cannot be of the material \"interface\" yet");
+    return false;
+  };
+  std::erase_if(scene_.shapes, passes);
+  for (Object& object : scene_.objects) std::erase_if(object.shapes, passes);
+}
+
+/// Light that goes through a fibre has left it: its far side is not met.
+void Parser::make_hair_one_sided() {
+  std::vector<bool> hair;
+  for (const Material& material : scene_.materials) hair.push_back(std::holds_alternative<HairMaterial>(material.model));
+  if (std::ranges::find(hair, true) == hair.end()) return;
+  const auto visit = [&](Shape& shape) {
+    bool some = false;
+    each_material(shape, [&](std::uint32_t& material) { some = some || (material < hair.size() && hair[material]); });
+    if (some && is_closed(shape)) shape.one_sided = true;
+  };
+  for (Shape& shape : scene_.shapes) visit(shape);
+  for (Object& object : scene_.objects)
+    for (Shape& shape : object.shapes) visit(shape);
+}
+
+}  // namespace caplet::pbrt

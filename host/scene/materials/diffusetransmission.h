@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <limits>
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// Lambert's law on both sides of a sheet; reflectance and transmittance are scale times these, at most 1 each.
+struct DiffuseTransmissionMaterial {
+  Spectrum reflectance = ConstantSpectrum{0.25}, transmittance = ConstantSpectrum{0.25};
+  double scale = 1;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.albedo("reflectance", self.reflectance);
+    visit.albedo("transmittance", self.transmittance);
+    visit.number("scale", self.scale, 0, std::numeric_limits<double>::infinity());
+  }
+};
+
+}  // namespace caplet
