@@ -9,12 +9,12 @@
 
 enum {
   any_normalmap = 0
-#define TEXTURE(name) || texture_##name == texture_normalmap
+#define TEXTURE(name) | (texture_##name == texture_normalmap)
 #include "rows/textures.def"
 #undef TEXTURE
   ,
   any_displacement = 0
-#define TEXTURE(name) || texture_##name == texture_displacement
+#define TEXTURE(name) | (texture_##name == texture_displacement)
 #include "rows/textures.def"
 #undef TEXTURE
   ,
