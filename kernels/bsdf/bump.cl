@@ -29,7 +29,9 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
   if (bump == CAPLET_NONE) return ns;
   TexturePoint at = {materials, spectra, *place, (float4)(550.0f)};
   float3 n = ns;
-  if (any_normalmap != 0 && (any_displacement == 0 || materials->materials[material].bump_kind == texture_normalmap)) {
+  int is_map = any_normalmap;
+  if (any_displacement != 0) is_map &= materials->materials[material].bump_kind == texture_normalmap;
+  if (is_map) {
     const Frame frame = frame_from_tangent(ns, dpdu);
     const float4 turned = texture_eval(bump, &at);
     n = to_world(&frame, turned.xyz);

@@ -146,7 +146,8 @@ const Bad bad_scenes[] = {
 INSTANTIATE_TEST_SUITE_P(Import, BadScene, testing::ValuesIn(bad_scenes), [](const auto& row) { return row.param.name; });
 
 TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
-  EXPECT_EQ(complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"subsurface\"\nShape \"sphere\"").size(), 3u);
+  EXPECT_EQ(
+      complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"subsurface\"\nShape \"sphere\"").size(), 3u);
   std::string many = "WorldBegin\n";
   for (int i = 0; i < 50; ++i) many += "Shape \"sphere\" \"float radius\" -1\n";
   EXPECT_EQ(complaints(many).size(), 21u);

@@ -108,8 +108,9 @@ TEST(Unused, AreErrorsWhereTheyAreUsed) {
   const std::string world = "WorldBegin\n";
   EXPECT_THAT(complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nNamedMaterial \"a\"\nShape \"sphere\""),
               ElementsAre("scene.pbrt:2:23: Material \"subsurface\" is not rendered yet"));
-  EXPECT_THAT(complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nShape \"sphere\" \"string materials\" \"a\""),
-              ElementsAre("scene.pbrt:2:23: Material \"subsurface\" is not rendered yet"));
+  EXPECT_THAT(
+      complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nShape \"sphere\" \"string materials\" \"a\""),
+      ElementsAre("scene.pbrt:2:23: Material \"subsurface\" is not rendered yet"));
   EXPECT_THAT(
       complaints(world + "MakeNamedMedium \"fog\" \"string type\" \"cloud\"\nMediumInterface \"\" \"fog\"\nShape \"sphere\""),
       ElementsAre("scene.pbrt:3:20: the medium \"fog\" is a MakeNamedMedium \"cloud\" (scene.pbrt:2:1), which is not "

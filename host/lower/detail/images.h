@@ -25,10 +25,10 @@ std::vector<ImageUse> image_uses(const std::vector<Texture>& textures);
 /// One as image_uses has it: where the sides are powers of two, all have wrap 0.
 ImageUse image_use(const TextureImage& image, std::optional<int> wrap);
 
-/// Fills `images`, in the order of image_uses, and `texels`. Images of imagemaps whose sides are no powers of two are resampled to the
-/// next ones by Lanczos' filter of radius 2, as pbrt-v4's are, and have mip levels, down to one texel: a level has half the sides of
-/// that before, at least 1, and its texels are the means of what they cover. Throws InputError where they need more words than 32
-/// bits number.
+/// Fills `images`, in the order of image_uses, and `texels`. Images of imagemaps whose sides are no powers of two are resampled
+/// to the next ones by Lanczos' filter of radius 2, as pbrt-v4's are, and have mip levels, down to one texel: a level has half
+/// the sides of that before, at least 1, and its texels are the means of what they cover. Throws InputError where they need more
+/// words than 32 bits number.
 void lower_images(const Scene& scene, FlatScene& out);
 
 }  // namespace caplet
