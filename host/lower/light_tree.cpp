@@ -138,7 +138,7 @@ void lower_light_tree(std::span<const TreeLight> lights, std::size_t light_count
     if (node.min[0][slot] > node.max[0][slot]) return {};
     const std::int32_t child = node.child[slot];
     if (child >= 0) return {bounds[static_cast<std::size_t>(child)], static_cast<std::uint32_t>(child)};
-    const auto leaf = static_cast<std::size_t>(~child);
+    const auto leaf = static_cast<std::uint32_t>(~child);
     if (node_of_leaf[leaf] >= 0)
       return {bounds[static_cast<std::size_t>(node_of_leaf[leaf])], static_cast<std::uint32_t>(node_of_leaf[leaf])};
     const std::uint32_t first = tree.leaves[leaf].first;

@@ -150,6 +150,8 @@ TEST(Mixes, AreValidated) {
   EXPECT_THAT(said(), ElementsAre());
   scene.materials[1].model = MixMaterial{{0, 1}};
   EXPECT_THAT(said(), testing::Contains(HasSubstr("a mix is a part of itself")));
+  scene.materials[0].model = DiffuseMaterial{};
+  EXPECT_THAT(said(), testing::Contains(HasSubstr("a mix is a part of itself")));  // at once
   scene.materials[1].model = MixMaterial{{7, 7}};
   EXPECT_THAT(said(), testing::Contains(HasSubstr("a mix has a material that does not exist")));
 }

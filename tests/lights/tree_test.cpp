@@ -257,6 +257,39 @@ TEST(LightTree, FlatLampsAreSeenFromTheSideThatShines) {
       }
 }
 
+// Lamps that all look up, on a slope: seen from below its middle but above its lower end, the middle's direction says that none
+// shines.
+TEST(LightTree, LampsBelowTheMiddleOfTheirBoxAreSeen) {
+  Random random(13);
+  Scene scene = ground();
+  TriangleMeshShape mesh;
+  std::vector<dvec3> places;
+  for (int i = 0; i < 64; ++i) {
+    const double x = random.in(-4, 4);
+    const dvec3 corner(x, random.in(-1, 1), 0.3 * x);
+    for (const dvec3& v : {corner, corner + dvec3(0.01, 0, 0), corner + dvec3(0, 0.01, 0)}) mesh.positions.emplace_back(v);
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    places.push_back(corner);
+  }
+  Shape lamp;
+  lamp.geometry = mesh;
+  lamp.emission = AreaEmission{};
+  scene.shapes.push_back(lamp);
+  LightBench bench(lower(scene));
+  int lit = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Receiver at{{random.in(5, 8), random.in(-1, 1), random.in(-1, -0.1)}, dvec3(0)};
+    const std::vector<double> chances = bench.chances(at, places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (at.p.z < places[k].z + 0.01) continue;
+      ++lit;
+      EXPECT_GT(chances[k], 0);
+    }
+  }
+  EXPECT_GT(lit, 300);
+}
+
 // A sun beside many lamps has its half of the choices that are even, and a share of those by power.
 TEST(LightTree, IsOneChoiceBesideASun) {
   Random random(7);

@@ -20,7 +20,7 @@ namespace caplet::test {
 namespace {
 
 // Measured with footprints and without, and between the two.
-constexpr double far_floor_error = 0.02, ball_error = 0.02;
+constexpr double far_floor_error = 0.0045, ball_error = 0.0019;
 
 const char* const kernel_text = R"CL(
 #include "bsdf/bsdf.cl"
@@ -403,6 +403,13 @@ TEST(Images, EwaKeepsWhatOneSideIsNarrowEnoughFor) {
   EXPECT_EQ(number_of(map, at), 1);
   map.maxanisotropy = 1;
   EXPECT_EQ(number_of(map, at), 0.625f);
+  // Looks along the longer side see what the middle does not: two bright rows of eight at one end.
+  std::vector<float> rows(64, 0.f);
+  std::fill_n(rows.begin(), 16, 1.f);
+  map.image = image_of(8, 8, 1, rows);
+  map.maxanisotropy = 8;
+  EXPECT_GT(number_of(map, at), 0.05f);
+  EXPECT_LT(number_of(map, at), 0.5f);
 }
 
 TEST(Images, AreOnTheDeviceOnceForEachWrap) {
@@ -690,18 +697,17 @@ constexpr const char* far_floor =
     "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
     "Shape \"bilinearmesh\" \"point3 P\" [-900 -900 0  900 -900 0  -900 900 0  900 900 0]\n";
 
-// Squares to the horizon: few samples are near what many say, by a third of what points are off (without footprints: 0.05 and
-// more).
+// Squares to the horizon: few samples are near what many say, by less than a third of what points are off (without footprints
+// 0.0136; with them 0.0018).
 TEST(TexturedPictures, OfAFarFloorDoNotAlias) {
   const LayeredImage few = render_model(scene_of_text(far_floor), 16).image,
                      many = render_model(scene_of_text(far_floor), 1024).image;
   const double error = block_error(few, many, 64, 28, 20);
   RecordProperty("error", std::to_string(error));
-  std::printf("block error %g\n", error);
   EXPECT_LT(error, far_floor_error);
 }
 
-// The same floor in a mirror ball: cones spread where it bends.
+// The same floor in a mirror ball: cones spread where it bends (0.0014; where they do not, 0.0023).
 TEST(TexturedPictures, OfAFarFloorInABall) {
   const std::string text =
       std::string(far_floor) +
@@ -710,7 +716,6 @@ TEST(TexturedPictures, OfAFarFloorInABall) {
   scene.integrator.max_depth = 2;
   const LayeredImage few = render_model(scene, 16).image, many = render_model(scene, 1024).image;
   const double error = block_error(few, many, 64, 20, 24);
-  std::printf("block error %g\n", error);
   EXPECT_LT(error, ball_error);
 }
 
