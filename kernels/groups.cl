@@ -11,6 +11,9 @@
 #define ONE(type) __global const type* restrict
 #define IN(type) __global const type* restrict
 #define STATE(type) __global type* restrict
+#define STATE_LAYERS(type) STATE(type)
+#define STATE_CONES(type) STATE(type)
+#define STATE_SIDES(type) STATE(type)
 
 #define GROUP_BEGIN(Type, group) typedef struct {
 #define BUFFER(name, type, access) access(type) name;

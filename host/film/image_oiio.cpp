@@ -100,6 +100,28 @@ std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
   return input;
 }
 
+/// The size of `out`, its channels, at most four, and which of these is alpha; refuses what is too large to hold with so many
+/// bytes a value.
+template <class Out>
+void measure(const std::filesystem::path& path, const OIIO::ImageSpec& spec, std::uint64_t value_bytes, std::uintmax_t file_bytes,
+             Out& out) {
+  out.channels = std::min(spec.nchannels, 4);
+  check_image_size(path, spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * value_bytes, file_bytes);
+  out.width = spec.width;
+  out.height = spec.height;
+  if (spec.alpha_channel >= 0 && spec.alpha_channel < out.channels) out.alpha = spec.alpha_channel;
+}
+
+template <class Out>
+std::size_t value_count(const Out& of) {
+  return static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height) * static_cast<std::size_t>(of.channels);
+}
+
+void read_values(const std::filesystem::path& path, OIIO::ImageInput& input, int channels, OIIO::TypeDesc type, void* to) {
+  if (!input.read_image(0, 0, 0, channels, type, to))
+    throw InputError(fmt::format("{}: broken image: {}", path.string(), error_text(input.geterror())));
+}
+
 }  // namespace
 
 bool available() { return true; }
@@ -108,21 +130,17 @@ StoredPixels read_stored(const std::filesystem::path& path) {
   const std::uintmax_t file_bytes = readable_file_bytes(path);
   const std::unique_ptr<OIIO::ImageInput> input = opened(path);
   const OIIO::ImageSpec& spec = input->spec();
-  StoredPixels out;
-  out.channels = std::min(spec.nchannels, 4);
   const bool is_bytes = spec.format == OIIO::TypeDesc::UINT8;
-  check_image_size(path, spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * (is_bytes ? 1 : sizeof(float)),
-                   file_bytes);
-  out.width = spec.width;
-  out.height = spec.height;
+  StoredPixels out;
+  measure(path, spec, is_bytes ? 1 : sizeof(float), file_bytes, out);
   out.is_whole = !spec.format.is_floating_point();
-  if (spec.alpha_channel >= 0 && spec.alpha_channel < out.channels) out.alpha = spec.alpha_channel;
-  const std::size_t count =
-      static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height) * static_cast<std::size_t>(out.channels);
-  is_bytes ? out.bytes.resize(count) : out.floats.resize(count);
-  void* to = is_bytes ? static_cast<void*>(out.bytes.data()) : static_cast<void*>(out.floats.data());
-  if (!input->read_image(0, 0, 0, out.channels, is_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT, to))
-    throw InputError(fmt::format("{}: broken image: {}", path.string(), error_text(input->geterror())));
+  if (is_bytes) {
+    out.bytes.resize(value_count(out));
+    read_values(path, *input, out.channels, OIIO::TypeDesc::UINT8, out.bytes.data());
+  } else {
+    out.floats.resize(value_count(out));
+    read_values(path, *input, out.channels, OIIO::TypeDesc::FLOAT, out.floats.data());
+  }
   return out;
 }
 
@@ -132,15 +150,9 @@ Pixels read_linear(const std::filesystem::path& path) {
   const OIIO::ImageSpec& spec = input->spec();
 
   Pixels out;
-  out.channels = std::min(spec.nchannels, 4);
-  check_image_size(path, spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * sizeof(float), file_bytes);
-  out.width = spec.width;
-  out.height = spec.height;
-  if (spec.alpha_channel >= 0 && spec.alpha_channel < out.channels) out.alpha = spec.alpha_channel;
-  out.values.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height) *
-                    static_cast<std::size_t>(out.channels));
-  if (!input->read_image(0, 0, 0, out.channels, OIIO::TypeDesc::FLOAT, out.values.data()))
-    throw InputError(fmt::format("{}: broken image: {}", path.string(), error_text(input->geterror())));
+  measure(path, spec, sizeof(float), file_bytes, out);
+  out.values.resize(value_count(out));
+  read_values(path, *input, out.channels, OIIO::TypeDesc::FLOAT, out.values.data());
 
   const bool premultiplied = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
   const float exponent = decoding_exponent(spec);

@@ -13,6 +13,7 @@
 
 #include "base/check.h"
 #include "lower/spectrum.h"
+#include "shared/octahedron.h"
 
 namespace caplet {
 
@@ -42,14 +43,7 @@ class Luminances {
 
   double at(int x, int y) const {
     if (square_) {
-      if (x < 0 || x >= width_) {
-        x = x < 0 ? -1 - x : 2 * width_ - 1 - x;
-        y = height_ - 1 - y;
-      }
-      if (y < 0 || y >= height_) {
-        y = y < 0 ? -1 - y : 2 * height_ - 1 - y;
-        x = width_ - 1 - x;
-      }
+      fold_over_edges(&x, &y, width_, height_);
     } else {
       x = (x + width_) % width_;
       y = std::clamp(y, 0, height_ - 1);

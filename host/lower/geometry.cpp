@@ -66,7 +66,8 @@ uint unseen_sides(const Shape& shape, const Matrix& m) {
 
 class GeometryLowering {
  public:
-  GeometryLowering(const Scene& scene, SpectrumTable& spectra, FlatScene& out) : scene_(scene), spectra_(spectra), out_(out) {}
+  GeometryLowering(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out)
+      : scene_(scene), images_(images), spectra_(spectra), out_(out) {}
 
   LoweredGeometry run() {
     check_counts();
@@ -209,7 +210,7 @@ class GeometryLowering {
     if (!shape.alpha) return CAPLET_NONE;
     const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
     const auto [found, fresh] = alphas_.try_emplace({shape.alpha->texture.value_or(CAPLET_NONE), number ? number->value : 0}, 0);
-    if (fresh) found->second = lower_alpha(scene_, *shape.alpha, spectra_, out_);
+    if (fresh) found->second = lower_alpha(scene_, *shape.alpha, images_, spectra_, out_);
     return found->second;
   }
 
@@ -394,6 +395,7 @@ class GeometryLowering {
   }
 
   const Scene& scene_;
+  const ImageNumbers& images_;
   SpectrumTable& spectra_;
   FlatScene& out_;
   std::map<std::pair<std::uint32_t, double>, uint> alphas_;
@@ -410,14 +412,14 @@ PartKey part_key(const Shape& shape, const Matrix& m) {
   return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
 }
 
-LoweredGeometry lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
-  return GeometryLowering(scene, spectra, out).run();
+LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
+  return GeometryLowering(scene, images, spectra, out).run();
 }
 
-Part lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object, SpectrumTable& spectra,
-                       FlatScene& out) {
+Part lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object,
+                       const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
   Part part;
-  GeometryLowering(scene, spectra, out).lower_shape(shape, baked, object, part);
+  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, part);
   return part;
 }
 

@@ -15,6 +15,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "scene/texture_visitor.h"
+#include "shared/octahedron.h"
 
 namespace caplet {
 
@@ -73,14 +74,7 @@ std::optional<std::size_t> wrapped(int x, int y, int width, int height, int wrap
     x = repeated(x, width);
     y = repeated(y, height);
   } else if (wrap == CAPLET_WRAP_OCTAHEDRAL) {
-    if (x < 0 || x >= width) {
-      x = x < 0 ? -1 - x : 2 * width - 1 - x;
-      y = height - 1 - y;
-    }
-    if (y < 0 || y >= height) {
-      y = y < 0 ? -1 - y : 2 * height - 1 - y;
-      x = width - 1 - x;
-    }
+    fold_over_edges(&x, &y, width, height);
   }
   x = std::clamp(x, 0, width - 1);
   y = std::clamp(y, 0, height - 1);
@@ -116,7 +110,7 @@ bool has_powers_of_two(const TextureImage& image) {
 }
 
 struct Uses : TextureVisitor {
-  std::vector<ImageUse> found = {};
+  ImageNumbers found = {};
   const TextureImage* last = nullptr;
 
   void image(const std::shared_ptr<const TextureImage>& of) { last = of.get(); }
@@ -125,9 +119,7 @@ struct Uses : TextureVisitor {
     if (std::string_view(name) == "wrap") add(image_use(*last, value));
   }
   void vectors(const std::shared_ptr<const TextureImage>& of) { add(image_use(*of, std::nullopt)); }
-  void add(const ImageUse& use) {
-    if (std::ranges::find(found, use) == found.end()) found.push_back(use);
-  }
+  void add(const ImageUse& use) { found.try_emplace(use, narrow<std::uint32_t>(found.size())); }
 };
 
 /// The byte whose meaning is nearest.
@@ -215,16 +207,17 @@ ImageUse image_use(const TextureImage& image, std::optional<int> wrap) {
   return {&image, wrap && has_powers_of_two(image) ? std::optional(0) : wrap};
 }
 
-std::vector<ImageUse> image_uses(const std::vector<Texture>& textures) {
+ImageNumbers image_numbers(const std::vector<Texture>& textures) {
   Uses uses;
   for (const Texture& texture : textures) std::visit([&](const auto& model) { model.fields(model, uses); }, texture.model);
   return uses.found;
 }
 
-void lower_images(const Scene& scene, FlatScene& out) {
-  const std::vector<ImageUse> uses = image_uses(scene.textures);
-  double words =
-      0;  // at most: sides grow to twice themselves; mip levels take a third, of long images as much again as the first
+void lower_images(const Scene& scene, const ImageNumbers& numbers, FlatScene& out) {
+  std::vector<ImageUse> uses(numbers.size());
+  for (const auto& [use, number] : numbers) uses[number] = use;
+  // At most: sides grow to twice themselves; mip levels take a third, of long images as much again as the first.
+  double words = 0;
   for (const ImageUse& use : uses)
     words += 512 + 8 * static_cast<double>(use.image->values() + 4) / (use.image->bytes.empty() ? 1 : 4);
   if (words > static_cast<double>(std::numeric_limits<uint>::max()))

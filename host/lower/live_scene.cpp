@@ -130,7 +130,7 @@ struct LiveScene::State {
     for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
       if (const auto kind = part.primitives[of.first + i].shape; kind == shape_csg || kind == shape_polyhedron) return false;
     FlatScene fresh;
-    const Part own = lower_shape_alone(scene, shape, baked, 0, lowering->spectra, fresh);
+    const Part own = lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);
     const auto as_long = [&](std::size_t size, std::size_t Lengths::*length) {
       return size == of.end.*length - of.begin.*length;
     };
@@ -204,9 +204,11 @@ struct LiveScene::State {
   }
 
   bool follow(const MaterialEdit& edit, const MaterialEdit& before) {
-    if (!edit.textures.empty() || !before.textures.empty()) return false;  // other steps, and perhaps other kinds of them
+    const Material& material = scene.materials[edit.material];
+    if (!edit.textures.empty() || !before.textures.empty() || material.normalmap || material.displacement)
+      return false;  // other steps, and perhaps other kinds of them
     if (scene.materials[edit.material].normalmap || scene.materials[edit.material].displacement) return false;
-    flat().materials[edit.material] = lower_material(scene, edit.material, lowering->spectra, flat());
+    flat().materials[edit.material] = lower_material(scene, edit.material, lowering->images, lowering->spectra, flat());
     changes.materials.add(edit.material, 1);
     changes.material_data.add(flat().materials[edit.material].data, material_stride);
     return true;

@@ -14,12 +14,12 @@
 
 namespace caplet {
 
-Lowering::Lowering(const Scene& scene) : spectra(flat, scene.film.space) {
+Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
-  lower_images(scene, flat);
+  lower_images(scene, images, flat);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    flat.materials.push_back(lower_material(scene, narrow<uint>(i), spectra, flat));
-  geometry = lower_geometry(scene, spectra, flat);
+    flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));
+  geometry = lower_geometry(scene, images, spectra, flat);
   lower_lights(scene, geometry.emitters, spectra, environment, flat);
   flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -37,6 +37,7 @@ struct MaterialWriter {
   MaterialRecord& record;
   const Scene& scene;
   const Material& material;
+  const ImageNumbers& images;
   FlatScene& out;
 
   /// Names of fields have underscores for the dots of parameters.
@@ -50,7 +51,7 @@ struct MaterialWriter {
     if (!texture) return false;
     for (const FamilyField& field : material_fields[record.kind])
       if (field.name == field_of(name)) record.textured |= 1u << field.at;
-    data.put_index(field_of(name), lower_texture(scene, *texture, use, last, spectra, out));
+    data.put_index(field_of(name), lower_texture(scene, *texture, use, last, images, spectra, out));
     return true;
   }
   bool textured(const std::string& name, TextureUse use) { return textured(name, name, use); }
@@ -95,14 +96,15 @@ struct MaterialWriter {
 
 }  // namespace
 
-MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumTable& spectra, FlatScene& out) {
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images, SpectrumTable& spectra,
+                              FlatScene& out) {
   const Material& material = scene.materials[index];
   MaterialRecord record{};
   record.data = index * material_stride;
   record.bump = CAPLET_NONE;
   if (const auto bump = material.normalmap ? material.normalmap : material.displacement) {
     const std::optional<uint> last = material.normalmap ? std::nullopt : std::optional<uint>(texture_displacement);
-    record.bump = lower_texture(scene, *bump, TextureUse::number, last, spectra, out);
+    record.bump = lower_texture(scene, *bump, TextureUse::number, last, images, spectra, out);
     record.bump_kind = last.value_or(texture_normalmap);
   }
   if (out.material_data.size() < record.data + material_stride) out.material_data.resize(record.data + material_stride);
@@ -110,7 +112,7 @@ MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumT
       [&](const auto& model) {
         record.kind = kind_of<std::decay_t<decltype(model)>>;
         FamilyData data(material_fields[record.kind], &out.material_data[record.data]);
-        model.fields(model, MaterialWriter{data, spectra, record, scene, material, out});
+        model.fields(model, MaterialWriter{data, spectra, record, scene, material, images, out});
         data.finish();
       },
       material.model);

@@ -35,8 +35,8 @@ static_assert(most_texture_steps + 1 <= CAPLET_TEXTURE_MAX_STEPS);
 /// Adds the steps of one texture.
 class Steps {
  public:
-  Steps(const Scene& scene, SpectrumTable& spectra, FlatScene& out)
-      : scene_(scene), spectra_(spectra), out_(out), first_(narrow<std::uint32_t>(out.textures.size())) {}
+  Steps(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out)
+      : scene_(scene), images_(images), spectra_(spectra), out_(out), first_(narrow<std::uint32_t>(out.textures.size())) {}
 
   /// The number of the step, from the first, that is the texture's value.
   std::uint32_t add(std::uint32_t texture, TextureUse use);
@@ -69,6 +69,7 @@ class Steps {
   }
 
   const Scene& scene_;
+  const ImageNumbers& images_;
   SpectrumTable& spectra_;
   FlatScene& out_;
   std::uint32_t first_;
@@ -91,7 +92,7 @@ struct Steps::Writer : TextureVisitor {
   template <class Names>
   void choice(const char* name, int value, const Names&) {
     data.put_index(name, narrow<std::uint32_t>(value));
-    if (std::string_view(name) == "wrap") data.put_index("image", number_of(image_use(*last, value)));
+    if (std::string_view(name) == "wrap") data.put_index("image", of.images_.at(image_use(*last, value)));
   }
   void flag(const char* name, int value) { data.put_index(name, narrow<std::uint32_t>(value)); }
   void image(const std::shared_ptr<const TextureImage>& image) {
@@ -100,10 +101,6 @@ struct Steps::Writer : TextureVisitor {
                           : use == TextureUse::unbounded ? CAPLET_USE_UNBOUNDED
                                                          : CAPLET_USE_ALBEDO);
     data.put_index("uplift", use == TextureUse::number || image->channels == 1 ? 0 : of.spectra_.uplift_table(image->space));
-  }
-  std::uint32_t number_of(const ImageUse& image) const {
-    const auto uses = image_uses(of.scene_.textures);
-    return narrow<std::uint32_t>(std::ranges::find(uses, image) - uses.begin());
   }
   void mapping(const TextureMapping& of_texture) {
     std::array<float, 13> out{};
@@ -137,7 +134,7 @@ struct Steps::Writer : TextureVisitor {
   void count(const char* name, int value, int, int) { data.put_index(name, narrow<std::uint32_t>(value)); }
   void colors() { data.put_index("uplift", of.spectra_.uplift_table(ColorSpace::srgb)); }
   void vectors(const std::shared_ptr<const TextureImage>& image) {
-    data.put_index("image", number_of(image_use(*image, std::nullopt)));
+    data.put_index("image", of.images_.at(image_use(*image, std::nullopt)));
   }
 
   static void rows_of(const glm::dmat4& m, float* to) {
@@ -186,16 +183,17 @@ void Steps::add_last(uint kind, std::uint32_t of) {
 
 }  // namespace
 
-std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, SpectrumTable& spectra, FlatScene& out) {
-  Steps steps(scene, spectra, out);
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, const ImageNumbers& images, SpectrumTable& spectra,
+                          FlatScene& out) {
+  Steps steps(scene, images, spectra, out);
   const std::uint32_t value = steps.operand(alpha, TextureUse::number);
   steps.add_last(texture_alpha, value);
   return steps.finish();
 }
 
 std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
-                            SpectrumTable& spectra, FlatScene& out) {
-  Steps steps(scene, spectra, out);
+                            const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
+  Steps steps(scene, images, spectra, out);
   const std::uint32_t value = steps.add(texture, use);
   if (last) steps.add_last(*last, value);
   return steps.finish();

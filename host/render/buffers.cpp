@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "base/check.h"
 #include "lower/packed_nodes.h"
@@ -19,6 +18,15 @@ std::size_t floats_per_path(Layers layers) {
   layout.layers = layers;
   return layout.floats_per_path();
 }
+
+/// Elements of a path's buffers that each path has, by their access (groups.h).
+struct PathPlaces {
+  explicit PathPlaces(const PathNeeds& needs)
+      : of_STATE_LAYERS(floats_per_path(needs.layers)),
+        of_STATE_CONES(needs.cones ? 1 : 0),
+        of_STATE_SIDES(needs.sides ? 1 : 0) {}
+  std::size_t of_ONE = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES;
+};
 
 template <class T>
 std::span<const T> contents(const std::vector<T>& values) {
@@ -109,17 +117,12 @@ void require_fit(const Device& device, const FlatScene& flat, const std::vector<
       static_cast<double>(left) * megabytes, static_cast<double>(info.max_allocation_bytes) * megabytes));
 }
 
-/// What each buffer of the paths holds of one path.
-std::vector<std::uint64_t> bytes_of_path(Layers of_film, bool has_cones) {
-  constexpr std::uint64_t count_ONE = 0, count_STATE = 1;
+/// What each buffer of the paths holds of one path, in bytes; ONE: nothing.
+std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   std::vector<std::uint64_t> out;
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
-#define BUFFER(name, type, access)                                                   \
-  out.push_back((std::string_view(#name) == "path_layers" ? floats_per_path(of_film) \
-                 : std::string_view(#name) == "path_cone" ? (has_cones ? 1 : 0)      \
-                                                          : count_##access) *        \
-                sizeof(type));
+#define BUFFER(name, type, access) out.push_back(PathPlaces(needs).of_##access * sizeof(type));
   PATH_GROUPS
 #undef GROUP_BEGIN
 #undef GROUP_END
@@ -142,20 +145,13 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding
 }
 #undef BUFFER
 #define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(flat.name));
-SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat) { VIEW_GROUPS }
+SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat){VIEW_GROUPS}
 #undef BUFFER
 
-// Every buffer of the paths has a place for each, but for these.
-PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film, bool has_cones) {
-#define BUFFER(name, type, access) buffers.name = Buffer<type>(device, std::size_t{count_##access});
-  constexpr std::size_t count_ONE = 1;
-  const std::size_t count_STATE = paths;
-  PATH_GROUPS
-#undef BUFFER
-  cones.path_cone = Buffer<float2>(device, has_cones ? paths : 1);
-  layers.path_layers = Buffer<float>(device, paths * floats_per_path(of_film));
+PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, const PathNeeds& needs) {
   sort.sort_bins = Buffer<uint>(device, sort_bins);
   counters.counters = Buffer<uint>(device, std::size_t{counter_count});
+  provide(device, paths, needs);
 }
 
 std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, const SceneChanges& changes) {
@@ -172,6 +168,23 @@ std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, 
 #undef GROUP_BEGIN
 #undef GROUP_END
 
+void PathBuffers::provide(const Device& device, std::size_t paths, const PathNeeds& needs) {
+  const PathPlaces places(needs);
+  const auto grow = [&device]<class T>(Buffer<T>& buffer, std::size_t elements) {
+    elements = std::max<std::size_t>(elements, 1);
+    if (buffer.size() < elements) buffer = Buffer<T>(device, elements);
+  };
+#define GROUP_BEGIN(Type, group) \
+  {                              \
+    Type##Buffers& buffers = group;
+#define BUFFER(name, type, access) grow(buffers.name, paths* places.of_##access);
+#define GROUP_END(Type) }
+  PATH_GROUPS
+#undef GROUP_BEGIN
+#undef BUFFER
+#undef GROUP_END
+}
+
 #define GROUP_BEGIN(Type, group) bindings.group = &this->group;
 #define BUFFER(name, type, access)
 #define GROUP_END(Type)
@@ -182,15 +195,15 @@ void PathBuffers::bind(Bindings& bindings) const {PATH_GROUPS}
 #undef BUFFER
 #undef GROUP_END
 
-std::uint64_t PathBuffers::largest_bytes_per_path(Layers of_film, bool has_cones) {
+std::uint64_t PathBuffers::largest_bytes_per_path(const PathNeeds& needs) {
   std::uint64_t largest = 0;
-  for (const std::uint64_t bytes : bytes_of_path(of_film, has_cones)) largest = std::max(largest, bytes);
+  for (const std::uint64_t bytes : bytes_of_path(needs)) largest = std::max(largest, bytes);
   return largest;
 }
 
-std::uint64_t PathBuffers::bytes_per_path(Layers of_film, bool has_cones) {
+std::uint64_t PathBuffers::bytes_per_path(const PathNeeds& needs) {
   std::uint64_t all = 0;
-  for (const std::uint64_t bytes : bytes_of_path(of_film, has_cones)) all += bytes;
+  for (const std::uint64_t bytes : bytes_of_path(needs)) all += bytes;
   return all;
 }
 

@@ -67,16 +67,24 @@ struct SensorBuffers {
   void bind(Bindings& bindings) const;
 };
 
-/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them, for a film of such layers;
-/// has_cones: of a textured scene.
+/// What paths carry beside what all do.
+struct PathNeeds {
+  Layers layers;
+  bool cones = false;  // of textured scenes
+  bool sides = false;  // of scenes with a light tree
+};
+
+/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them.
 struct PathBuffers {
   PATH_GROUPS
 
-  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, Layers of_film, bool has_cones = false);
+  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, const PathNeeds& needs);
+  /// Makes those anew that are too short for so many paths with such needs.
+  void provide(const Device& device, std::size_t paths, const PathNeeds& needs);
   void bind(Bindings& bindings) const;
   /// Bytes on the device of each path, in all buffers or in the largest one.
-  static std::uint64_t bytes_per_path(Layers of_film, bool has_cones = false);
-  static std::uint64_t largest_bytes_per_path(Layers of_film, bool has_cones = false);
+  static std::uint64_t bytes_per_path(const PathNeeds& needs);
+  static std::uint64_t largest_bytes_per_path(const PathNeeds& needs);
 };
 
 #undef GROUP_BEGIN

@@ -19,6 +19,7 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       kernels_(device, options_),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),
+      has_light_tree_(scene.lighting.tree_nodes > 0),
       has_camera_stage_(camera_stage_pays(device)),
       bvh_nodes_(scene.bvh_nodes) {}
 
@@ -26,6 +27,7 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bytes_updated_ += buffers_.update(device_, scene, changes);
   world_ = scene.world;
   light_radiance_ = scene.lighting.radiance;
+  has_light_tree_ = scene.lighting.tree_nodes > 0;
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has gone may come back: what knows it stays, and no picture waits for a compiler.
   if (StageOptions options = options_.together_with(stage_options(scene, device_)); options != options_) {

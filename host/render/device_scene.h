@@ -39,6 +39,8 @@ class DeviceScene {
   /// there is.
   bool has_alpha() const { return has_texture(texture_alpha); }
   bool has_textures() const { return options_.rows.at("textures") != 0; }
+  /// Whether lights are chosen by a light tree.
+  bool has_light_tree() const { return has_light_tree_; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
@@ -50,6 +52,7 @@ class DeviceScene {
   Kernels kernels_;
   WorldRecord world_;
   float light_radiance_ = 0;
+  bool has_light_tree_ = false;
   bool has_camera_stage_ = false;
   std::uint64_t bvh_nodes_ = 0;
   std::uint64_t bytes_updated_ = 0;

@@ -131,7 +131,7 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   std::vector<Stage> stages{Stage::extend, Stage::connect};
   if (scene.has_camera_stage()) stages.push_back(Stage::extend_camera);
   scene.kernels().compile(stages, paths);
-  PathBuffers buffers(scene.device(), paths, 1, Layers::none());
+  PathBuffers buffers(scene.device(), paths, 1, PathNeeds{.layers = Layers::none()});
   std::vector<uint> all(paths);
   std::iota(all.begin(), all.end(), 0u);
   buffers.rays.path_ray.write(rays);

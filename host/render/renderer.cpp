@@ -49,6 +49,22 @@ double extent_of(const WorldRecord& world, const CameraRecord& camera) {
          double{world.radius};
 }
 
+PathNeeds needs_of(const DeviceScene& scene, Layers layers) { return {layers, scene.has_textures(), scene.has_light_tree()}; }
+
+/// The stages that trace a round's rays.
+struct TracingStages {
+  Stage first, later;  // camera rays, and all others
+  Stage connect;
+};
+TracingStages tracing_stages(const DeviceScene& scene) {
+  if (scene.has_alpha()) return {Stage::extend_alpha, Stage::extend_alpha, Stage::connect_alpha};
+  return {scene.has_camera_stage() ? Stage::extend_camera : Stage::extend, Stage::extend, Stage::connect};
+}
+bool is_tracing(Stage stage) {
+  constexpr std::array all{Stage::extend, Stage::extend_camera, Stage::extend_alpha, Stage::connect, Stage::connect_alpha};
+  return std::ranges::find(all, stage) != all.end();
+}
+
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
   const Device& device = scene.device();
   const Drive& drive = drive_of(device.profile());
@@ -61,17 +77,17 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, c
   const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), drive.sort_fan) * sizeof(uint);
   // Drivers keep some for themselves: what kernels hold privately, for one.
   const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
-  return fitting_batch(wanted, PathBuffers::bytes_per_path(options.layers, scene.has_textures()),
-                       PathBuffers::largest_bytes_per_path(options.layers, scene.has_textures()), all - std::min(all, taken),
-                       device.info().max_allocation_bytes);
+  const PathNeeds needs = needs_of(scene, options.layers);
+  return fitting_batch(wanted, PathBuffers::bytes_per_path(needs), PathBuffers::largest_bytes_per_path(needs),
+                       all - std::min(all, taken), device.info().max_allocation_bytes);
 }
 
 /// Of `paths` paths, or of fewer where the device turns out to have less memory than it says.
 PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
-    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan), layers,
-                       scene.has_textures());
+    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan),
+                       needs_of(scene, layers));
   };
   while (paths > least_batch_paths) try {
       return made();
@@ -111,8 +127,7 @@ void Renderer::reset(const FlatView& view) {
     const Drive& drive = drive_of(scene_.device().profile());
     paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), drive.sort_fan));
   }
-  if (scene_.has_textures() && paths_.cones.path_cone.size() < batch_paths_)
-    paths_.cones.path_cone = Buffer<float2>(scene_.device(), batch_paths_);
+  paths_.provide(scene_.device(), batch_paths_, needs_of(scene_, layers_));
   sensor_ = SensorBuffers(scene_.device(), view);
   FilmLayout layout;
   layout.width = narrow<int>(view.view.width);
@@ -130,10 +145,8 @@ void Renderer::reset(const FlatView& view) {
   film_.parts.clear();
   is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
-  if (!scene_.has_camera_stage() || scene_.has_alpha()) std::erase(stages, Stage::extend_camera);
-  std::erase_if(stages, [&](Stage stage) {
-    if (scene_.has_alpha()) return stage == Stage::extend || stage == Stage::connect;
-    return stage == Stage::extend_alpha || stage == Stage::connect_alpha;
+  std::erase_if(stages, [tracing = tracing_stages(scene_)](Stage stage) {
+    return is_tracing(stage) && stage != tracing.first && stage != tracing.later && stage != tracing.connect;
   });
   if (!drive_of(scene_.device().profile()).counts_on_device)
     std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
@@ -216,18 +229,17 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
   Kernels& kernels = scene_.kernels();
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
-  const Stage later = scene_.has_alpha() ? Stage::extend_alpha : Stage::extend;
-  const Stage connect = scene_.has_alpha() ? Stage::connect_alpha : Stage::connect;
-  Stage extend = scene_.has_camera_stage() && !scene_.has_alpha() ? Stage::extend_camera : later;
+  const TracingStages tracing = tracing_stages(scene_);
+  Stage extend = tracing.first;
   while (paths > 0) {
     if (sorts) paths_.sort.sort_bins.clear();
     kernels.run(extend, bindings, paths);
-    extend = later;
+    extend = tracing.later;
     kernels.run(Stage::shade, bindings, paths);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
     const uint next = counters[counter_next], shadow = counters[counter_shadow];
-    kernels.run(connect, bindings, shadow);
+    kernels.run(tracing.connect, bindings, shadow);
     if (!sorts)
       std::swap(paths_.queues.queue, paths_.queues.queue_next);
     else if (next > 0)
@@ -245,17 +257,16 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
   uint bounces = 0, shadows = 0;
-  const Stage later = scene_.has_alpha() ? Stage::extend_alpha : Stage::extend;
-  const Stage connect = scene_.has_alpha() ? Stage::connect_alpha : Stage::connect;
-  Stage extend = scene_.has_camera_stage() && !scene_.has_alpha() ? Stage::extend_camera : later;
+  const TracingStages tracing = tracing_stages(scene_);
+  Stage extend = tracing.first;
   while (paths > 0) {
     const Clock::time_point start = Clock::now();
     for (int round = 0; round < rounds_unasked; ++round) {
       if (sorts) paths_.sort.sort_bins.clear();
       kernels.run(extend, bindings, paths, 0, counter_queued);
-      extend = later;
+      extend = tracing.later;
       kernels.run(Stage::shade, bindings, paths, 0, counter_queued);
-      kernels.run(connect, bindings, paths, 0, counter_shadow);
+      kernels.run(tracing.connect, bindings, paths, 0, counter_shadow);
       if (sorts)
         sort(bindings, paths, counter_next);
       else
@@ -281,6 +292,6 @@ void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter
   kernels.run(Stage::sort_scatter, bindings, paths, 0, counter);
 }
 
-std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path(Layers::all()) * least_batch_paths; }
+std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path({Layers::all(), true, true}) * least_batch_paths; }
 
 }  // namespace caplet

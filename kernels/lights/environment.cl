@@ -8,6 +8,7 @@
 #include "groups.cl"
 #include "math/spectrum.cl"
 #include "math/vector.cl"
+#include "shared/octahedron.h"
 
 // Equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008): the diamond
 // |u| + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square, the polar cap 1 - z <= r^2 the same share of the sphere.
@@ -50,14 +51,7 @@ static inline float2 sphere_to_latlong(float3 d, float* sine) {
 static inline float4 environment_texel(const Lights* lights, int x, int y) {
   const int width = (int)lights->lighting->environment_width, height = (int)lights->lighting->environment_height;
   if (lights->lighting->environment_square) {
-    if (x < 0 || x >= width) {
-      x = x < 0 ? -1 - x : 2 * width - 1 - x;
-      y = height - 1 - y;
-    }
-    if (y < 0 || y >= height) {
-      y = y < 0 ? -1 - y : 2 * height - 1 - y;
-      x = width - 1 - x;
-    }
+    fold_over_edges(&x, &y, width, height);
   } else {
     x = x < 0 ? x + width : x >= width ? x - width : x;
     y = clamp(y, 0, height - 1);

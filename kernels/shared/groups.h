@@ -4,7 +4,8 @@
 // Every device buffer, in groups that live and are used together. Kernel signatures, the structs that kernel functions take, allocation,
 // byte counts and argument binding on the host all expand from these lists: define
 //   GROUP_BEGIN(Type, group)      // Tree, tree: the struct of its buffers and the name that stages know it by
-//   BUFFER(name, type, access)    // access: ONE (a record, read only), IN (an array, read only) or STATE
+//   BUFFER(name, type, access)    // access: ONE (a record, read only), IN (an array, read only) or STATE; of paths also what only some
+//                                 // renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES, STATE_SIDES
 //   GROUP_END(Type)
 // and write GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_GROUPS_H
@@ -109,19 +110,19 @@
   /* pdf of the last direction (solid angle), product of eta scales, bits of the light of the primitive that it */ \
   /* refracted through (or CAPLET_NONE), filter weight */                                                       \
   BUFFER(path_scatter, float4, STATE)                                                                           \
-  BUFFER(path_normal, uint, STATE) /* where there is a light tree: normal_bits of the last scattering */         \
+  BUFFER(path_normal, uint, STATE_SIDES) /* with a light tree: normal_bits of the last scattering, or CAPLET_NONE */ \
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 
 // Of textured scenes: how wide a path's ray is where it begins (world), and how much wider with each unit of length.
 #define GROUP_CONES                     \
   GROUP_BEGIN(Cones, cones)             \
-  BUFFER(path_cone, float2, STATE)      \
+  BUFFER(path_cone, float2, STATE_CONES)      \
   GROUP_END(Cones)
 
 #define GROUP_LAYERS                                                                            \
   GROUP_BEGIN(Layers, layers)                                                                   \
-  BUFFER(path_layers, float, STATE) /* BatchRecord.layer_floats a path: the HIT_ and ID_LAYERs of layers.def */ \
+  BUFFER(path_layers, float, STATE_LAYERS) /* BatchRecord.layer_floats a path: the HIT_ and ID_LAYERs of layers.def */ \
   GROUP_END(Layers)
 
 #define GROUP_SHADOWS                                                                               \

@@ -63,11 +63,11 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
-                                const Bsdf* bsdf, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
+                                const Bsdf* bsdf, uint side, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
-  const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), receiving_side(frame, bsdf, wo_local)};
+  const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), side};
   if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface. Bent ones may: their
@@ -148,11 +148,11 @@ static void stage_item(const Stage* g, uint item) {
       // What a refracted ray finds of the primitive that it crossed has no other strategy.
       if (!specular && as_uint(scatter.z) != s.light) {
 #ifdef CAPLET_LIGHT_TREE
-        const uint side = g->carried.path_normal[path];
+        const uint before = g->carried.path_normal[path];
 #else
-        const uint side = CAPLET_NONE;
+        const uint before = CAPLET_NONE;
 #endif
-        const LightReceiver from = {(float3)(ray.ox, ray.oy, ray.oz), side};
+        const LightReceiver from = {(float3)(ray.ox, ray.oy, ray.oz), before};
         weight = power_heuristic(scatter.x, light_area_pdf(&scene, s.light, from, &s, direction));
       }
       g->radiance.path_radiance[path] += throughput * emitted * weight;
@@ -191,8 +191,9 @@ static void stage_item(const Stage* g, uint item) {
   const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
   if (any_stochastic_material) bsdf.random = path_hash(at, depth);
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
+  const uint side = receiving_side(&frame, &bsdf, wo_local);
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, &scene, path, &s, &frame, &bsdf, bent, wo_local, wo, throughput, wavelengths,
+    sample_light(g, &scene, path, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
@@ -231,7 +232,7 @@ static void stage_item(const Stage* g, uint item) {
   g->carried.path_throughput[path] = throughput;
   g->carried.path_scatter[path] = scatter;
 #ifdef CAPLET_LIGHT_TREE
-  g->carried.path_normal[path] = receiving_side(&frame, &bsdf, wo_local);
+  g->carried.path_normal[path] = side;
 #endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
   const uint position = atomic_inc(&g->counters.counters[counter_next]);

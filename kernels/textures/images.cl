@@ -6,6 +6,7 @@
 #define CAPLET_TEXTURES_IMAGES_CL
 
 #include "textures/texture_types.cl"
+#include "shared/octahedron.h"
 
 // Number x of n that repeat, for any x.
 static inline int repeated(int x, int n) {
@@ -22,15 +23,7 @@ static inline float4 image_texel(const Materials* materials, __global const Imag
     x = repeated(x, width);
     y = repeated(y, height);
   } else if (wrap == CAPLET_WRAP_OCTAHEDRAL) {
-    // Over an edge of the square lies the other half of that edge. Filters go one texel beyond.
-    if (x < 0 || x >= width) {
-      x = x < 0 ? -1 - x : 2 * width - 1 - x;
-      y = height - 1 - y;
-    }
-    if (y < 0 || y >= height) {
-      y = y < 0 ? -1 - y : 2 * height - 1 - y;
-      x = width - 1 - x;
-    }
+    fold_over_edges(&x, &y, width, height);  // filters go one texel beyond
   } else if (wrap == CAPLET_WRAP_BLACK && (x < 0 || y < 0 || x >= width || y >= height)) {
     return (float4)(0.0f);
   }

@@ -99,7 +99,7 @@ TEST(Profile, PrefixSumsAreThoseOfALoop) {
   for (const std::uint32_t fan : {64u, 8u, 5u, 1u << 31})
     for (const std::uint32_t bits : {0u, 1u, 4u, 5u}) {
       const std::size_t bins = std::size_t{8} << (3 * bits);
-      PathBuffers buffers(gpu, 1, sort_places(bins, fan), Layers::none());
+      PathBuffers buffers(gpu, 1, sort_places(bins, fan), PathNeeds{.layers = Layers::none()});
       BatchRecord record{};
       record.sort_bits = bits;
       record.sort_fan = fan;
@@ -127,7 +127,7 @@ TEST(Profile, ChunksAreParts) {
   Kernels kernels(gpu, {"-DCAPLET_REAL_WIDTH=1", {}});
   kernels.compile(std::array{Stage::sort_scatter}, 1 << 12);
   constexpr std::size_t paths = 5000;
-  PathBuffers buffers(gpu, paths, 2, Layers::none());
+  PathBuffers buffers(gpu, paths, 2, PathNeeds{.layers = Layers::none()});
   std::vector<uint> queue(paths);
   std::iota(queue.begin(), queue.end(), 0u);
   buffers.queues.queue_next.write(queue);

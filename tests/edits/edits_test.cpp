@@ -395,6 +395,31 @@ TEST(TexturedEdits, AreThoseOfTheEditedScene) {
   edited.expect_fresh("what was refused");
 }
 
+// The material keeps its displacement, whose steps a material made anew has elsewhere.
+TEST(TexturedEdits, KeepWhatBendsTheNormals) {
+  Edited edited(
+      scene_of_text("WorldBegin\nLightSource \"infinite\"\nTexture \"h\" \"float\" \"checkerboard\" \"float uscale\" 8\n"
+                    "Material \"diffuse\" \"texture displacement\" \"h\" Shape \"sphere\""));
+  edited.edit(MaterialEdit{0, DiffuseMaterial{ConstantSpectrum{0.3}}});
+  EXPECT_EQ(edited.live.lowerings(), 2u);
+  EXPECT_NE(edited.live.flat().materials[0].bump, CAPLET_NONE);
+  edited.expect_fresh("another colour under the same bumps");
+}
+
+// Enough lamps for a light tree, which an edit of one makes anew.
+TEST(LampEdits, MakeTheLightTreeAgain) {
+  std::string world = "WorldBegin\nShape \"sphere\" \"float radius\" 60\nAreaLightSource \"diffuse\"\n";
+  for (int i = 0; i < 24; ++i)
+    world += "Shape \"capsule\" \"point3 p0\" [" + std::to_string(i) + " 0 0] \"point3 p1\" [" + std::to_string(i) + " 1 " +
+             std::to_string(i % 5) + "] \"float radius\" 0.2\n";
+  Edited edited(scene_of_text(world));
+  const auto nodes = edited.live.flat().light_nodes;
+  ASSERT_FALSE(nodes.empty());
+  edited.edit(TransformEdit{{std::nullopt, 3}, glm::translate(glm::dmat4(1), dvec3(0, 30, 0))});
+  EXPECT_NE(edited.live.flat().light_nodes, nodes);
+  edited.expect_fresh("a lamp far away");
+}
+
 TEST_F(OneEdit, WhatDoesNotFitIsLoweredAgain) {
   edited.edit(CapsuleEdit{capsules, 0, {{0, 0, 2}, {0, 0, 2}, 0.3f, 0.3f}});
   EXPECT_EQ(edited.live.lowerings(), 2u);

@@ -137,16 +137,19 @@ TEST(ImageFiles, GreyFilesAreGrey) {
   EXPECT_EQ(image.rgb[5], 1.0f);
 }
 
-TEST(ImageFiles, AlphaIsMultipliedIn) {
-  // An uncompressed 32-bit TGA of one pixel: blue, green, red, alpha; 8 alpha bits declared.
-  const auto path = test::temporary_folder() / "alpha.tga";
+/// An uncompressed 32-bit TGA: blue, green, red, alpha; 8 alpha bits declared.
+std::string tga_of_one_pixel(const std::string& bgra) {
   std::string bytes(18, '\0');
   bytes[2] = 2;
   bytes[12] = bytes[14] = 1;
   bytes[16] = 32;
   bytes[17] = 0x28;
-  bytes += std::string("\xff\x80\xff\x80", 4);
-  test::write_bytes(path, bytes);
+  return bytes + bgra;
+}
+
+TEST(ImageFiles, AlphaIsMultipliedIn) {
+  const auto path = test::temporary_folder() / "alpha.tga";
+  test::write_bytes(path, tga_of_one_pixel("\xff\x80\xff\x80"));
   const EnvironmentImage image = FileImageReader().read_rgb(path);
   ASSERT_EQ(image.rgb.size(), 3u);
   EXPECT_NEAR(image.rgb[0], 128 / 255.0, 1e-6);
@@ -184,16 +187,11 @@ TEST(ImageFiles, OfTexturesHaveFloatsOfSixteenBits) {
 
 TEST(ImageFiles, OfTexturesKeepAlphaThatIsNotOne) {
   const auto path = test::temporary_folder() / "leaf.tga";
-  std::string bytes(18, '\0');
-  bytes[2] = 2;
-  bytes[12] = bytes[14] = 1;
-  bytes[16] = 32;
-  bytes[17] = 0x28;
-  test::write_bytes(path, bytes + std::string("\xff\x80\x40\x20", 4));
+  test::write_bytes(path, tga_of_one_pixel("\xff\x80\x40\x20"));
   const TextureImage leaf = FileImageReader().read_texture(path, {});
   EXPECT_EQ(leaf.channels, 4);
   EXPECT_EQ(leaf.bytes, (std::vector<std::uint8_t>{0x40, 0x80, 0xff, 0x20}));
-  test::write_bytes(path, bytes + std::string("\xff\x80\x40\xff", 4));
+  test::write_bytes(path, tga_of_one_pixel("\xff\x80\x40\xff"));
   EXPECT_EQ(FileImageReader().read_texture(path, {}).channels, 3);
 }
 

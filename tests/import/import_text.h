@@ -50,10 +50,11 @@ inline Scene scene_of(const std::string& text) { return pbrt::import_text("scene
 /// The text after WorldBegin, with a camera before it.
 inline Scene world_of(const std::string& text) { return scene_of("Camera \"perspective\"\nWorldBegin\n" + text); }
 
-/// The complaints about a scene (validation included); empty when there are none.
-inline std::vector<std::string> complaints(const std::string& text) {
+/// The complaints about what `read` reads (validation included); empty when there are none.
+template <class Read>
+std::vector<std::string> complaints_when(Read read) {
   try {
-    const Scene scene = scene_of(text);
+    const Scene scene = read();
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
@@ -61,6 +62,10 @@ inline std::vector<std::string> complaints(const std::string& text) {
     return error.messages();
   }
   return {};
+}
+
+inline std::vector<std::string> complaints(const std::string& text) {
+  return complaints_when([&] { return scene_of(text); });
 }
 
 /// The first complaint of whatever `run` does.

@@ -136,16 +136,7 @@ TEST(Mixes, AreValidated) {
   Scene scene;
   scene.shapes.emplace_back().geometry = SphereShape{1};
   scene.materials.resize(2);
-  const auto said = [&] {
-    Diagnostics diagnostics;
-    validate(scene, diagnostics);
-    try {
-      diagnostics.finish();
-    } catch (const InputError& error) {
-      return error.messages();
-    }
-    return std::vector<std::string>();
-  };
+  const auto said = [&] { return complaints_when([&] { return scene; }); };
   scene.materials[0].model = MixMaterial{{1, 1}};
   EXPECT_THAT(said(), ElementsAre());
   scene.materials[1].model = MixMaterial{{0, 1}};

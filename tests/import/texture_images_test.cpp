@@ -24,15 +24,7 @@ class TextureImages : public testing::Test {
     return pbrt::import_text((folder_ / "scene.pbrt").string(), "Camera \"perspective\"\nWorldBegin\n" + world, images_);
   }
   std::vector<std::string> complaints_about(const std::string& world) {
-    try {
-      const Scene scene = read(world);
-      Diagnostics diagnostics;
-      validate(scene, diagnostics);
-      diagnostics.finish();
-    } catch (const InputError& error) {
-      return error.messages();
-    }
-    return {};
+    return complaints_when([&] { return read(world); });
   }
   std::filesystem::path folder_ = temporary_folder();
   StubImages images_;

@@ -145,7 +145,7 @@ std::uint32_t step_of(const TextureTrial& trial, FlatScene& flat) {
   Lowering lowering(scene);
   const auto last = trial.last < 0 ? std::nullopt : std::optional(static_cast<uint>(trial.last));
   const std::uint32_t step = lower_texture(scene, static_cast<std::uint32_t>(trial.textures.size() - 1), TextureUse::number, last,
-                                           lowering.spectra, lowering.flat);
+                                           lowering.images, lowering.spectra, lowering.flat);
   flat = std::move(lowering.flat);
   return step;
 }
@@ -361,7 +361,7 @@ TEST(Images, OfBytesAreWhatTheyStandFor) {
   // As vectors they are not resampled.
   Scene scene = scene_of(DiffuseMaterial{}, {{NormalmapTexture{image}, true, "t", {}}}, {});
   Lowering lowering(scene);
-  const std::uint32_t step = lower_texture(scene, 0, TextureUse::number, {}, lowering.spectra, lowering.flat);
+  const std::uint32_t step = lower_texture(scene, 0, TextureUse::number, {}, lowering.images, lowering.spectra, lowering.flat);
   for (int x = 0; x < 3; ++x) {
     const Looked found = look_up(lowering.flat, TextureTrial::Value{(x + 0.5) / 3, 0.5, 0}, every_kind, step);
     for (int c = 0; c < 3; ++c)

@@ -4,6 +4,7 @@
 // Shapes of the scene -> geometry records, primitives and trees.
 #pragma once
 
+#include "lower/detail/images.h"
 #include "lower/detail/parts.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
@@ -14,6 +15,6 @@ namespace caplet {
 /// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the bounding sphere, and returns
 /// what edits need of it. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
 /// becomes an instance of its own tree, shared by all shapes under the same transform.
-LoweredGeometry lower_geometry(const Scene& scene, SpectrumTable& spectra, FlatScene& out);
+LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

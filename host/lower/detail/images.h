@@ -4,6 +4,9 @@
 // Images of textures -> their records and texels.
 #pragma once
 
+#include <compare>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,21 +17,23 @@ namespace caplet {
 
 /// An image as textures look it up: with what lies beyond its edges (CAPLET_WRAP_...), or as it is.
 struct ImageUse {
-  const TextureImage* image;
+  const TextureImage* image = nullptr;
   std::optional<int> wrap;
 
-  bool operator==(const ImageUse&) const = default;
+  auto operator<=>(const ImageUse&) const = default;
 };
 
+/// Their numbers in `images`, from 0 on.
+using ImageNumbers = std::map<ImageUse, std::uint32_t>;
 /// Each once, in the order in which textures name them first.
-std::vector<ImageUse> image_uses(const std::vector<Texture>& textures);
-/// One as image_uses has it: where the sides are powers of two, all have wrap 0.
+ImageNumbers image_numbers(const std::vector<Texture>& textures);
+/// One as image_numbers has it: where the sides are powers of two, all have wrap 0.
 ImageUse image_use(const TextureImage& image, std::optional<int> wrap);
 
-/// Fills `images`, in the order of image_uses, and `texels`. Images of imagemaps whose sides are no powers of two are resampled
+/// Fills `images`, by their numbers, and `texels`. Images of imagemaps whose sides are no powers of two are resampled
 /// to the next ones by Lanczos' filter of radius 2, as pbrt-v4's are, and have mip levels, down to one texel: a level has half
 /// the sides of that before, at least 1, and its texels are the means of what they cover. Throws InputError where they need more
 /// words than 32 bits number.
-void lower_images(const Scene& scene, FlatScene& out);
+void lower_images(const Scene& scene, const ImageNumbers& numbers, FlatScene& out);
 
 }  // namespace caplet

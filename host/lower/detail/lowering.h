@@ -21,6 +21,7 @@ struct Lowering {
   Lowering& operator=(const Lowering&) = delete;
 
   FlatScene flat;
+  ImageNumbers images;
   SpectrumTable spectra;
   LoweredGeometry geometry;
   LoweredEnvironment environment;

@@ -4,6 +4,7 @@
 // Materials of the model -> records and their data.
 #pragma once
 
+#include "lower/detail/images.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
@@ -15,6 +16,7 @@ inline constexpr std::uint32_t material_stride = 16;
 
 /// The record of material number `index`, whose data it writes to out.material_data: made longer when that ends before. The steps
 /// of its textures are added.
-MaterialRecord lower_material(const Scene& scene, std::uint32_t index, SpectrumTable& spectra, FlatScene& out);
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images, SpectrumTable& spectra,
+                              FlatScene& out);
 
 }  // namespace caplet

@@ -11,6 +11,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
+#include "lower/detail/images.h"
 #include "lower/detail/lights.h"
 #include "lower/encode.h"
 #include "lower/flat_primitive.h"
@@ -99,6 +100,6 @@ void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
 
 /// One shape, lowered by itself into empty arrays `out` under `baked`: its primitives, with ids from 0 on.
 Part lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
-                       SpectrumTable& spectra, FlatScene& out);
+                       const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "lower/detail/images.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
@@ -18,9 +19,10 @@ enum class TextureUse { albedo, unbounded, number };
 /// Adds the steps of Scene::textures[texture] to out.textures, and one of kind `last` of it where there is one. Returns the
 /// number of the first.
 std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
-                            SpectrumTable& spectra, FlatScene& out);
+                            const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 /// The same of a shape's alpha.
-std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, SpectrumTable& spectra, FlatScene& out);
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, const ImageNumbers& images, SpectrumTable& spectra,
+                          FlatScene& out);
 
 }  // namespace caplet
