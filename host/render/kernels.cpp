@@ -32,12 +32,12 @@ constexpr const char* stage_groups[] = {
 #undef STAGE
 };
 
-/// Whether they trace rays.
-constexpr bool stage_traces[] = {
+/// Whether they do a share of the items at a time, in the wide encoding.
+constexpr bool stage_shares[] = {
 #define STAGE(name, groups) false,
-#define TRACED_STAGE(name, groups) true,
+#define SHARING_STAGE(name, groups) true,
 #include "shared/queries.def"
-#define TRACED_STAGE(name, groups) true,
+#define SHARING_STAGE(name, groups) true,
 #include "shared/stages.def"
 #undef STAGE
 };
@@ -128,7 +128,7 @@ Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device), options_(std::move(options)), local_size_(drive_of(device.profile()).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
-  return stage_traces[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;
+  return stage_shares[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;
 }
 
 void Kernels::compile(std::span<const Stage> stages, std::size_t most) {

@@ -12,6 +12,7 @@
 #include "lights/lights.cl"
 #include "stages/cone.cl"
 #include "stages/layers.cl"
+#include "stages/outbox.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
 
@@ -62,7 +63,7 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
+static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const Surface* s, const Frame* frame,
                                 const Bsdf* bsdf, uint side, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
@@ -89,7 +90,7 @@ static inline void sample_light(const Stage* g, const Scene* scene, uint path, c
   ray.dx = direction.x; ray.dy = direction.y; ray.dz = direction.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
   g->shadows.path_shadow[path] = ray;
   g->shadows.path_shadow_radiance[path] = contribution;
-  g->shadows.queue_shadow[atomic_inc(&g->counters.counters[counter_shadow])] = path;
+  append_shadow(g, out, path);
 }
 
 #ifdef CAPLET_PREFETCH
@@ -119,7 +120,7 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
 }
 #endif
 
-static void stage_item(const Stage* g, uint item) {
+static void shade_item(const Stage* g, Outbox* out, uint item) {
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
   const uint path = g->queues.queue[item];
   const RayRecord ray = g->rays.path_ray[path];
@@ -193,7 +194,7 @@ static void stage_item(const Stage* g, uint item) {
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, &scene, path, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
+    sample_light(g, out, &scene, path, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
@@ -235,10 +236,25 @@ static void stage_item(const Stage* g, uint item) {
   g->carried.path_normal[path] = side;
 #endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
-  const uint position = atomic_inc(&g->counters.counters[counter_next]);
-  g->queues.queue_next[position] = path;
-  if (g->batch.batch->sort_bits == CAPLET_NONE) return;
-  const uint key = sort_key(g->tree.world, g->batch.batch->sort_bits, origin, wi);
-  g->sort.sort_keys[position] = key;
-  atomic_inc(&g->sort.sort_bins[key]);
+  const uint bits = g->batch.batch->sort_bits;
+  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);
 }
+
+#ifdef STAGE_TAKES_SHARES
+static void stage_share(const Stage* g, uint begin, uint end) {
+  Outbox out;
+  outbox_open(&out);
+  for (uint item = begin; item < end; item++) {
+#ifdef STAGE_LOOKS_AHEAD
+    stage_ahead(g, item, end);
+#endif
+    shade_item(g, &out, item);
+  }
+  outbox_send(g, &out);
+}
+#else
+static void stage_item(const Stage* g, uint item) {
+  Outbox none;
+  shade_item(g, &none, item);
+}
+#endif
