@@ -25,6 +25,9 @@ MATERIALS = {
            'Texture "squares" "float" "checkerboard" "float uscale" 12 "float vscale" 6 "float tex1" 0.9 "float tex2" 0.1\n'
            'Material "mix" "string materials" ["a" "b"] "texture amount" "squares"',
     "hair": 'Material "hair" "float eumelanin" 0.8 "float pheomelanin" 0.5',
+    "principled": 'Texture "stripes" "float" "checkerboard" "float uscale" 1 "float vscale" 8 "float tex1" 1 "float tex2" 0\n'
+                  'Material "principled" "rgb base_color" [0.75 0.3 0.1] "texture metallic" "stripes" "float roughness" 0.35 '
+                  '"float anisotropic" 0.6 "float sheen" 0.5 "float coat" 1 "float coat_roughness" 0.05',
 }
 
 BALL = """AttributeBegin

@@ -194,7 +194,8 @@ void Parser::attribute() {
 }
 
 void Parser::material() {
-  const std::string type = string_argument("a type");
+  std::string type = string_argument("a type");
+  if (type.empty() || type == "none") type = "interface";  // as pbrt-v4
   Parameters given = parameters(owner(type), "material");
   const Refusal refusal = refusal_of("Material", type);
   if (!refusal.is_known) {
@@ -304,8 +305,8 @@ void Parser::texture() {
       known = std::find(table.refused.begin(), table.refused.end(), texture_class) != table.refused.end() ||
               check_name("Texture", texture_class, class_place, diagnostics_);
   if (!known) return;
-  const TextureValue value = make_texture(name, kind, texture_class, given, textures_, texture_context(), scene_);
-  if (!textures_.emplace(name, value).second) diagnostics_.error(where_, "the texture " + in_quotes(name) + " is defined twice");
+  TextureValue value = make_texture(name, kind, texture_class, given, textures_, texture_context(), scene_);
+  if (!textures_.add(name, std::move(value))) diagnostics_.error(where_, "the texture " + in_quotes(name) + " is defined twice");
 }
 
 // --- Lights and shapes ---

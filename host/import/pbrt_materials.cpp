@@ -58,8 +58,8 @@ Spectrum texture_argument(Parameters& parameters, const char* name, double fallb
                           std::string& refusal) {
   if (const Parameter* named = parameters.values(name, {"texture", "rgb", "spectrum", "blackbody"});
       named && named->type == "texture")
-    if (const auto found = textures.find(named->strings[0]); found != textures.end() && !found->second.refusal.empty()) {
-      refusal = found->second.refusal;
+    if (const TextureValue* found = textures.find(named->strings[0], false); found && !found->refusal.empty()) {
+      refusal = found->refusal;
       return ConstantSpectrum{fallback};
     }
   return parameters.spectrum(name, SpectrumUse::unbounded, &textures).value_or(ConstantSpectrum{fallback});
@@ -68,8 +68,8 @@ Spectrum texture_argument(Parameters& parameters, const char* name, double fallb
 double float_argument(Parameters& parameters, const char* name, double fallback, const TextureTable& textures,
                       std::string& refusal) {
   if (const Parameter* named = parameters.values(name, {"texture", "float"}); named && named->type == "texture")
-    if (const auto found = textures.find(named->strings[0]); found != textures.end() && !found->second.refusal.empty()) {
-      refusal = found->second.refusal;
+    if (const TextureValue* found = textures.find(named->strings[0], true); found && !found->refusal.empty()) {
+      refusal = found->refusal;
       return fallback;
     }
   return parameters.number_or_texture(name, fallback, textures);

@@ -47,8 +47,8 @@ const std::vector<NameTable>& name_tables() {
       {"ColorSpace", {"aces2065-1", "dci-p3", "rec2020", "srgb"}, {}},
       {"Film", {"rgb"}, {"gbuffer", "spectral"}},
       {"Integrator",
-       {"bdpt", "mlt", "path", "simplepath", "simplevolpath", "volpath"},
-       {"ambientocclusion", "function", "lightpath", "randomwalk", "sppm"}},
+       {"bdpt", "lightpath", "mlt", "path", "simplepath", "simplevolpath", "sppm", "volpath"},
+       {"ambientocclusion", "function", "randomwalk"}},
       table_of("LightSource",
                {
 #define LIGHT_MODEL(name, Type) #name,

@@ -168,6 +168,8 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   if (type == "mlt")
     for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
       parameters.ignore(name);
+  if (type == "sppm")
+    for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
   parameters.finish();
 }
 

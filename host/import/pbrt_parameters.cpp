@@ -333,17 +333,16 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
     return std::nullopt;
   };
   if (parameter.type == "texture") {
-    const auto found = textures->find(parameter.strings[0]);
-    if (found == textures->end() || found->second.is_float)
-      return wrong(
-          (found == textures->end() ? "names an unknown texture, " : "needs a spectrum texture, not the float texture ") +
-          in_quotes(parameter.strings[0]));
-    if (!found->second.refusal.empty()) {
-      error(parameter.name, "uses " + found->second.refusal, kind_of(found->second.refusal));
+    const TextureValue* found = textures->find(parameter.strings[0], false);
+    if (!found || found->is_float)
+      return wrong((found ? "needs a spectrum texture, not the float texture " : "names an unknown texture, ") +
+                   in_quotes(parameter.strings[0]));
+    if (!found->refusal.empty()) {
+      error(parameter.name, "uses " + found->refusal, kind_of(found->refusal));
       return std::nullopt;
     }
-    if (found->second.texture) return wrong("takes no texture other than constants here");
-    return found->second.spectrum;
+    if (found->texture) return wrong("takes no texture other than constants here");
+    return found->spectrum;
   }
   if (parameter.type == "rgb") {
     const RgbSpectrum rgb{{parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]}, parameter.space};
@@ -387,26 +386,25 @@ double Parameters::number_or_texture(std::string_view name, double fallback, con
   const Parameter* parameter = values(name, {"float", "texture"});
   if (!parameter) return fallback;
   if (parameter->type == "float") return number(name, fallback);
-  const auto found = textures.find(parameter->strings[0]);
-  if (found == textures.end())
+  const TextureValue* found = textures.find(parameter->strings[0], true);
+  if (!found)
     error(name, "names an unknown texture, " + in_quotes(parameter->strings[0]));
-  else if (!found->second.is_float)
+  else if (!found->is_float)
     error(name, "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
-  else if (!found->second.refusal.empty())
-    error(name, "uses " + found->second.refusal, kind_of(found->second.refusal));
-  else if (found->second.texture)
+  else if (!found->refusal.empty())
+    error(name, "uses " + found->refusal, kind_of(found->refusal));
+  else if (found->texture)
     error(name, "takes no texture other than constants here");
   else
-    return found->second.number;
+    return found->number;
   return fallback;
 }
 
 std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_float, const TextureTable& textures) {
   const Parameter* parameter = find(name);
   if (!parameter || parameter->type != "texture") return std::nullopt;
-  const auto found = textures.find(parameter->strings[0]);
-  return found != textures.end() && found->second.is_float == is_float && found->second.refusal.empty() ? found->second.texture
-                                                                                                        : std::nullopt;
+  const TextureValue* found = textures.find(parameter->strings[0], is_float);
+  return found && found->is_float == is_float && found->refusal.empty() ? found->texture : std::nullopt;
 }
 
 void Parameters::refuse(std::string_view name) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/spelling.h"
+#include "library/detail/appearance.h"
 #include "library/detail/inside.h"
 #include "present/film_window.h"
 
@@ -21,30 +22,6 @@ constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 // A session that is further behind takes the scene as a whole.
 constexpr std::size_t most_logged = 1 << 16;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
-
-caplet::Spectrum to_model(const Spectrum& spectrum) {
-  if (const auto* value = std::get_if<double>(&spectrum)) return ConstantSpectrum{*value};
-  if (const auto* rgb = std::get_if<Rgb>(&spectrum)) return RgbSpectrum{{rgb->r, rgb->g, rgb->b}, ColorSpace::srgb};
-  const std::string& name = std::get<std::string>(spectrum);
-  if (const auto found = named_spectrum(name)) return *found;
-  throw InputError(
-      fmt::format("there is no spectrum '{}'; the nearest is '{}'", name, nearest_name(name, named_spectrum_names())));
-}
-
-struct MaterialToModel {
-  using Model = decltype(caplet::Material::model);
-  Model operator()(const Diffuse& m) const { return DiffuseMaterial{to_model(m.reflectance)}; }
-  Model operator()(const Conductor& m) const {
-    ConductorMaterial out;
-    out.eta = to_model(m.eta);
-    out.k = to_model(m.k);
-    if (m.reflectance) out.reflectance = to_model(*m.reflectance);
-    out.alpha_u = m.roughness_u;
-    out.alpha_v = m.roughness_v;
-    return out;
-  }
-  Model operator()(const Dielectric& m) const { return DielectricMaterial{to_model(m.eta), m.roughness_u, m.roughness_v}; }
-};
 
 glm::dmat4 to_model(const Transform& rows) {
   glm::dmat4 out(1);
@@ -91,11 +68,15 @@ std::uint64_t next_serial() {
 void Scene::Data::edit(const SceneEdit& edit) {
   apply_edit(model, edit);
   if (edits.size() == most_logged) {
-    edits.clear();
-    origin = next_serial();
+    as_a_whole();
   } else {
     edits.push_back({next_serial(), edit});
   }
+}
+
+void Scene::Data::as_a_whole() {
+  edits.clear();
+  origin = next_serial();
 }
 
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
@@ -201,7 +182,51 @@ Transform Scene::instance(std::uint32_t instance) const {
 void Scene::set_instance(std::uint32_t instance, const Transform& to) { changed().edit(InstanceEdit{instance, to_model(to)}); }
 
 void Scene::set_material(std::uint32_t material, const Material& to) {
-  changed().edit(MaterialEdit{material, std::visit(MaterialToModel{}, to)});
+  caplet::Material made = to_model(to);
+  check_bends(data_->model, made);
+  const MaterialEdit edit{material, std::move(made.model), std::move(made.textures)};
+  Data& data = changed();
+  data.edit(edit);
+  caplet::Material& now = data.model.materials[material];
+  if (now.displacement == made.displacement && now.normalmap == made.normalmap) return;
+  if (!std::holds_alternative<NamedMaterial>(to)) return;
+  now.displacement = made.displacement;
+  now.normalmap = made.normalmap;
+  data.as_a_whole();
+}
+
+std::uint32_t Scene::add_material(const std::string& name, const Material& material) {
+  caplet::Material made = to_model(material);
+  check_bends(data_->model, made);
+  made.name = name;
+  Data& data = changed();
+  const auto number = static_cast<std::uint32_t>(data.model.materials.size());
+  data.model.materials.push_back(made);
+  try {
+    check_edit(data.model, MaterialEdit{number, made.model, made.textures});
+  } catch (...) {
+    data.model.materials.pop_back();
+    throw;
+  }
+  data.as_a_whole();
+  return number;
+}
+
+TextureNumber Scene::add_texture(const NamedTexture& texture) {
+  caplet::Texture made = to_model(texture);
+  Data& data = changed();
+  const auto number = static_cast<std::uint32_t>(data.model.textures.size());
+  data.model.textures.push_back(std::move(made));
+  try {
+    caplet::Scene one;
+    one.textures = data.model.textures;
+    check_textures(one);
+  } catch (...) {
+    data.model.textures.pop_back();
+    throw;
+  }
+  data.as_a_whole();
+  return {number};
 }
 
 std::size_t Scene::lights() const { return data_->model.lights.size(); }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What surfaces are made of, for edits.
+// What surfaces are made of: materials and textures of a scene.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "caplet/export.h"
 
@@ -35,6 +39,42 @@ struct Dielectric {
   double roughness_u = 0, roughness_v = 0;
 };
 
-using Material = std::variant<Diffuse, Conductor, Dielectric>;
+/// A texture of a scene, by the number that Scene::add_texture gave it.
+struct TextureNumber {
+  std::uint32_t number = 0;
+};
+
+/// What a parameter may be: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, or the
+/// numbers of two materials.
+using Parameter =
+    std::variant<double, Rgb, std::string, bool, TextureNumber, std::array<double, 3>, std::array<std::uint32_t, 2>>;
+using Parameters = std::map<std::string, Parameter>;
+
+/// Any material by the name that scene files have for it: "coateddiffuse", "hair", "principled". Parameters are those that
+/// material_parameters tells, and "displacement" and "normalmap", textures that bend the normals; those that are left out have
+/// the values of docs/formats/pbrt.md.
+struct NamedMaterial {
+  std::string type;
+  Parameters parameters = {};
+};
+
+/// The same of a texture, of floats or of spectra. An imagemap has "filename" and "encoding" ("sRGB", "linear" or "gamma 2.2"),
+/// a mapping "mapping" and its numbers. world_from_texture: three rows of four numbers, of textures that go by points of space.
+struct NamedTexture {
+  std::string type;
+  bool is_float = false;
+  Parameters parameters = {};
+  std::array<double, 12> world_from_texture = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+};
+
+using Material = std::variant<Diffuse, Conductor, Dielectric, NamedMaterial>;
+
+/// What NamedMaterial and NamedTexture may be.
+CAPLET_API std::vector<std::string> material_types();
+CAPLET_API std::vector<std::string> texture_types();
+/// The names of a type's parameters. Roughnesses "alpha_u" and "alpha_v" are GGX's, along dp/du and dp/dv. Throws InputError for
+/// an unknown type.
+CAPLET_API std::vector<std::string> material_parameters(const std::string& type);
+CAPLET_API std::vector<std::string> texture_parameters(const std::string& type);
 
 CAPLET_END

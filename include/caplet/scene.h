@@ -82,6 +82,9 @@ class CAPLET_API Scene {
   Transform instance(std::uint32_t instance) const;
   void set_instance(std::uint32_t instance, const Transform& to);
   void set_material(std::uint32_t material, const Material& to);
+  /// One more of each, by its number; textures are made of those before them. A session then takes the scene as a whole.
+  std::uint32_t add_material(const std::string& name, const Material& material);
+  TextureNumber add_texture(const NamedTexture& texture);
   /// Lights other than emissive shapes.
   std::size_t lights() const;
   double light_scale(std::uint32_t light) const;

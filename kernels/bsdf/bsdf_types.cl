@@ -50,6 +50,12 @@ typedef struct {
   int max_depth, samples;
 } BsdfCoat;
 
+// What principled.cl keeps besides the fields below. transmission: of the whole, so that the rest lies over a diffuse base.
+typedef struct {
+  float4 normal_tinted;  // what a tinted interface reflects at normal incidence
+  float metallic, transmission, roughness, tint, coat;
+} BsdfPrincipled;
+
 // A BSDF at four wavelengths: what <name>_make takes from a material's data. A field is one material's or several's; eta is relative to
 // the outside (whose index is 1). random: the key of the numbers that estimates take (trait_stochastic); the caller's, after _make.
 typedef struct {
@@ -58,6 +64,7 @@ typedef struct {
   float alpha_u, alpha_v;
   float tilt;  // of hair's scales, radians
   BsdfCoat coat;
+  BsdfPrincipled principled;
 } Bsdf;
 
 // weight = f |cos wi| / pdf at each wavelength. pdf: solid angle; the probability itself where `specular`. eta_scale: 1, and the

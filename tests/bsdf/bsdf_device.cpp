@@ -38,6 +38,12 @@ static Bsdf given_bsdf(uint kind, uint flags, uint random, __global const float*
   b.coat.max_depth = (int)p[12];
   b.coat.samples = (int)p[13];
   b.tilt = p[14];
+  b.principled.metallic = p[15];
+  b.principled.transmission = p[16];
+  b.principled.roughness = p[17];
+  b.principled.tint = p[18];
+  b.principled.normal_tinted = (float4)(p[19]);
+  b.principled.coat = p[20];
   return b;
 }
 #define MAKE_BSDF Bsdf b = given_bsdf(kind, flags, hash_combine(hash_mix(key), i), p);
@@ -107,8 +113,9 @@ std::vector<float> flat(const std::vector<Direction>& directions) {
 }  // namespace
 
 std::vector<float> BsdfParameters::values() const {
-  return {reflectance,  eta,       k,      alpha_u, alpha_v,   transmittance, coat_eta, coat_alpha_u,
-          coat_alpha_v, thickness, albedo, g,       max_depth, samples,       tilt};
+  return {reflectance, eta,           k,   alpha_u,   alpha_v, transmittance, coat_eta, coat_alpha_u, coat_alpha_v,
+          thickness,   albedo,        g,   max_depth, samples, tilt,          metallic, transmission, roughness,
+          tint,        normal_tinted, coat};
 }
 
 Direction direction(double theta, double phi) {

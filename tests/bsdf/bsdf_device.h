@@ -22,6 +22,8 @@ struct BsdfParameters {
   float transmittance = 0;
   float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0, max_depth = 100, samples = 1;
   float tilt = 0;  // radians
+  // Of principled: reflectance is its base colour, k its sheen, albedo its coat's colour, coat_alpha_u its coat's roughness.
+  float metallic = 0, transmission = 0, roughness = 0, tint = 0, normal_tinted = 0, coat = 0;
 
   /// All of them in the order in which kernels take them.
   std::vector<float> values() const;

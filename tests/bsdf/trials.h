@@ -50,8 +50,9 @@ struct BsdfTrial {
   std::vector<KnownSample> samples;
   /// Of the scene, such that lowering it gives this kind.
   Material model;
-  /// The most that f |cos wi| integrates to, and that a sample weighs.
+  /// The most that f |cos wi| integrates to; a sample weighs at most `heaviest` times that.
   double (*most)(const BsdfParameters& bsdf, bool inside);
+  double heaviest = 1;
   /// Points along each side of a cell of the sphere (of 32 x 32) that resolve the density.
   int (*steps)(const BsdfParameters& bsdf, double cos_theta);
 };

@@ -185,7 +185,19 @@ Material ModelMaker::material() {
     coat.max_depth = static_cast<int>(numbers_.below(20));
     return coat;
   };
-  switch (numbers_.below(8)) {
+  switch (numbers_.below(9)) {
+    case 8: {
+      PrincipledMaterial made{spectrum(1), u, v};
+      made.anisotropic = numbers_.fraction();
+      made.eta = 1 + v;
+      made.spec_tint = u;
+      made.spec_trans = numbers_.fraction();
+      made.sheen = made.coat_roughness = v;
+      made.sheen_tint = made.coat = numbers_.fraction();
+      made.coat_color = spectrum(1);
+      out.model = made;
+      break;
+    }
     case 0:
       out.model = DiffuseMaterial{spectrum(1)};
       break;

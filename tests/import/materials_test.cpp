@@ -37,6 +37,69 @@ TEST(Sheets, ThinGlassAndDiffuseTransmission) {
   EXPECT_EQ(plain.scale, 1);
 }
 
+TEST(Principled, EveryParameter) {
+  const Scene scene = world_of(
+      "Texture \"t\" \"float\" \"checkerboard\"\nTexture \"c\" \"spectrum\" \"checkerboard\"\n"
+      "Material \"principled\" \"rgb base_color\" [.1 .2 .3] \"float metallic\" .1 \"float roughness\" .2 \"float anisotropic\" "
+      ".3\n"
+      " \"float eta\" 1.4 \"float spec_tint\" .5 \"float spec_trans\" .6 \"float sheen\" .7 \"float sheen_tint\" .8 \"float "
+      "coat\" .9\n"
+      " \"float coat_roughness\" .15 \"float coat_eta\" 1.6 \"rgb coat_color\" [.9 .8 .7] Shape \"sphere\"\n"
+      "Material \"principled\" Shape \"sphere\"\n"
+      "Material \"principled\" \"texture base_color\" \"c\" \"texture roughness\" \"t\" \"texture coat\" \"t\" Shape \"sphere\"");
+  const auto& all = model_of<PrincipledMaterial>(scene);
+  EXPECT_EQ(rgb(all.base_color), glm::dvec3(.1, .2, .3));
+  EXPECT_EQ(all.metallic, .1);
+  EXPECT_EQ(all.roughness, .2);
+  EXPECT_EQ(all.anisotropic, .3);
+  EXPECT_EQ(all.eta, 1.4);
+  EXPECT_EQ(all.spec_tint, .5);
+  EXPECT_EQ(all.spec_trans, .6);
+  EXPECT_EQ(all.sheen, .7);
+  EXPECT_EQ(all.sheen_tint, .8);
+  EXPECT_EQ(all.coat, .9);
+  EXPECT_EQ(all.coat_roughness, .15);
+  EXPECT_EQ(all.coat_eta, 1.6);
+  EXPECT_EQ(rgb(all.coat_color), glm::dvec3(.9, .8, .7));
+  const auto& plain = model_of<PrincipledMaterial>(scene, 1);
+  EXPECT_EQ(constant(plain.base_color), .5);
+  EXPECT_EQ(plain.roughness, .5);
+  EXPECT_EQ(plain.eta, 1.5);
+  EXPECT_EQ(plain.coat, 0);
+  EXPECT_EQ(constant(plain.coat_color), 1);
+  std::vector<std::string> fields;
+  for (const TexturedField& one : scene.materials.at(scene.shapes.at(2).material).textures) fields.push_back(one.field);
+  EXPECT_THAT(fields, testing::UnorderedElementsAre("base_color", "roughness", "coat"));
+  const auto said = [](const std::string& parameters) {
+    return complaint_of([&] { world_of("Material \"principled\" " + parameters + " Shape \"sphere\""); });
+  };
+  EXPECT_THAT(said("\"float metallic\" 1.5"),
+              HasSubstr("scene.pbrt:3:23: Material \"principled\": \"metallic\" must lie between 0"));
+  EXPECT_THAT(said("\"float roughness\" -.1"), HasSubstr("\"roughness\" must lie between 0"));
+  EXPECT_THAT(said("\"float eta\" .9"), HasSubstr("\"eta\" must lie between 1"));
+  EXPECT_THAT(said("\"rgb base_color\" [2 0 0]"), HasSubstr("has a component above 1"));
+  EXPECT_THAT(said("\"float clearcoat\" 1"), HasSubstr("clearcoat"));
+}
+
+// What pbrt-v4 takes: a texture of each kind under one name, an interface by other names, integrators that converge to the same
+// image.
+TEST(Leniency, NamesThatPbrtAccepts) {
+  const Scene scene = scene_of(
+      "Integrator \"sppm\" \"integer maxdepth\" 7 \"integer photonsperiteration\" 9 \"float radius\" 1\nWorldBegin\n"
+      "Texture \"t\" \"float\" \"constant\" \"float value\" .25 Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [.1 .2 "
+      ".3]\n"
+      "Material \"coateddiffuse\" \"texture reflectance\" \"t\" \"texture roughness\" \"t\" Shape \"sphere\"\n"
+      "Material \"none\" Shape \"sphere\" Material \"\" Shape \"sphere\"");
+  EXPECT_EQ(scene.integrator.max_depth, 7);
+  ASSERT_EQ(scene.shapes.size(), 1u);
+  EXPECT_EQ(rgb(model_of<CoatedDiffuseMaterial>(scene).reflectance), glm::dvec3(.1, .2, .3));
+  EXPECT_EQ(model_of<CoatedDiffuseMaterial>(scene).alpha_u, .5);
+  EXPECT_EQ(scene_of("Integrator \"lightpath\" \"integer maxdepth\" 3\nWorldBegin Shape \"sphere\"").integrator.max_depth, 3);
+  EXPECT_THAT(complaint_of(
+                  [] { world_of("Texture \"t\" \"float\" \"constant\" Texture \"t\" \"float\" \"constant\" Shape \"sphere\""); }),
+              HasSubstr("defined twice"));
+}
+
 TEST(Coats, EveryParameter) {
   const Scene scene = world_of(
       "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float uroughness\" .04 \"float vroughness\" .09 \"float "

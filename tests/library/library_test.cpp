@@ -372,6 +372,116 @@ TEST_F(LibraryEdits, ASessionIsCancelledFromAnotherThread) {
   EXPECT_EQ(session.film().samples_per_pixel(), done);
 }
 
+// --- Materials and textures ---
+
+class LibraryAppearance : public LibraryEdits {};
+
+// Every row of the lists, with what it has when nothing is said of it.
+TEST_F(LibraryAppearance, EveryTypeIsThere) {
+  caplet::Scene edited = scene();
+  EXPECT_THAT(caplet::material_types(),
+              testing::IsSupersetOf({"diffuse", "coatedconductor", "hair", "mix", "principled", "diffusetransmission"}));
+  for (const std::string& type : caplet::material_types()) {
+    caplet::NamedMaterial material{type};
+    if (type == "mix") material.parameters["materials"] = std::array<std::uint32_t, 2>{0, 1};
+    EXPECT_NO_THROW(edited.add_material(type, material)) << type;
+    EXPECT_FALSE(caplet::material_parameters(type).empty()) << type;
+  }
+  EXPECT_EQ(edited.materials().size(), scene().materials().size() + caplet::material_types().size());
+  EXPECT_EQ(edited.materials().back(), caplet::material_types().back());
+  EXPECT_THAT(caplet::texture_types(), testing::IsSupersetOf({"checkerboard", "imagemap", "fbm", "marble", "directionmix"}));
+  for (const std::string& type : caplet::texture_types()) {
+    if (type == "imagemap" || type == "normalmap") continue;  // need a file
+    EXPECT_NO_THROW(edited.add_texture({type, type != "marble"})) << type;
+  }
+  EXPECT_THAT(caplet::material_parameters("coateddiffuse"),
+              testing::UnorderedElementsAre("reflectance", "eta", "alpha_u", "alpha_v", "thickness", "albedo", "g", "maxdepth",
+                                            "nsamples"));
+  EXPECT_THAT(caplet::texture_parameters("checkerboard"),
+              testing::IsSupersetOf({"tex1", "tex2", "dimension", "mapping", "uscale", "v1"}));
+  EXPECT_THAT(caplet::texture_parameters("imagemap"), testing::IsSupersetOf({"filename", "encoding", "wrap", "invert"}));
+}
+
+TEST_F(LibraryAppearance, WhatThereIsNoneOfIsToldWithTheNearest) {
+  caplet::Scene edited = scene();
+  const auto said = [&](const caplet::NamedMaterial& material) -> std::string {
+    try {
+      edited.set_material(0, material);
+    } catch (const caplet::InputError& error) {
+      return error.messages().at(0);
+    }
+    return {};
+  };
+  using Named = caplet::NamedMaterial;
+  EXPECT_THAT(said(Named{"coatdiffuse"}), AllOf(HasSubstr("'coatdiffuse'"), HasSubstr("'coateddiffuse'")));
+  EXPECT_THAT(said(Named{"diffuse", {{"reflectanse", 0.5}}}), AllOf(HasSubstr("'reflectanse'"), HasSubstr("'reflectance'")));
+  EXPECT_THAT(said(Named{"diffuse", {{"reflectance", true}}}), HasSubstr("a spectrum or a texture"));
+  EXPECT_THAT(said(Named{"hair", {{"beta_m", caplet::Rgb{}}}}), HasSubstr("'beta_m' must be a number"));
+  EXPECT_THAT(said(Named{"hair", {{"beta_m", 2.0}}}), HasSubstr("beta_m must lie between"));
+  EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}), HasSubstr("'maxdepth' is not a whole number"));
+  EXPECT_THAT(said(Named{"conductor", {{"eta", std::string("metal-Gold-eta")}}}), HasSubstr("metal-"));
+  EXPECT_THAT(said(Named{"diffuse", {{"reflectance", caplet::TextureNumber{7}}}}), HasSubstr("reflectance"));
+  EXPECT_THAT(said(Named{"diffuse", {{"displacement", caplet::TextureNumber{7}}}}), HasSubstr("displacement"));
+  EXPECT_THAT(said(Named{"mix", {{"materials", std::array<std::uint32_t, 2>{0, 1}}}}), HasSubstr("itself"));
+  EXPECT_THROW(edited.add_texture({"checkboard"}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"checkerboard", false, {{"mapping", std::string("round")}}}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"marble", true}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"scale", false, {{"tex", caplet::TextureNumber{0}}}}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"imagemap"}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"imagemap", false, {{"filename", (folder_ / "none.png").string()}}}), caplet::InputError);
+  EXPECT_THROW(caplet::material_parameters("glass"), caplet::InputError);
+  // Nothing of it has changed the picture.
+  EXPECT_TRUE(same_pictures(caplet::render(edited, test_device()), caplet::render(scene(), test_device())));
+}
+
+// What is named is what scene files name.
+TEST_F(LibraryAppearance, NamedMaterialsAreThoseOfSceneFiles) {
+  std::ifstream in(folder_ / "edits.pbrt");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string old = "MakeNamedMaterial \"white\" \"string type\" \"diffuse\"";
+  const std::size_t at = text.find(old);
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(folder_ / "named.pbrt") << text.replace(
+      at, old.size(), R"(Texture "squares" "float" "checkerboard" "float uscale" 4 "float vscale" 8 "float tex2" 0.25
+Texture "heights" "float" "fbm" "integer octaves" 3
+MakeNamedMaterial "white" "string type" "principled" "rgb base_color" [0.8 0.3 0.1] "texture metallic" "squares" "float roughness" 0.3 "float coat" 0.5 "texture displacement" "heights")");
+  caplet::Scene edited = scene();
+  const caplet::TextureNumber squares =
+      edited.add_texture({"checkerboard", true, {{"uscale", 4.0}, {"vscale", 8.0}, {"tex2", 0.25}}});
+  const caplet::TextureNumber heights = edited.add_texture({"fbm", true, {{"octaves", 3.0}}});
+  edited.set_material(0, caplet::NamedMaterial{"principled",
+                                               {{"base_color", caplet::Rgb{0.8, 0.3, 0.1}},
+                                                {"metallic", squares},
+                                                {"roughness", 0.3},
+                                                {"coat", 0.5},
+                                                {"displacement", heights}}});
+  EXPECT_TRUE(same_pictures(caplet::render(edited, test_device()),
+                            caplet::render(caplet::import_scene(folder_ / "named.pbrt"), test_device())));
+}
+
+TEST_F(LibraryAppearance, ASessionFollowsWhatIsAdded) {
+  const caplet::Device device = test_device();
+  caplet::Scene edited = scene();
+  caplet::Session session(edited, device);
+  session.render(4);
+  const caplet::Film before = session.film();
+  const auto follows = [&](const char* what) {
+    session.update(edited);
+    session.render(4);
+    EXPECT_TRUE(same_pictures(session.film(), caplet::render(edited, device))) << what;
+    EXPECT_FALSE(same_pictures(session.film(), before)) << what;
+  };
+  edited.set_material(0, caplet::NamedMaterial{"coateddiffuse", {{"reflectance", caplet::Rgb{0.7, 0.1, 0.1}}, {"alpha_u", 0.1}}});
+  follows("a coat");
+  const caplet::TextureNumber squares =
+      edited.add_texture({"checkerboard", false, {{"tex1", caplet::Rgb{0.1, 0.7, 0.1}}, {"uscale", 6.0}}});
+  edited.set_material(0, caplet::NamedMaterial{"diffuse", {{"reflectance", squares}}});
+  follows("a texture");
+  const std::uint32_t gold = edited.add_material("gold", caplet::Conductor{.reflectance = caplet::Rgb{0.9, 0.6, 0.2}});
+  edited.set_material(0, caplet::NamedMaterial{"mix", {{"materials", std::array<std::uint32_t, 2>{gold, 1}}, {"amount", 0.3}}});
+  follows("a mix");
+}
+
 TEST_F(Library, VerifyCounts) {
   const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   caplet::VerifyOptions options;

@@ -51,7 +51,22 @@ struct TextureValue {
   std::optional<std::uint32_t> texture;  // index into Scene::textures
   std::string refusal;
 };
-using TextureTable = std::map<std::string, TextureValue>;
+/// Textures by their names; one of floats and one of spectra may share a name.
+class TextureTable {
+ public:
+  /// False, and nothing is added, where there is one of that name and kind.
+  bool add(const std::string& name, TextureValue value) { return of(value.is_float).emplace(name, std::move(value)).second; }
+  /// That of the kind, else that of the other kind, else null.
+  const TextureValue* find(const std::string& name, bool is_float) const {
+    for (const bool kind : {is_float, !is_float})
+      if (const auto found = of_[kind ? 1 : 0].find(name); found != of_[kind ? 1 : 0].end()) return &found->second;
+    return nullptr;
+  }
+
+ private:
+  std::map<std::string, TextureValue>& of(bool is_float) { return of_[is_float ? 1 : 0]; }
+  std::map<std::string, TextureValue> of_[2];
+};
 
 /// Finds a finished object by its name; otherwise gives null and says in `problem` why there is none.
 using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;

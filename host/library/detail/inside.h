@@ -37,6 +37,8 @@ struct Scene::Data {
   std::vector<Logged> edits;
 
   void edit(const SceneEdit& edit);
+  /// What has changed is more than edits say: sessions take the scene anew.
+  void as_a_whole();
 };
 
 struct Device::Data {
