@@ -176,8 +176,8 @@ class Reader {
   /// Adds 0 and 360 where there are none: between the last and the first.
   static void close(std::map<double, std::vector<double>>& columns) {
     if (columns.begin()->first == 0) return;
-    const auto &[low, after] = *columns.begin();
-    const auto &[high, before] = *std::prev(columns.end());
+    const auto& [low, after] = *columns.begin();
+    const auto& [high, before] = *std::prev(columns.end());
     const double part = (360 - high) / (360 - high + low);
     std::vector<double> seam;
     for (std::size_t i = 0; i < after.size(); ++i) seam.push_back(before[i] + part * (after[i] - before[i]));

@@ -125,8 +125,7 @@ struct LightReader {
   void portal(InfiniteLight& light, const Parameter& corners) {
     if (corners.numbers.size() != 12) return parameters.error("portal", "must be four points");
     LightPortal& to = light.portal.emplace();
-    for (std::size_t i = 0; i < 4; ++i)
-      to[i] = {corners.numbers[3 * i], corners.numbers[3 * i + 1], corners.numbers[3 * i + 2]};
+    for (std::size_t i = 0; i < 4; ++i) to[i] = {corners.numbers[3 * i], corners.numbers[3 * i + 1], corners.numbers[3 * i + 2]};
   }
 };
 
@@ -163,7 +162,8 @@ std::shared_ptr<const EnvironmentImage> LightFiles::image(Parameters& parameters
 }
 
 std::shared_ptr<const IesProfile> LightFiles::profile(Parameters& parameters, const char* name) {
-  return file(parameters, name, [](const std::string& path) { return std::make_shared<IesProfile>(read_ies(path)); }, profiles_);
+  return file(
+      parameters, name, [](const std::string& path) { return std::make_shared<IesProfile>(read_ies(path)); }, profiles_);
 }
 
 std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
@@ -176,7 +176,7 @@ std::optional<Light> make_light(const std::string& type, Parameters& parameters,
     if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power");                   \
     if (Type::unit == LightUnit::illuminance) light.illuminance = positive_or_none(parameters, "illuminance"); \
     Type model;                                                                                                \
-    Type::fields(model, LightReader{parameters, world_from_light, files});                                    \
+    Type::fields(model, LightReader{parameters, world_from_light, files});                                     \
     light.model = std::move(model);                                                                            \
   }
 #include "scene/lights.def"

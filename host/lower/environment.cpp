@@ -107,7 +107,8 @@ void append_texels(const EnvironmentImage& image, FlatScene& out) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const float* rgb = &image.rgb[3 * i];
-      const std::array<float, 4> texel = environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
+      const std::array<float, 4> texel =
+          environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
       std::copy(texel.begin(), texel.end(), &out.light_texels[begin + 4 * i]);
     }
   });
@@ -138,7 +139,8 @@ glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
         column = (column + image.width) % image.width;
         row = std::clamp(row, 0, image.height - 1);
       }
-      const float* rgb = &image.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(column))];
+      const float* rgb = &image.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                                         static_cast<std::size_t>(column))];
       const double weight = (i == 0 ? 1 - (x - x0) : x - x0) * (j == 0 ? 1 - (y - y0) : y - y0);
       sum += weight * glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2]));
     }

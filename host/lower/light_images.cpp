@@ -46,7 +46,8 @@ struct PortalCell {
     const double alpha = pi * ((x + 0.5) / width - 0.5), beta = pi * ((y + 0.5) / height - 0.5);
     direction = glm::normalize(glm::dvec3(std::tan(alpha), std::tan(beta), 1));
     const glm::dvec3 squared = direction * direction;
-    solid_angle = pi * pi * (squared.y + squared.z) * (squared.x + squared.z) / direction.z / (static_cast<double>(width) * height);
+    solid_angle =
+        pi * pi * (squared.y + squared.z) * (squared.x + squared.z) / direction.z / (static_cast<double>(width) * height);
   }
 };
 

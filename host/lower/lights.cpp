@@ -29,17 +29,22 @@ constexpr std::uint32_t kind_of = light_count;
 enum { light_infinite = light_count };
 #include "scene/lights.def"
 
-// Every row of lights.def has its model: `area` and `textured_area` are emissions, and `constant`, `image` and `portal` have one together.
+// Every row of lights.def has its model: `area` and `textured_area` are emissions, and `constant`, `image` and `portal` have one
+// together.
 #define LIGHT_MODEL(name, Type) +1
 static_assert(4
 #include "scene/lights.def"
               == light_count);
 
 template <class Model>
-concept HasImage = requires(const Model& model) { model.solid_angle(0.0, 0.0); };
+concept HasImage = requires(const Model& model) {
+  model.solid_angle(0.0, 0.0);
+};
 /// The image has the colours.
 template <class Model>
-concept HasColors = HasImage<Model> && !requires(const Model& model) { model.intensity; };
+concept HasColors = HasImage<Model> && !requires(const Model& model) {
+  model.intensity;
+};
 
 /// The integral of an image over directions: of luminance, or of grey.
 template <HasImage Model>
@@ -48,10 +53,10 @@ double integral_of(const Model& light) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const float* rgb = &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x))];
-      const double value = HasColors<Model>
-                               ? luminance_of(rgb, image.space)
-                               : (static_cast<double>(usable(rgb[0])) + usable(rgb[1]) + usable(rgb[2])) / 3;
+      const float* rgb =
+          &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x))];
+      const double value = HasColors<Model> ? luminance_of(rgb, image.space)
+                                            : (static_cast<double>(usable(rgb[0])) + usable(rgb[1]) + usable(rgb[2])) / 3;
       sum += value * light.solid_angle((x + 0.5) / image.width, (y + 0.5) / image.height);
     }
   return sum / (static_cast<double>(image.width) * image.height);
@@ -150,7 +155,8 @@ class LightLowering {
     return of.luminance * pi * radius_ * radius_ * record.scale;
   }
 
-  /// As the sky without its portal has them, power and illuminance; but what goes through the portal is what the light is chosen by.
+  /// As the sky without its portal has them, power and illuminance; but what goes through the portal is what the light is chosen
+  /// by.
   double lower_portal(const InfiniteLight& light, LightRecord& record) {
     EnvironmentIntegrals sky{4 * pi, pi};
     if (FlatScene scratch; light.image && (light_->power || light_->illuminance)) sky = lower_environment(*light.image, scratch);
@@ -256,8 +262,8 @@ void lower_many_lights(const std::vector<TreeLight>& bounded, std::vector<LightS
 
 }  // namespace
 
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
-                  LightImages& images, FlatScene& out) {
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, LightImages& images,
+                  FlatScene& out) {
   out.lights.clear();
   out.light_data.clear();
   images.begin();
@@ -294,7 +300,8 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
       data.put("ball_radius", emitter.by_ball ? emitter.ball[3] : -1);
       if (record.kind == light_textured_area) data.put_picture("picture", picture.field);
       // Rounded up: nothing of the shape may lie outside.
-      static_assert(int{area_at_ball_radius} == int{textured_area_at_ball_radius} && int{area_at_ball_center} == int{textured_area_at_ball_center});
+      static_assert(int{area_at_ball_radius} == int{textured_area_at_ball_radius} &&
+                    int{area_at_ball_center} == int{textured_area_at_ball_center});
       out.light_data[record.data + area_at_ball_radius] *= 1 + 0x1p-18f;
     }
     out.lights.push_back(record);

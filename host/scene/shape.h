@@ -30,7 +30,7 @@ using Geometry = VariantBehind<void
                                >;
 
 struct AreaEmission {
-  Spectrum radiance = ConstantSpectrum{1};  // without an image
+  Spectrum radiance = ConstantSpectrum{1};        // without an image
   std::shared_ptr<const EnvironmentImage> image;  // over uv, its bottom row at v = 0
   double scale = 1;             // all scale factors of the file, multiplied ("scale", "power" resolved by lower when set)
   std::optional<double> power;  // watts over the whole shape; replaces the radiance's magnitude

@@ -12,7 +12,7 @@
 // Between the values at the ends of the cell of `angles` (at least two, ascending) that holds `angle`: which cell, and how far into it.
 static inline uint ies_cell(__global const float* angles, uint count, float angle, float* part) {
   const uint cell = cdf_cell(angles, count - 1u, angle);
-  *part = clamp((angle - angles[cell]) / (angles[cell + 1u] - angles[cell]), 0.0f, 1.0f);
+  *part = clamp((angle - angles[cell]) / fmax(angles[cell + 1u] - angles[cell], 1e-9f), 0.0f, 1.0f);
   return cell;
 }
 

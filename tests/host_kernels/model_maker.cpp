@@ -228,25 +228,7 @@ Light ModelMaker::light() {
     for (int i = 0; i < 3 * width * height; ++i) made->rgb.push_back(static_cast<float>(numbers_.fraction()));
     return made;
   };
-  switch (numbers_.below(9)) {
-    case 5:
-      out.model = GoniometricLight{spectrum(10), image(2, 2), point(), glm::dmat3(1)};
-      break;
-    case 6:
-      out.model = ProjectionLight{image(2, 1), 1 + 170 * numbers_.fraction(), point(), glm::dmat3(1)};
-      break;
-    case 7:
-      out.model = IesLight{spectrum(10),
-                           std::make_shared<IesProfile>(IesProfile{{0, 1 + numbers_.fraction()}, {0}, {numbers_.fraction(), 1}}),
-                           point(), glm::dmat3(1)};
-      break;
-    case 8: {
-      const glm::dvec3 corner = point(), x(numbers_.length(), 0, 0), y(0, numbers_.length(), 0);
-      InfiniteLight model{spectrum(10), nullptr, glm::dmat3(1), LightPortal{corner, corner + y, corner + x + y, corner + x}};
-      if (numbers_.below(2) == 0) model.image = image(2, 2);
-      out.model = model;
-      break;
-    }
+  switch (numbers_.below(5)) {
     case 0:
       out.model = PointLight{spectrum(10), point()};
       break;
@@ -257,7 +239,28 @@ Light ModelMaker::light() {
       out.model = DistantLight{spectrum(10), unit()};
       break;
     case 3:
-      out.model = InfiniteLight{spectrum(10), nullptr, glm::dmat3(1), {}};
+      switch (numbers_.below(5)) {
+        case 1:
+          out.model = GoniometricLight{spectrum(10), image(2, 2), point(), glm::dmat3(1)};
+          break;
+        case 2:
+          out.model = ProjectionLight{image(2, 1), 1 + 170 * numbers_.fraction(), point(), glm::dmat3(1)};
+          break;
+        case 3:
+          out.model = IesLight{
+              spectrum(10), std::make_shared<IesProfile>(IesProfile{{0, 1 + numbers_.fraction()}, {0}, {numbers_.fraction(), 1}}),
+              point(), glm::dmat3(1)};
+          break;
+        case 4: {
+          const glm::dvec3 corner = point(), x(numbers_.length(), 0, 0), y(0, numbers_.length(), 0);
+          InfiniteLight model{spectrum(10), nullptr, glm::dmat3(1), LightPortal{corner, corner + y, corner + x + y, corner + x}};
+          if (numbers_.below(2) == 0) model.image = image(2, 2);
+          out.model = model;
+          break;
+        }
+        default:
+          out.model = InfiniteLight{spectrum(10), nullptr, glm::dmat3(1), {}};
+      }
       break;
     default: {
       const bool square = numbers_.below(2) == 0;

@@ -53,8 +53,10 @@ TEST_F(LightFiles, GoniometricStandsWhereItsTransformPutsIt) {
 
 TEST_F(LightFiles, ProjectionHasItsFieldOfView) {
   const Scene scene = read(
-      "LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float fov\" 40\nLightSource \"projection\" \"string filename\" \"@wide.exr\"");
-  const auto &first = std::get<ProjectionLight>(scene.lights.at(0).model), &second = std::get<ProjectionLight>(scene.lights.at(1).model);
+      "LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float fov\" 40\nLightSource \"projection\" \"string "
+      "filename\" \"@wide.exr\"");
+  const auto &first = std::get<ProjectionLight>(scene.lights.at(0).model),
+             &second = std::get<ProjectionLight>(scene.lights.at(1).model);
   EXPECT_EQ(first.fov, 40);
   EXPECT_EQ(second.fov, 90);
   EXPECT_EQ(first.image, second.image);  // read once
@@ -68,7 +70,8 @@ TEST_F(LightFiles, ProjectionHasItsFieldOfView) {
 TEST_F(LightFiles, AreasAndSkiesShareAnImage) {
   const Scene scene = read(
       "AreaLightSource \"diffuse\" \"string filename\" \"@square.exr\" \"float power\" 3 \"bool twosided\" true\n"
-      "LightSource \"infinite\" \"string filename\" \"@square.exr\" \"point3 portal\" [0 0 2  0 1 2  1 1 2  1 0 2] \"float illuminance\" 5\n"
+      "LightSource \"infinite\" \"string filename\" \"@square.exr\" \"point3 portal\" [0 0 2  0 1 2  1 1 2  1 0 2] \"float "
+      "illuminance\" 5\n"
       "LightSource \"infinite\" \"string filename\" \"@wide.exr\"");
   const AreaEmission& emission = *scene.shapes.at(0).emission;
   const auto& sky = std::get<InfiniteLight>(scene.lights.at(0).model);
@@ -89,11 +92,15 @@ TEST_F(LightFiles, WhatIsWrongHasItsPlace) {
   EXPECT_EQ(only("LightSource \"projection\" \"string filename\" \"@none.exr\""),
             "scene.pbrt:2:26: LightSource \"projection\": \"filename\" no such file \"" + at + "none.exr\"");
   EXPECT_EQ(only("LightSource \"goniometric\" \"string filename\" \"@wide.exr\""),
-            "scene.pbrt:2:27: LightSource \"goniometric\": \"filename\" " + at + "wide.exr is 4 x 2 pixels, and not square (equal-area)");
-  EXPECT_EQ(only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float fov\" 180"),
-            "scene.pbrt:2:" + std::to_string(std::string("LightSource \"projection\" \"string filename\" \"wide.exr\" ").size() + at.size() + 1) +
-                ": LightSource \"projection\": \"fov\" must lie between 0.001 and 179.999");
-  EXPECT_THAT(only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float scale\" -1"), HasSubstr("\"scale\" must not be negative"));
+            "scene.pbrt:2:27: LightSource \"goniometric\": \"filename\" " + at +
+                "wide.exr is 4 x 2 pixels, and not square (equal-area)");
+  EXPECT_EQ(
+      only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float fov\" 180"),
+      "scene.pbrt:2:" +
+          std::to_string(std::string("LightSource \"projection\" \"string filename\" \"wide.exr\" ").size() + at.size() + 1) +
+          ": LightSource \"projection\": \"fov\" must lie between 0.001000 and 179.999000");
+  EXPECT_THAT(only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float scale\" -1"),
+              HasSubstr("\"scale\" must not be negative"));
   EXPECT_THAT(only("Scale 1 2 1 LightSource \"goniometric\" \"string filename\" \"@square.exr\""),
               HasSubstr("the light cannot be sheared or scaled unevenly"));
   EXPECT_THAT(only("AreaLightSource \"diffuse\" \"string filename\" \"@square.exr\" \"rgb L\" [1 1 1]"),
@@ -107,17 +114,19 @@ TEST_F(LightFiles, WhatIsWrongHasItsPlace) {
   EXPECT_EQ(only("LightSource \"infinite\" \"point3 portal\" [0 0 2  0 0 2  1 1 2  1 0 2]"),
             "scene.pbrt:2:1: the portal has two corners in one place");
   EXPECT_EQ(only("LightSource \"ies\" \"string filename\" \"@square.exr\""),
-            "scene.pbrt:2:19: LightSource \"ies\": \"filename\" " + at + "square.exr: no line begins with TILT=: this is no photometric file of LM-63");
+            "scene.pbrt:2:19: LightSource \"ies\": \"filename\" " + at +
+                "square.exr: no line begins with TILT=: this is no photometric file of LM-63");
 }
 
 // --- Photometric files ---
 
-std::string ies(const std::string& polar, const std::string& azimuths, const std::string& values, const std::string& factors = "2 1",
-                const std::string& first = "IESNA:LM-63-2002") {
+std::string ies(const std::string& polar, const std::string& azimuths, const std::string& values,
+                const std::string& factors = "2 1", const std::string& first = "IESNA:LM-63-2002") {
   const auto count = [](const std::string& list) { return std::to_string(std::count(list.begin(), list.end(), ' ') + 1); };
   const std::size_t blank = factors.find(' ');
-  return first + "\n[TEST] none\n[MANUFAC] nobody\nTILT=NONE\n1 1000 " + factors.substr(0, blank) + " " + count(polar) + " " + count(azimuths) +
-         " 1 2 0 0 0\n" + factors.substr(blank + 1) + " 3 50\n" + polar + "\n" + azimuths + "\n" + values + "\n";
+  return first + "\n[TEST] none\n[MANUFAC] nobody\nTILT=NONE\n1 1000 " + factors.substr(0, blank) + " " + count(polar) + " " +
+         count(azimuths) + " 1 2 0 0 0\n" + factors.substr(blank + 1) + " 3 50\n" + polar + "\n" + azimuths + "\n" + values +
+         "\n";
 }
 
 TEST(Ies, NumbersAreTimesTheirFactors) {
@@ -131,7 +140,9 @@ TEST(Ies, NumbersAreTimesTheirFactors) {
 }
 
 TEST(Ies, SymmetryIsFilledIn) {
-  const auto of = [](const std::string& azimuths, const std::string& values) { return parse_ies("a.ies", ies("0 90", azimuths, values, "1 1")); };
+  const auto of = [](const std::string& azimuths, const std::string& values) {
+    return parse_ies("a.ies", ies("0 90", azimuths, values, "1 1"));
+  };
   const IesProfile quarter = of("0 30 90", "1 1 2 2 3 3");
   EXPECT_EQ(quarter.azimuths.size(), 9u);  // 0 30 90 150 180 210 270 330 360
   EXPECT_NEAR(quarter.azimuths[5], 210 * pi / 180, 1e-12);
@@ -146,7 +157,8 @@ TEST(Ies, SymmetryIsFilledIn) {
   EXPECT_THAT(turned.candela, ElementsAre(2, 2, 1, 1, 2, 2, 3, 3, 4, 4, 3, 3, 2, 2));
   // Between 300 (as 240) and 60 (as 120).
   const IesProfile seam = of("90 120 240 270", "1 1 5 5 3 3 4 4");
-  EXPECT_THAT(std::vector<double>(seam.candela.begin(), seam.candela.begin() + 2), ElementsAre(testing::DoubleNear(4, 1e-12), testing::DoubleNear(4, 1e-12)));
+  EXPECT_THAT(std::vector<double>(seam.candela.begin(), seam.candela.begin() + 2),
+              ElementsAre(testing::DoubleNear(4, 1e-12), testing::DoubleNear(4, 1e-12)));
 }
 
 TEST(Ies, WhatIsWrongHasItsPlace) {
@@ -168,7 +180,8 @@ TEST(Ies, WhatIsWrongHasItsPlace) {
   EXPECT_EQ(with("2 3 1 1", "2 3 1e6 1"), "a.ies:9:7: a horizontal angle must be above the one before");
   EXPECT_EQ(with("0 45 90", "0 95 90"), "a.ies:7:6: a vertical angle must be above the one before");
   EXPECT_EQ(with("0 45 90", "0 45 190"), "a.ies:7:6: a vertical angle must lie between 0 and 180");
-  EXPECT_EQ(with("90\n0\n", "90\n5\n"), "a.ies:8:1: the horizontal angles must go from 0 to 0, 90, 180 or 360, or from 90 to 270");
+  EXPECT_EQ(with("90\n0\n", "90\n5\n"),
+            "a.ies:8:1: the horizontal angles must go from 0 to 0, 90, 180 or 360, or from 90 to 270");
   EXPECT_EQ(with("10 20 5", "10 -20 5"), "a.ies:9:4: an intensity must not be negative");
   EXPECT_EQ(with("10 20 5", "10 20 nan"), "a.ies:9:7: an intensity: 'nan' is not finite");
   EXPECT_EQ(with("10 20 5", "10 20 5 6"), "a.ies:9:9: '6' after the last intensity");

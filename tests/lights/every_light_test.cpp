@@ -109,7 +109,8 @@ TEST_P(EveryLight, KernelsOfItAloneSayTheSameAndThoseOfAllOthersNothing) {
   }
   EXPECT_EQ(expected[0].pdf > 0, trial.is_sampled);
   const std::vector<glm::dvec3> directions = sphere_directions(1000);
-  const std::vector<glm::dvec2> sky = all.sky(directions, trial.p), own_sky = alone.sky(directions, trial.p), no_sky = others.sky(directions, trial.p);
+  const std::vector<glm::dvec2> sky = all.sky(directions, trial.p), own_sky = alone.sky(directions, trial.p),
+                                no_sky = others.sky(directions, trial.p);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     ASSERT_EQ(own_sky[i].x, sky[i].x);
     ASSERT_EQ(no_sky[i].x, 0);

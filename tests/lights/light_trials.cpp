@@ -149,8 +149,8 @@ LightTrial image_trial() {
   return trial;
 }
 
-// Four times that of a rectangle of sides a and b at distance d, with a corner over the point: L / 2 (A / sqrt(1 + A^2) atan(B / sqrt(1 + A^2)) + B /
-// sqrt(1 + B^2) atan(A / sqrt(1 + B^2))), A = a / d, B = b / d.
+// Four times that of a rectangle of sides a and b at distance d, with a corner over the point: L / 2 (A / sqrt(1 + A^2) atan(B /
+// sqrt(1 + A^2)) + B / sqrt(1 + B^2) atan(A / sqrt(1 + B^2))), A = a / d, B = b / d.
 LightTrial portal_trial() {
   Light light = image_light(16, 16, true, std::vector<float>(3 * 16 * 16, 2.f));
   std::get<InfiniteLight>(light.model).portal = LightPortal{{{-1, -0.5, 2}, {-1, 0.5, 2}, {1, 0.5, 2}, {1, -0.5, 2}}};

@@ -25,7 +25,8 @@ constexpr double pi = std::numbers::pi;
 
 /// Radiance of an image's white at the wavelength that the bench tells.
 double white() {
-  static const double radiance = LightBench(lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))}))).sky({{0, 0, 1}})[0].x;
+  static const double radiance =
+      LightBench(lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))}))).sky({{0, 0, 1}})[0].x;
   return radiance;
 }
 
@@ -277,8 +278,9 @@ TEST(TexturedArea, WhatLiesBehindItsOwnFrontHasNoDensity) {
   ball.emission->two_sided = true;
   ball.alpha = TextureOperand(0.5);
   LightBench bench(lower(scene_of(ball)));
-  const std::vector<double> densities =
-      bench.area_pdf(0, {0, 0, 4}, {{{0, 0, 1}, {0, 0, 1}, 1}, {{0, 0, -1}, {0, 0, -1}, 1}, {{0.2, 0, -std::sqrt(0.96)}, {0.2, 0, -std::sqrt(0.96)}, 1}});
+  const std::vector<double> densities = bench.area_pdf(
+      0, {0, 0, 4},
+      {{{0, 0, 1}, {0, 0, 1}, 1}, {{0, 0, -1}, {0, 0, -1}, 1}, {{0.2, 0, -std::sqrt(0.96)}, {0.2, 0, -std::sqrt(0.96)}, 1}});
   EXPECT_GT(densities[0], 0);
   EXPECT_EQ(densities[1], 0);
   EXPECT_EQ(densities[2], 0);
@@ -324,7 +326,8 @@ TEST(Portal, ShowsWhatIsThroughItAlone) {
   }
 }
 
-// The image is resampled at the middles of texels, so that a fine image changes little; the mean over many directions is the sky's.
+// The image is resampled at the middles of texels, so that a fine image changes little; the mean over many directions is the
+// sky's.
 TEST(Portal, GivesTheSkysLight) {
   std::vector<double> values;
   for (int y = 0; y < 128; ++y)
@@ -343,7 +346,8 @@ TEST(Portal, GivesTheSkysLight) {
   EXPECT_NEAR(found.mean, expected, 4 * found.error + 4e-3 * expected);
 }
 
-// Of every direction that a point sees through the portal, the densities have the integral 1; and those of samples are those that rays find.
+// Of every direction that a point sees through the portal, the densities have the integral 1; and those of samples are those that
+// rays find.
 TEST(Portal, DensityIsThatOfTheSamples) {
   LightBench bench(lower(scene_with({portal_light()})));
   const std::vector<dvec3> directions = sphere_directions(1000000);
@@ -389,7 +393,8 @@ TEST(Skies, AreTheSumOfSeveral) {
     for (std::size_t i = 0; i < sky.size(); ++i) sums[i] += sky[i].x;
   }
   const FlatScene flat = lower(scene_with({first, third, second, fourth, first}));
-  const std::vector<glm::dvec2> all = LightBench(flat).sky(directions), again = LightBench(lower(scene_with({first}))).sky(directions);
+  const std::vector<glm::dvec2> all = LightBench(flat).sky(directions),
+                                again = LightBench(lower(scene_with({first}))).sky(directions);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i].x, sums[i] + again[i].x, 1e-4 * all[i].x);
   // An image that is named twice is there once: 8 texels, 16, and 256 as the portal shows them.
   EXPECT_EQ(flat.light_texels.size(), 4u * (8 + 16 + 256));

@@ -25,7 +25,8 @@ namespace caplet::pbrt {
 
 class Parser {
  public:
-  Parser(std::string main_file, const ImageReader& images) : main_file_(std::move(main_file)), images_(images), light_files_(images) {}
+  Parser(std::string main_file, const ImageReader& images)
+      : main_file_(std::move(main_file)), images_(images), light_files_(images) {}
 
   /// The scene of the main file's text. Throws InputError with everything that is wrong.
   Scene parse(std::string text);

@@ -15,7 +15,8 @@
 
 namespace caplet {
 
-/// What a luminaire sends where (ANSI/IES LM-63, type C). Angles in radians, ascending; linear between them; beyond the polar angles nothing.
+/// What a luminaire sends where (ANSI/IES LM-63, type C). Angles in radians, ascending; linear between them; beyond the polar
+/// angles nothing.
 struct IesProfile {
   std::vector<double> polar;     // from the light's -z on; at least 2
   std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or one alone for all
@@ -30,7 +31,8 @@ struct IesProfile {
       const double behind = j + 1 < azimuths.size() ? azimuths[j + 1] - azimuths[j] : 0;
       const double around = azimuths.size() == 1 ? 2 * std::numbers::pi : (before + behind) / 2;
       for (std::size_t i = 0; i + 1 < polar.size(); ++i) {
-        const double a = polar[i], b = polar[i + 1], low = candela[j * polar.size() + i], high = candela[j * polar.size() + i + 1];
+        const double a = polar[i], b = polar[i + 1], low = candela[j * polar.size() + i],
+                     high = candela[j * polar.size() + i + 1];
         // The integral of (low + slope (t - a)) sin t, by parts.
         const double slope = (high - low) / (b - a);
         sum += around * (low * std::cos(a) - high * std::cos(b) + slope * (std::sin(b) - std::sin(a)));

@@ -14,8 +14,8 @@
 
 namespace caplet {
 
-/// The corners of a rectangle in the world, in order around it. Light goes through it the way of (p3 - p0) x (p1 - p0), reversed: it is seen along
-/// that direction.
+/// The corners of a rectangle in the world, in order around it. Light goes through it the way of (p3 - p0) x (p1 - p0), reversed:
+/// it is seen along that direction.
 using LightPortal = std::array<glm::dvec3, 4>;
 
 /// An infinite light.
@@ -23,7 +23,7 @@ struct InfiniteLight {
   Spectrum radiance = ConstantSpectrum{1};  // without an image
   std::shared_ptr<const EnvironmentImage> image;
   glm::dmat3 world_from_light{1};     // rotation, possibly mirroring
-  std::optional<LightPortal> portal;  // through which alone it is seen
+  std::optional<LightPortal> portal{};  // through which alone it is seen
 
   static constexpr LightUnit unit = LightUnit::illuminance;
   template <class Self, class Visit>
