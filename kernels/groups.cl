@@ -23,12 +23,13 @@ ALL_GROUPS
 #undef BUFFER
 #undef GROUP_END
 
-// What sampling a light needs: its shape, its surfaces, its spectrum.
+// What sampling a light needs: its shape, its surfaces, its spectrum, and what lets rays through it.
 typedef struct {
   Tree tree;
   Surfaces surfaces;
   Spectra spectra;
   Lights lights;
+  Materials materials;
 } Scene;
 
 #endif

@@ -315,13 +315,13 @@ void Parser::light_source() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "light");
   if (!check_name("LightSource", type, where_, diagnostics_)) return;
-  if (auto light = make_light(type, given, state_.ctm, images_)) scene_.lights.push_back(std::move(*light));
+  if (auto light = make_light(type, given, state_.ctm, light_files_)) scene_.lights.push_back(std::move(*light));
 }
 
 void Parser::area_light_source() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "light");
-  if (check_name("AreaLightSource", type, where_, diagnostics_)) state_.emission = make_area_emission(given);
+  if (check_name("AreaLightSource", type, where_, diagnostics_)) state_.emission = make_area_emission(given, light_files_);
 }
 
 void Parser::shape() {

@@ -8,6 +8,8 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
+#include "import/detail/ies.h"
+
 namespace caplet::pbrt {
 
 namespace {
@@ -37,26 +39,6 @@ glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::
   return {0, 0, 1};
 }
 
-std::shared_ptr<const EnvironmentImage> read_environment(Parameters& parameters, const std::string& name,
-                                                         const ImageReader& images) {
-  const std::string file = resolve_file(name, parameters.where("filename"), parameters.main_file());
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
-    parameters.error("filename", "no such file " + in_quotes(file));
-    return nullptr;
-  }
-  try {
-    auto image = std::make_shared<EnvironmentImage>(images.read_rgb(file));
-    image->equal_area = image->width == image->height;
-    if (image->equal_area || image->width == 2 * image->height) return image;
-    parameters.error("filename", file + " is " + std::to_string(image->width) + " x " + std::to_string(image->height) +
-                                     " pixels, neither 1:1 (equal-area) nor 2:1 (latitude-longitude)");
-  } catch (const InputError& problem) {
-    parameters.error("filename", problem.messages().front());
-  }
-  return nullptr;
-}
-
 /// The rotation (possibly mirroring) of a similarity transform.
 glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_light) {
   const glm::dmat3 a(world_from_light);
@@ -67,19 +49,48 @@ glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_ligh
   bool orthonormal = true;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) orthonormal = orthonormal && std::abs(error[i][j]) < 1e-3;
-  if (!orthonormal) parameters.error("an image light cannot be sheared or scaled unevenly");
+  if (!orthonormal) parameters.error("the light cannot be sheared or scaled unevenly");
   return r;
+}
+
+std::string file_of(Parameters& parameters, const char* name) {
+  return resolve_file(parameters.text(name, ""), parameters.where(name), parameters.main_file());
+}
+
+std::string size_of(Parameters& parameters, const char* name, const EnvironmentImage& image) {
+  return file_of(parameters, name) + " is " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels";
 }
 
 /// Reads what scene/lights.def visits.
 struct LightReader {
   Parameters& parameters;
   const glm::dmat4& world_from_light;
-  const ImageReader& images;
+  LightFiles& files;
 
   void emission(const char* name, Spectrum& value) { value = white(parameters, name); }
   void position(const char* name, glm::dvec3& value) {
     value = glm::dvec3(world_from_light * glm::dvec4(parameters.point(name, glm::dvec3(0)), 1));
+  }
+  void place(glm::dvec3& position, glm::dmat3& rotation) {
+    position = glm::dvec3(world_from_light[3]);
+    rotation = rotation_of(parameters, world_from_light);
+  }
+  void image(const char* name, std::shared_ptr<const EnvironmentImage>& value) {
+    if (parameters.has(name))
+      value = files.image(parameters, name);
+    else
+      parameters.error("\"string " + std::string(name) + "\" is missing");
+  }
+  void directions(const char* name, std::shared_ptr<const EnvironmentImage>& value) {
+    image(name, value);
+    if (value && value->width != value->height)
+      parameters.error(name, size_of(parameters, name, *value) + ", and not square (equal-area)");
+  }
+  void profile(const char* name, std::shared_ptr<const IesProfile>& value) {
+    if (parameters.has(name))
+      value = files.profile(parameters, name);
+    else
+      parameters.error("\"string " + std::string(name) + "\" is missing");
   }
   void direction(const char* from, const char* to, glm::dvec3& value) {
     value = pbrt::direction(parameters, parameters.point(from, glm::dvec3(0)), parameters.point(to, glm::dvec3(0, 0, 1)),
@@ -87,8 +98,7 @@ struct LightReader {
   }
   void number(const char* name, double& value, double low, double high) {
     value = parameters.number(name, value);
-    if (!(value >= low && value <= high))
-      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
+    if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
   }
   void cone(double& total_angle, double& falloff_start_angle) {
     const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
@@ -98,21 +108,66 @@ struct LightReader {
     falloff_start_angle = (cone - delta) * glm::pi<double>() / 180;
   }
   void sky(InfiniteLight& light) {
-    parameters.refuse("portal");
     const bool has_radiance = parameters.has("L");
     light.radiance = white(parameters, "L");
-    if (const std::string file = parameters.text("filename", ""); !file.empty()) {
+    if (!parameters.text("filename", "").empty()) {
       if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
-      light.image = read_environment(parameters, file, images);
+      light.image = files.image(parameters, "filename");
       light.world_from_light = rotation_of(parameters, world_from_light);
+      if (light.image && !light.image->equal_area && light.image->width != 2 * light.image->height)
+        parameters.error("filename", size_of(parameters, "filename", *light.image) +
+                                         ", neither 1:1 (equal-area) nor 2:1 (latitude-longitude)");
     }
+    if (const Parameter* corners = parameters.values("portal", {"point3"})) portal(light, *corners);
+  }
+
+  // Whether it is a rectangle is for validation to say.
+  void portal(InfiniteLight& light, const Parameter& corners) {
+    if (corners.numbers.size() != 12) return parameters.error("portal", "must be four points");
+    LightPortal& to = light.portal.emplace();
+    for (std::size_t i = 0; i < 4; ++i) to[i] = {corners.numbers[3 * i], corners.numbers[3 * i + 1], corners.numbers[3 * i + 2]};
   }
 };
 
 }  // namespace
 
+template <class File, class Read>
+std::shared_ptr<const File> LightFiles::file(Parameters& parameters, const char* name, Read&& read,
+                                             std::map<std::string, std::shared_ptr<const File>>& files) {
+  const std::string given = parameters.text(name, "");
+  const std::string path = file_of(parameters, name);
+  std::error_code ignored;
+  if (given.empty() || !std::filesystem::exists(path, ignored)) {
+    parameters.error(name, "no such file " + in_quotes(path));
+    return nullptr;
+  }
+  const auto [found, fresh] = files.try_emplace(std::filesystem::weakly_canonical(path, ignored).string(), nullptr);
+  if (!fresh && found->second) return found->second;
+  try {
+    found->second = read(path);
+  } catch (const InputError& problem) {
+    parameters.error(name, problem.messages().front());
+  }
+  return found->second;
+}
+
+std::shared_ptr<const EnvironmentImage> LightFiles::image(Parameters& parameters, const char* name) {
+  const auto read = [&](const std::string& path) {
+    auto image = std::make_shared<EnvironmentImage>(reader_.read_rgb(path));
+    if (image->width < 1 || image->height < 1) throw InputError(path + " has no pixels");
+    image->equal_area = image->width == image->height;
+    return image;
+  };
+  return file(parameters, name, read, images_);
+}
+
+std::shared_ptr<const IesProfile> LightFiles::profile(Parameters& parameters, const char* name) {
+  return file(
+      parameters, name, [](const std::string& path) { return std::make_shared<IesProfile>(read_ies(path)); }, profiles_);
+}
+
 std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
-                                const ImageReader& images) {
+                                LightFiles& files) {
   Light light;
   light.where = parameters.where();
   light.scale = scale_of(parameters);
@@ -121,7 +176,7 @@ std::optional<Light> make_light(const std::string& type, Parameters& parameters,
     if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power");                   \
     if (Type::unit == LightUnit::illuminance) light.illuminance = positive_or_none(parameters, "illuminance"); \
     Type model;                                                                                                \
-    Type::fields(model, LightReader{parameters, world_from_light, images});                                    \
+    Type::fields(model, LightReader{parameters, world_from_light, files});                                     \
     light.model = std::move(model);                                                                            \
   }
 #include "scene/lights.def"
@@ -129,8 +184,9 @@ std::optional<Light> make_light(const std::string& type, Parameters& parameters,
   return light;
 }
 
-AreaEmission make_area_emission(Parameters& parameters) {
+AreaEmission make_area_emission(Parameters& parameters, LightFiles& files) {
   AreaEmission emission;
+  const bool has_radiance = parameters.has("L");
   emission.radiance = white(parameters, "L");
   emission.scale = scale_of(parameters);
   emission.power = positive_or_none(parameters, "power");
@@ -143,7 +199,10 @@ AreaEmission make_area_emission(Parameters& parameters) {
       }
       emission.surfaces.push_back(static_cast<std::uint32_t>(surface));
     }
-  parameters.refuse("filename");
+  if (!parameters.text("filename", "").empty()) {
+    if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
+    emission.image = files.image(parameters, "filename");
+  }
   parameters.finish();
   return emission;
 }

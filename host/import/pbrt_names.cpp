@@ -54,7 +54,7 @@ const std::vector<NameTable>& name_tables() {
 #define LIGHT_MODEL(name, Type) #name,
 #include "scene/lights.def"
                },
-               {"goniometric", "projection"}),
+               {}),
       {"MakeNamedMedium", {}, {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}},
       table_of("Material",
                {

@@ -236,10 +236,13 @@ void Scene::set_light(std::uint32_t light, const Spectrum& color, double scale) 
   Light to = at(data_->model.lights, light, "light");
   to.scale = scale;
   const caplet::Spectrum spectrum = to_model(color);
-  if (auto* point = std::get_if<PointLight>(&to.model)) point->intensity = spectrum;
-  if (auto* spot = std::get_if<SpotLight>(&to.model)) spot->intensity = spectrum;
-  if (auto* distant = std::get_if<DistantLight>(&to.model)) distant->irradiance = spectrum;
-  if (auto* infinite = std::get_if<InfiniteLight>(&to.model)) infinite->radiance = spectrum;
+  std::visit(
+      [&](auto& model) {
+        if constexpr (requires { model.intensity; }) model.intensity = spectrum;
+        if constexpr (requires { model.irradiance; }) model.irradiance = spectrum;
+        if constexpr (requires { model.radiance; }) model.radiance = spectrum;
+      },
+      to.model);
   changed().edit(LightEdit{light, to});
 }
 

@@ -21,11 +21,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-float usable(float x) {
-  if (!(x > 0)) return 0;
-  return std::min(x, std::numeric_limits<float>::max());
-}
-
 /// Luminances of the texels, with the neighbours that bilinear interpolation sees beyond the edges.
 class Luminances {
  public:
@@ -83,6 +78,16 @@ double running_sum(const std::vector<double>& weights, float* cdf) {
 
 }  // namespace
 
+float usable(float x) {
+  if (!(x > 0)) return 0;
+  return std::min(x, std::numeric_limits<float>::max());
+}
+
+double luminance_of(const float* rgb, ColorSpace space) {
+  const std::array<double, 9> xyz = xyz_from_rgb(space);
+  return xyz[3] * usable(rgb[0]) + xyz[4] * usable(rgb[1]) + xyz[5] * usable(rgb[2]);
+}
+
 glm::dvec3 environment_direction(bool equal_area, double u, double v) {
   if (!equal_area) {
     const double theta = pi * v, phi = 2 * pi * u;
@@ -95,26 +100,64 @@ glm::dvec3 environment_direction(bool equal_area, double u, double v) {
           std::copysign(1 - r * r, fold)};
 }
 
+void append_texels(const EnvironmentImage& image, FlatScene& out) {
+  const std::size_t count = image.rgb.size() / 3, begin = out.light_texels.size();
+  CHECK_EQ_(image.rgb.size(), 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  out.light_texels.resize(begin + 4 * count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const float* rgb = &image.rgb[3 * i];
+      const std::array<float, 4> texel =
+          environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
+      std::copy(texel.begin(), texel.end(), &out.light_texels[begin + 4 * i]);
+    }
+  });
+}
+
+glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
+  double u, v;
+  if (image.equal_area) {
+    // sphere_to_square of kernels/lights/environment.cl.
+    const double r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
+    const double b = r * std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi, a = r - b;
+    u = 0.5 * (std::copysign(d.z < 0 ? 1 - b : a, d.x) + 1);
+    v = 0.5 * (std::copysign(d.z < 0 ? 1 - a : b, d.y) + 1);
+  } else {
+    u = std::atan2(d.y, d.x) / (2 * pi);
+    if (u < 0) u += 1;
+    v = std::atan2(std::hypot(d.x, d.y), d.z) / pi;
+  }
+  const double x = u * image.width - 0.5, y = v * image.height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  glm::dvec3 sum(0);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      int column = x0 + i, row = y0 + j;
+      if (image.equal_area) {
+        fold_over_edges(&column, &row, image.width, image.height);
+      } else {
+        column = (column + image.width) % image.width;
+        row = std::clamp(row, 0, image.height - 1);
+      }
+      const float* rgb = &image.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                                         static_cast<std::size_t>(column))];
+      const double weight = (i == 0 ? 1 - (x - x0) : x - x0) * (j == 0 ? 1 - (y - y0) : y - y0);
+      sum += weight * glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2]));
+    }
+  return sum;
+}
+
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  CHECK_EQ_(image.rgb.size(), 3 * width * height);
-  out.lighting.environment_width = narrow<uint>(image.width);
-  out.lighting.environment_height = narrow<uint>(image.height);
-  out.lighting.environment_square = image.equal_area ? 1 : 0;
-  out.environment_texels.resize(4 * width * height);
-  out.environment_cdf.resize((height + 1) + height * (width + 1));
+  append_texels(image, out);
+  const std::size_t begin = out.light_cdf.size();
+  out.light_cdf.resize(begin + (height + 1) + height * (width + 1));
 
   const Luminances luminances(image);
   std::vector<double> rows(height), facing(height);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
     std::vector<double> weights(width);
     for (std::size_t y = range.begin(); y < range.end(); ++y) {
-      for (std::size_t x = 0; x < width; ++x) {
-        const float* rgb = &image.rgb[3 * (y * width + x)];
-        const std::array<float, 4> texel =
-            environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
-        std::copy(texel.begin(), texel.end(), &out.environment_texels[4 * (y * width + x)]);
-      }
       // Solid angle of a cell of this row.
       const double top = pi * static_cast<double>(y) / static_cast<double>(height);
       const double bottom = pi * static_cast<double>(y + 1) / static_cast<double>(height);
@@ -127,11 +170,11 @@ EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene&
                                                    (static_cast<double>(y) + 0.5) / static_cast<double>(height));
         facing[y] += weights[x] * std::max(0.0, d.z);
       }
-      rows[y] = running_sum(weights, &out.environment_cdf[(height + 1) + y * (width + 1)]);
+      rows[y] = running_sum(weights, &out.light_cdf[begin + (height + 1) + y * (width + 1)]);
     }
   });
   EnvironmentIntegrals integrals;
-  integrals.luminance = running_sum(rows, out.environment_cdf.data());
+  integrals.luminance = running_sum(rows, out.light_cdf.data() + begin);
   for (const double row : facing) integrals.illuminance += row;
   return integrals;
 }

@@ -38,6 +38,11 @@ void FamilyData::put_floats(std::string_view name, std::span<const float> values
   std::ranges::copy(values, field(name, static_cast<std::uint32_t>(values.size())));
 }
 
+void FamilyData::put_picture(std::string_view name, std::span<const std::uint32_t> numbers) {
+  std::ranges::transform(numbers, field(name, static_cast<std::uint32_t>(numbers.size())),
+                         [](std::uint32_t number) { return std::bit_cast<float>(number); });
+}
+
 void FamilyData::finish() const {
   for (std::size_t i = 0; i < fields_.size(); ++i)
     if ((done_ >> i & 1) == 0) throw std::logic_error(fmt::format("the field '{}' has no value", fields_[i].name));

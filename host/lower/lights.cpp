@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <numbers>
 #include <utility>
 
 #include "base/check.h"
-#include "lower/detail/environment.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/light_table.h"
 #include "lower/detail/light_tree.h"
@@ -25,21 +25,48 @@ constexpr std::uint32_t kind_of = light_count;
 #define LIGHT_MODEL(name, Type) \
   template <>                   \
   constexpr std::uint32_t kind_of<Type> = light_##name;
-// An InfiniteLight is one of two.
+// An InfiniteLight is one of three.
 enum { light_infinite = light_count };
 #include "scene/lights.def"
 
-// Every row of lights.def has its model: `area` is an emission, and `constant` and `image` have one together.
+// Every row of lights.def has its model: `area` and `textured_area` are emissions, and `constant`, `image` and `portal` have one
+// together.
 #define LIGHT_MODEL(name, Type) +1
-static_assert(2
+static_assert(4
 #include "scene/lights.def"
               == light_count);
+
+template <class Model>
+concept HasImage = requires(const Model& model) {
+  model.solid_angle(0.0, 0.0);
+};
+/// The image has the colours.
+template <class Model>
+concept HasColors = HasImage<Model> && !requires(const Model& model) {
+  model.intensity;
+};
+
+/// The integral of an image over directions: of luminance, or of grey.
+template <HasImage Model>
+double integral_of(const Model& light) {
+  const EnvironmentImage& image = *light.image;
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float* rgb =
+          &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x))];
+      const double value = HasColors<Model> ? luminance_of(rgb, image.space)
+                                            : (static_cast<double>(usable(rgb[0])) + usable(rgb[1]) + usable(rgb[2])) / 3;
+      sum += value * light.solid_angle((x + 0.5) / image.width, (y + 0.5) / image.height);
+    }
+  return sum / (static_cast<double>(image.width) * image.height);
+}
 
 /// One light of the scene (not an emissive shape): its record, data and power.
 class LightLowering {
  public:
-  LightLowering(SpectrumTable& spectra, LoweredEnvironment& environment, FlatScene& out)
-      : spectra_(spectra), environment_(environment), out_(out), radius_(out.world.radius) {}
+  LightLowering(SpectrumTable& spectra, LightImages& images, FlatScene& out)
+      : spectra_(spectra), images_(images), out_(out), radius_(out.world.radius) {}
 
   /// Luminance of the radiance of the brightest light so far, spread over all directions and the scene where it has none.
   double brightest() const { return brightest_; }
@@ -63,7 +90,7 @@ class LightLowering {
             const LightReach reach = model.reach();
             bounded.push_back({narrow<uint>(shares.size() - 1),
                                {reach.position, reach.position, reach.axis, std::cos(reach.cone), std::cos(reach.reach),
-                                power / model.per_unit()}});
+                                power / reach.solid_angle}});
           }
         },
         light.model);
@@ -76,17 +103,37 @@ class LightLowering {
   template <class Model>
   double lower(const Model& light, LightRecord& record) {
     record.kind = kind_of<Model>;
-    Emission emission{*this, record,
-                      Model::unit == LightUnit::power ? replaced(light_->power, light.per_unit())
-                                                      : replaced(light_->illuminance, light.per_unit())};
+    double unit;
+    if constexpr (HasImage<Model>)
+      unit = integral_of(light);
+    else
+      unit = light.per_unit();
+    Emission emission{*this, record, replaced(Model::unit == LightUnit::power ? light_->power : light_->illuminance, unit)};
     Model::fields(light, emission);
+    if constexpr (HasColors<Model>) emission.emission("", RgbSpectrum{glm::dvec3(1), light.image->space});
     FamilyData data = data_of(record);
-    light.data([&](const char* field, const auto& value) { data.put(field, value); });
+    light.data([&](const char* field, const auto& value) { put(data, field, value); });
     data.finish();
-    return light.power(radius_) * emission.luminance;
+    if constexpr (requires { light.power(radius_); })
+      return light.power(radius_) * emission.luminance;
+    else
+      return unit * emission.luminance;
+  }
+
+  template <class Value>
+  void put(FamilyData& data, const char* field, const Value& value) {
+    data.put(field, value);
+  }
+  void put(FamilyData& data, const char* field, const glm::dmat3& turn) { data.put_rows(field, turn); }
+  void put(FamilyData& data, const char* field, const LightPicture& picture) {
+    data.put_picture(field, images_.picture(picture, out_).field);
+  }
+  void put(FamilyData& data, const char* field, const std::shared_ptr<const IesProfile>& profile) {
+    data.put_picture(field, images_.profile(profile, out_).field);
   }
 
   double lower(const InfiniteLight& light, LightRecord& record) {
+    if (light.portal) return lower_portal(light, record);
     if (!light.image) {
       const double power = replaced(light_->power, 4 * pi * pi * radius_ * radius_);
       record.kind = light_constant;
@@ -94,19 +141,43 @@ class LightLowering {
       brightest_ = std::max(brightest_, luminance(light.radiance, record));
       return 0;  // found by BSDF sampling
     }
-    if (out_.lighting.environment_width > 0) throw InputError(light_->where, "only one infinite light may have an image");
-    if (environment_.image != light.image) environment_ = {light.image, lower_environment(*light.image, out_)};
-    out_.lighting.environment_width = narrow<uint>(light.image->width);
-    out_.lighting.environment_height = narrow<uint>(light.image->height);
-    out_.lighting.environment_square = light.image->equal_area ? 1 : 0;
-    const EnvironmentIntegrals& of = environment_.integrals;
+    const LoweredPicture picture = images_.sky(light.image, out_);
+    const EnvironmentIntegrals& of = picture.integrals;
     record.kind = light_image;
     record.spectrum = spectra_.add_illuminant(RgbSpectrum{glm::dvec3(1), light.image->space});
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
     record.scale =
         static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
-    data_of(record).put_rows("light_from_world", light.world_from_light);  // the transpose is the inverse
+    FamilyData data = data_of(record);
+    data.put_rows("light_from_world", light.world_from_light);  // the transpose is the inverse
+    data.put_picture("picture", picture.field);
+    data.finish();
     return of.luminance * pi * radius_ * radius_ * record.scale;
+  }
+
+  /// As the sky without its portal has them, power and illuminance; but what goes through the portal is what the light is chosen
+  /// by.
+  double lower_portal(const InfiniteLight& light, LightRecord& record) {
+    EnvironmentIntegrals sky{4 * pi, pi};
+    if (FlatScene scratch; light.image && (light_->power || light_->illuminance)) sky = lower_environment(*light.image, scratch);
+    const LoweredPicture picture = images_.portal(light, out_);
+    record.kind = light_portal;
+    const Spectrum color = light.image ? RgbSpectrum{glm::dvec3(1), light.image->space} : light.radiance;
+    emit(record, color,
+         light_->illuminance ? replaced(light_->illuminance, sky.illuminance)
+                             : replaced(light_->power, sky.luminance * pi * radius_ * radius_));
+    const LightPortal& corners = *light.portal;
+    const double width = glm::length(corners[3] - corners[0]), height = glm::length(corners[1] - corners[0]);
+    FamilyData data = data_of(record);
+    data.put("corner", corners[0]);
+    data.put_rows("portal_from_world", glm::transpose(portal_from_world(corners)));
+    data.put("width", width);
+    data.put("height", height);
+    data.put_picture("picture", picture.field);
+    data.finish();
+    const double unit = luminance(color, record);
+    brightest_ = std::max(brightest_, unit * picture.integrals.luminance / (2 * pi));
+    return width * height * picture.integrals.illuminance * unit;
   }
 
   /// The factor for a spectrum that by itself gives a power or illuminance of `of_unit`, so that it gives `wanted`.
@@ -127,6 +198,10 @@ class LightLowering {
       luminance = lowering.luminance(spectrum, record);
     }
     void position(const char*, const glm::dvec3&) {}
+    void place(const glm::dvec3&, const glm::dmat3&) {}
+    void image(const char*, const std::shared_ptr<const EnvironmentImage>&) {}
+    void directions(const char*, const std::shared_ptr<const EnvironmentImage>&) {}
+    void profile(const char*, const std::shared_ptr<const IesProfile>&) {}
     void direction(const char*, const char*, const glm::dvec3&) {}
     void number(const char*, double, double, double) {}
     void cone(double, double) {}
@@ -145,7 +220,7 @@ class LightLowering {
   }
 
   SpectrumTable& spectra_;
-  LoweredEnvironment& environment_;
+  LightImages& images_;
   FlatScene& out_;
   const double radius_;
   double brightest_ = 0;
@@ -187,11 +262,11 @@ void lower_many_lights(const std::vector<TreeLight>& bounded, std::vector<LightS
 
 }  // namespace
 
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
-                  LoweredEnvironment& environment, FlatScene& out) {
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, LightImages& images,
+                  FlatScene& out) {
   out.lights.clear();
   out.light_data.clear();
-  out.lighting.environment_width = out.lighting.environment_height = out.lighting.environment_square = 0;
+  images.begin();
   std::vector<LightShare> shares;
   std::vector<TreeLight> bounded;
   double brightest = 0;
@@ -201,38 +276,47 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     LightRecord record{};
     record.kind = light_area;
     record.spectrum = emitter.spectrum;
-    record.scale = static_cast<float>(emitter.scale);
+    double scale = emitter.scale, luminance = emitter.luminance;
+    LoweredPicture picture;
+    if (emitter.of_image) {
+      picture = images.picture({emitter.of_image->image, false}, out);
+      if (emitter.of_image->power) scale = picture.mean > 0 ? scale / picture.mean : 0;
+      luminance = scale * picture.mean;
+    }
+    record.scale = static_cast<float>(scale);
     record.flags = emitter.two_sided ? CAPLET_LIGHT_BOTH_SIDES : 0;
     record.slot = emitter.slot;
     record.instance = emitter.instance;
     record.geometry = emitter.geometry;
     record.data = CAPLET_NONE;
-    if (emitter.by_ball) {
+    const bool has_alpha = out.geometries[emitter.geometry].alpha != CAPLET_NONE;
+    if (emitter.of_image || has_alpha) record.kind = light_textured_area;
+    if (emitter.unseen) record.flags |= CAPLET_LIGHT_UNSEEN;
+    if (emitter.by_ball || record.kind == light_textured_area) {
       record.data = narrow<uint>(out.light_data.size());
-      out.light_data.resize(record.data + area_floats);
-      FamilyData data(light_fields[light_area], &out.light_data[record.data]);
+      out.light_data.resize(record.data + light_floats[record.kind]);
+      FamilyData data(light_fields[record.kind], &out.light_data[record.data]);
       data.put("ball_center", glm::dvec3(emitter.ball[0], emitter.ball[1], emitter.ball[2]));
-      data.put("ball_radius", emitter.ball[3]);
+      data.put("ball_radius", emitter.by_ball ? emitter.ball[3] : -1);
+      if (record.kind == light_textured_area) data.put_picture("picture", picture.field);
       // Rounded up: nothing of the shape may lie outside.
+      static_assert(int{area_at_ball_radius} == int{textured_area_at_ball_radius} &&
+                    int{area_at_ball_center} == int{textured_area_at_ball_center});
       out.light_data[record.data + area_at_ball_radius] *= 1 + 0x1p-18f;
     }
     out.lights.push_back(record);
-    brightest = std::max(brightest, emitter.luminance);
-    const double power = pi * emitter.area * emitter.luminance * (emitter.two_sided ? 2 : 1);
+    brightest = std::max(brightest, luminance);
+    const double power = pi * emitter.area * luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
     if (shares.back().power > 0) bounded.push_back({narrow<uint>(shares.size() - 1), bounds_of(emitter, power)});
   }
-  LightLowering lowering(spectra, environment, out);
+  LightLowering lowering(spectra, images, out);
   for (const Light& light : scene.lights)
     if (!is_infinite(light)) lowering.add(light, shares, bounded);
   out.lighting.infinite_begin = narrow<uint>(out.lights.size());
   for (const Light& light : scene.lights)
     if (is_infinite(light)) lowering.add(light, shares, bounded);
-  if (out.lighting.environment_width == 0) {
-    environment = {};
-    out.environment_texels.clear();
-    out.environment_cdf.clear();
-  }
+  images.end(out);
   out.lighting.radiance = static_cast<float>(std::max(brightest, lowering.brightest()));
   out.lighting.light_count = narrow<uint>(out.lights.size());
   out.lighting.sampled_light_count =

@@ -289,17 +289,16 @@ struct LiveScene::State {
     const auto alias = to.light_alias;
     const auto nodes = to.light_nodes, places = to.light_places;
     const LightingRecord lighting = to.lighting;
-    const auto image = lowering->environment.image;
-    lower_lights(scene, geometry().emitters, lowering->spectra, lowering->environment, to);
+    lower_lights(scene, geometry().emitters, lowering->spectra, lowering->light_images, to);
     add_differences(lights, to.lights, changes.lights);
     add_differences(data, to.light_data, changes.light_data);
     add_differences(alias, to.light_alias, changes.light_alias);
     add_differences(nodes, to.light_nodes, changes.light_nodes);
     add_differences(places, to.light_places, changes.light_places);
     if (!same_bytes(lighting, to.lighting)) changes.lighting.add(0, 1);
-    if (image != lowering->environment.image) {
-      changes.environment_texels.add(0, to.environment_texels.size());
-      changes.environment_cdf.add(0, to.environment_cdf.size());
+    if (lowering->light_images.has_changed()) {
+      changes.light_texels.add(0, to.light_texels.size());
+      changes.light_cdf.add(0, to.light_cdf.size());
     }
     lights_are_old = false;
   }

@@ -20,7 +20,7 @@ Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), 
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));
   geometry = lower_geometry(scene, images, spectra, flat);
-  lower_lights(scene, geometry.emitters, spectra, environment, flat);
+  lower_lights(scene, geometry.emitters, spectra, light_images, flat);
   flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -92,6 +92,13 @@ void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& em
   emitter.ball[3] = radius + 0x1p-23 * glm::length(center);
 }
 
+/// pbrt-v4: where the alpha is the number 0, rays pass everywhere, and light is given nevertheless.
+bool is_unseen(const Shape& shape) {
+  if (!shape.alpha || shape.alpha->texture) return false;
+  const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
+  return number && !(number->value > 0);
+}
+
 }  // namespace
 
 InstanceRecord instance_record(const Part& part, const Matrix& world_from_part, std::uint32_t object) {
@@ -133,8 +140,12 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
   emitter.group = group;
   emitter.instance = instance;
   emitter.two_sided = emission.two_sided;
-  emitter.spectrum = spectra.add_illuminant(emission.radiance);
-  const double luminance = spectra.illuminant_luminance(emission.radiance);
+  const Spectrum color = emission.image ? RgbSpectrum{dvec3(1), emission.image->space} : emission.radiance;
+  emitter.spectrum = spectra.add_illuminant(color);
+  emitter.of_image = emission.image ? &emission : nullptr;
+  emitter.unseen = is_unseen(*emissive.shape);
+  // That of an image's white.
+  const double luminance = spectra.illuminant_luminance(color);
   emitter.scale = emission.scale;
   if (emission.power) {
     // pbrt-v4: the power of a light of radiance 1, whatever the colour.

@@ -48,9 +48,17 @@ std::uint64_t model_bytes(const Scene& scene) {
   for (const Object& object : scene.objects)
     for (const Shape& shape : object.shapes) out += bytes_of(shape, counted);
   std::set<const EnvironmentImage*> images;
+  const auto add = [&](const std::shared_ptr<const EnvironmentImage>& image) {
+    if (image && images.insert(image.get()).second) out += bytes_of(image->rgb);
+  };
   for (const Light& light : scene.lights)
-    if (const auto* infinite = std::get_if<InfiniteLight>(&light.model); infinite && infinite->image)
-      if (images.insert(infinite->image.get()).second) out += bytes_of(infinite->image->rgb);
+    std::visit(
+        [&](const auto& model) {
+          if constexpr (requires { model.image; }) add(model.image);
+        },
+        light.model);
+  for (const Shape& shape : scene.shapes)
+    if (shape.emission) add(shape.emission->image);
   return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -14,6 +15,7 @@
 #include "base/error.h"
 #include "scene/bounds.h"
 #include "scene/geometries.def"
+#include "scene/light_image.h"
 #include "scene/spectrum.h"
 #include "scene/texture_operand.h"
 
@@ -24,10 +26,12 @@ using VariantBehind = std::variant<Types...>;
 using Geometry = VariantBehind<void
 #define GEOMETRY(Type, name) , Type
 #include "scene/geometries.def"
+#include "scene/light_image.h"
                                >;
 
 struct AreaEmission {
-  Spectrum radiance = ConstantSpectrum{1};
+  Spectrum radiance = ConstantSpectrum{1};        // without an image
+  std::shared_ptr<const EnvironmentImage> image;  // over uv, its bottom row at v = 0
   double scale = 1;             // all scale factors of the file, multiplied ("scale", "power" resolved by lower when set)
   std::optional<double> power;  // watts over the whole shape; replaces the radiance's magnitude
   bool two_sided = false;

@@ -280,16 +280,58 @@ class Validator {
       if (!finite(d)) validator.error(where, "the light's direction is not finite");
     }
     void cone(double, double) {}
+    void place(const glm::dvec3& p, const glm::dmat3& turn) {
+      position("from", p);
+      if (!finite(turn[0]) || !finite(turn[1]) || !finite(turn[2])) validator.error(where, "the light's rotation is not finite");
+    }
+    void image(const char*, const std::shared_ptr<const EnvironmentImage>& of) {
+      if (!of) return validator.error(where, "the light has no image");
+      validator.image(*of, where);
+    }
+    void directions(const char* name, const std::shared_ptr<const EnvironmentImage>& of) {
+      image(name, of);
+      if (of && of->width != of->height) validator.error(where, "the light's image is not square");
+    }
+    void profile(const char*, const std::shared_ptr<const IesProfile>& of) {
+      if (!of) return validator.error(where, "the light has no profile");
+      bool good = of->polar.size() >= 2 && !of->azimuths.empty() && of->candela.size() == of->polar.size() * of->azimuths.size();
+      for (const auto* angles : {&of->polar, &of->azimuths})
+        for (std::size_t i = 0; i < angles->size(); ++i)
+          good = good && std::isfinite((*angles)[i]) && (i == 0 || (*angles)[i] > (*angles)[i - 1]);
+      for (const double value : of->candela) good = good && std::isfinite(value) && value >= 0;
+      if (!good) validator.error(where, "the light's profile is no table of intensities by ascending angles");
+    }
     void sky(const InfiniteLight& l) {
       emission("L", l.radiance);
-      if (!l.image) return;
-      if (l.image->width <= 0 || l.image->height <= 0 ||
-          l.image->rgb.size() != 3 * static_cast<std::size_t>(l.image->width) * static_cast<std::size_t>(l.image->height))
-        return validator.error(where, "the light's image has the wrong size");
-      for (const float value : l.image->rgb)
-        if (!std::isfinite(value)) return validator.error(where, "the light's image has pixels that are not finite");
+      if (l.image) validator.image(*l.image, where);
+      if (l.portal) validator.portal(*l.portal, where);
     }
   };
+
+  void image(const EnvironmentImage& of, const SourceLocation& where) {
+    if (of.width <= 0 || of.height <= 0 ||
+        of.rgb.size() != 3 * static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height))
+      return error(where, "the light's image has the wrong size");
+    for (const float value : of.rgb)
+      if (!std::isfinite(value)) return error(where, "the light's image has pixels that are not finite");
+  }
+
+  /// Sides within 1e-3 of a rectangle's, as in pbrt-v4.
+  void portal(const LightPortal& p, const SourceLocation& where) {
+    for (const glm::dvec3& corner : p)
+      for (int k = 0; k < 3; ++k)
+        if (!(std::abs(corner[k]) <= largest_length)) return error(where, "the portal has a corner that is not within 1e18");
+    std::array<glm::dvec3, 4> sides;  // 01, 12, 32, 03
+    const std::array<glm::dvec3, 4> edges = {p[1] - p[0], p[2] - p[1], p[2] - p[3], p[3] - p[0]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!(glm::length(edges[i]) > 0)) return error(where, "the portal has two corners in one place");
+      sides[i] = glm::normalize(edges[i]);
+    }
+    const auto along = [&](std::size_t a, std::size_t b) { return glm::dot(sides[a], sides[b]); };
+    if (!(std::abs(along(0, 2) - 1) < 1e-3 && std::abs(along(1, 3) - 1) < 1e-3 && std::abs(along(0, 1)) < 1e-3 &&
+          std::abs(along(0, 3)) < 1e-3))
+      error(where, "the portal's corners are not those of a rectangle, in order");
+  }
 
   /// What a geometry finds, at the place of its shape.
   class Report : public ShapeCheck {
@@ -336,7 +378,6 @@ class Validator {
         float_texture(*s.alpha->texture, s.where, "alpha");
       else if (!number_of || !std::isfinite(number_of->value))
         error(s.where, "the alpha is not a finite number");
-      if (s.emission) error(s.where, "a shape with an \"alpha\" cannot be a light yet");
     }
     if (const auto* csg = std::get_if<CsgShape>(&s.geometry))
       for (const auto& operand : csg->operands)
@@ -351,6 +392,7 @@ class Validator {
 
   void emission(const Shape& s) {
     spectrum(s.emission->radiance, s.where, "the emission");
+    if (s.emission->image) image(*s.emission->image, s.where);
     if (!(s.emission->scale >= 0 && std::isfinite(s.emission->scale))) error(s.where, "the emission's scale must be from 0 up");
     for (const std::uint32_t surface : s.emission->surfaces)
       if (surface >= surface_count(s))

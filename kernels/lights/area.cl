@@ -24,7 +24,15 @@ typedef struct {
   float3 p, n;  // n: unit, on the emitting side of a one-sided light
   float error;  // how far p and what a ray meets may lie apart, along n
   float pdf;    // solid angle
+  uint surface; // HitRecord.surface
 } AreaSample;
+
+// The ball by which the light is sampled, or 0.
+static inline __global const float* area_ball(const Lights* lights, __global const LightRecord* light) {
+  if (!any_ball_light || light->data == CAPLET_NONE) return 0;
+  __global const float* data = lights->light_data + light->data;
+  return area_ball_radius(data) > 0.0f ? data : 0;
+}
 
 // The primitive's data (shapes/fields.cl).
 static inline __global const float* area_data(const Tree* tree, __global const LightRecord* light) {
@@ -100,9 +108,10 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   const int placed = light->instance != CAPLET_NONE;
   float per_area = 0.0f;
   s->pdf = 0.0f;
+  s->surface = 0u;
 
-  if (any_ball_light && light->data != CAPLET_NONE) {
-    __global const float* ball = scene->lights.light_data + light->data;
+  __global const float* ball = area_ball(&scene->lights, light);
+  if (ball) {
     const float3 wi = ball_sample(ball, p, u);
     HitRecord hit;
     if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit)) return 0;
@@ -111,6 +120,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
     if (found.light == CAPLET_NONE || (!both && !(dot(found.ng, wi) < 0.0f))) return 0;
     s->p = found.p;
     s->n = found.ng;
+    s->surface = hit.surface;
     s->error = area_error(&scene->tree, light, norm1(load3(ball)) + ball[3], found.p, p);
     s->pdf = fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
     return 1;
@@ -150,7 +160,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
       if (!both && !(dot(q - center, n) > 0.0f)) return 0;
       per_area = CAPLET_INV_PI / sqr(disk_r(data));
     } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
-      per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, geometry, data), u, &x, &n);
+      per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, geometry, data), u, &x, &n, &s->surface);
       if (!(per_area > 0.0f)) return 0;
       if (flip) n = -n;
     } else {
@@ -176,8 +186,9 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   if (!(distance_squared > 0.0f)) return 0;
   const float facing = -dot(s->n, away) / sqrt(distance_squared);
   if (both ? facing == 0.0f : !(facing > 0.0f)) return 0;
+  // Before ReverseOrientation a ray enters against the normal.
+  if ((facing > 0.0f) == flip) s->surface |= CAPLET_LEAVING;
   if (placed) {
-    // Before ReverseOrientation a ray enters against the normal.
     const uint unseen = (facing > 0.0f) != flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
     if (scene->tree.instances[light->instance].flags & unseen) return 0;
   }
@@ -191,7 +202,8 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
 static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
   const uint shape = scene->surfaces.geometries[light->geometry].shape;
   __global const float* data = area_data(&scene->tree, light);
-  if (any_ball_light && light->data != CAPLET_NONE) return fmin(ball_pdf(scene->lights.light_data + light->data, p), CAPLET_MAX_DENSITY);
+  __global const float* ball = area_ball(&scene->lights, light);
+  if (ball) return fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
   const float cone = area_sphere_cone(light, shape, data, p);
   if (cone > 0.0f) return fmin(1.0f / (2.0f * CAPLET_PI * cone), CAPLET_MAX_DENSITY);
   const float3 away = x - p;
@@ -225,21 +237,32 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
   return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
 }
 
-static inline int area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
-  AreaSample point;
-  if (!area_sample(scene, light, p, u, &point)) return 0;
-  const float3 away = point.p - p;
+// All of a light sample but its radiance, and the point.
+static inline int area_sample_towards(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* point, LightSample* s) {
+  if (!area_sample(scene, light, p, u, point)) return 0;
+  const float3 away = point->p - p;
   s->wi = unit_or(away, (float3)(0.0f));
   if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
-  s->target = offset_origin(point.p, point.n, point.error, -s->wi);
+  s->target = offset_origin(point->p, point->n, point->error, -s->wi);
   if (!(norm1(s->target) < INFINITY)) return 0;  // the light's error bound is beyond floats
-  s->pdf = point.pdf;
+  s->pdf = point->pdf;
+  return 1;
+}
+
+static inline int area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+  AreaSample point;
+  if (!area_sample_towards(scene, light, p, u, &point, s)) return 0;
   s->radiance = light_spectrum(&scene->spectra, light, lambda, 1.0f);
   return 1;
 }
 
 static inline float area_light_pdf(const Scene* scene, __global const LightRecord* light, float3 p, const Surface* hit, float3 wi) {
   return area_pdf(scene, light, p, hit->p, hit->ng, wi);
+}
+
+static inline float4 area_light_emitted(const Spectra* spectra, const Lights* lights, __global const LightRecord* light, float2 uv, float4 lambda) {
+  (void)lights, (void)uv;
+  return spectrum_eval(spectra, light->spectrum, lambda) * light->scale;
 }
 
 #endif

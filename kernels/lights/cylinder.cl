@@ -29,8 +29,8 @@ static inline float cylinder_density(float3 areas) {
   return total > 0.0f ? 1.0f / total : 0.0f;
 }
 
-// x on the surface, n outward (object space); returns the density per area, 0 when nothing emits.
-static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x, float3* n) {
+// x on the surface, n outward (object space), and which surface: the side, an end; returns the density per area, 0 when nothing emits.
+static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x, float3* n, uint* surface) {
   const float density = cylinder_density(areas);
   if (!(density > 0.0f)) return 0.0f;
   const float3 p0 = cylinder_p0(data), p1 = cylinder_p1(data);
@@ -40,6 +40,7 @@ static inline float cylinder_sample(__global const float* data, float3 areas, fl
   const float at = u.x * (areas.x + areas.y + areas.z);
   if (at < areas.x) {
     const float phi = 2.0f * CAPLET_PI * u.y;
+    *surface = 0u;
     *n = frame.s * cos(phi) + frame.t * sin(phi);
     *x = p0 + (at / areas.x) * (p1 - p0) + r * *n;
     return density;
@@ -47,6 +48,7 @@ static inline float cylinder_sample(__global const float* data, float3 areas, fl
   const int first = at - areas.x < areas.y;
   const float rest = first ? (at - areas.x) / areas.y : (at - areas.x - areas.y) / areas.z;
   const float2 d = r * sample_disk((float2)(fmin(rest, 0x1.fffffep-1f), u.y));
+  *surface = first ? 1u : 2u;
   *n = first ? -axis : axis;
   *x = (first ? p0 : p1) + (frame.s * d.x + frame.t * d.y);
   return density;

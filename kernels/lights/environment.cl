@@ -5,7 +5,7 @@
 #ifndef CAPLET_LIGHTS_ENVIRONMENT_CL
 #define CAPLET_LIGHTS_ENVIRONMENT_CL
 
-#include "groups.cl"
+#include "lights/light_types.cl"
 #include "math/spectrum.cl"
 #include "math/vector.cl"
 #include "shared/octahedron.h"
@@ -48,27 +48,27 @@ static inline float2 sphere_to_latlong(float3 d, float* sine) {
 
 // The texel at (x, y), each at most one beyond the image: around in longitude, the pole's row again in latitude; over the folded
 // edges of the octahedron.
-static inline float4 environment_texel(const Lights* lights, int x, int y) {
-  const int width = (int)lights->lighting->environment_width, height = (int)lights->lighting->environment_height;
-  if (lights->lighting->environment_square) {
+static inline float4 environment_texel(const Picture* picture, int x, int y) {
+  const int width = (int)picture->width, height = (int)picture->height;
+  if (picture->square) {
     fold_over_edges(&x, &y, width, height);
   } else {
     x = x < 0 ? x + width : x >= width ? x - width : x;
     y = clamp(y, 0, height - 1);
   }
-  return vload4((size_t)y * (size_t)width + (size_t)x, lights->environment_texels);
+  return vload4((size_t)y * (size_t)width + (size_t)x, picture->texels);
 }
 
 // Radiance (before the light's scale) at uv of the image, whose colours are under `illuminant` (a table): bilinear between the
 // radiances of texels, which stand at their centres.
-static inline float4 environment_radiance(const Lights* lights, __global const float* illuminant, float2 uv, float4 lambda) {
-  const float2 at = uv * (float2)((float)lights->lighting->environment_width, (float)lights->lighting->environment_height) - 0.5f;
+static inline float4 environment_radiance(const Picture* picture, __global const float* illuminant, float2 uv, float4 lambda) {
+  const float2 at = uv * (float2)((float)picture->width, (float)picture->height) - 0.5f;
   const float2 low = floor(at), t = at - low;
   const int x = (int)low.x, y = (int)low.y;
-  const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(lights, x, y), lambda);
-  const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(lights, x + 1, y), lambda);
-  const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(lights, x, y + 1), lambda);
-  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(lights, x + 1, y + 1), lambda);
+  const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(picture, x, y), lambda);
+  const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(picture, x + 1, y), lambda);
+  const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(picture, x, y + 1), lambda);
+  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(picture, x + 1, y + 1), lambda);
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
 }
 
@@ -85,45 +85,45 @@ static inline uint cdf_cell(__global const float* cdf, uint cells, float u) {
   return low;
 }
 
-static inline __global const float* environment_row(const Lights* lights, uint row) {
-  return lights->environment_cdf + (lights->lighting->environment_height + 1u) + (size_t)row * (lights->lighting->environment_width + 1u);
+static inline __global const float* environment_row(const Picture* picture, uint row) {
+  return picture->cdf + (picture->height + 1u) + (size_t)row * (picture->width + 1u);
 }
 
 // Density over the unit square of the image at cell (column, row).
-static inline float environment_density(const Lights* lights, uint column, uint row) {
-  __global const float* conditional = environment_row(lights, row);
-  return (lights->environment_cdf[row + 1] - lights->environment_cdf[row]) * (conditional[column + 1] - conditional[column]) *
-         ((float)lights->lighting->environment_width * (float)lights->lighting->environment_height);
+static inline float environment_density(const Picture* picture, uint column, uint row) {
+  __global const float* conditional = environment_row(picture, row);
+  return (picture->cdf[row + 1] - picture->cdf[row]) * (conditional[column + 1] - conditional[column]) *
+         ((float)picture->width * (float)picture->height);
 }
 
-static inline float environment_solid_angle_density(const Lights* lights, float per_square, float sine) {
-  if (lights->lighting->environment_square) return per_square * (0.25f * CAPLET_INV_PI);
+static inline float environment_solid_angle_density(const Picture* picture, float per_square, float sine) {
+  if (picture->square) return per_square * (0.25f * CAPLET_INV_PI);
   return sine > 0.0f ? per_square * (0.5f * CAPLET_INV_PI * CAPLET_INV_PI) / sine : 0.0f;
 }
 
 // Direction in the light's space, its place in the image and its solid-angle density (0: nothing).
-static inline float environment_sample(const Lights* lights, float2 u, float3* direction, float2* uv) {
-  const uint width = lights->lighting->environment_width, height = lights->lighting->environment_height;
-  const uint row = cdf_cell(lights->environment_cdf, height, u.y);
-  __global const float* conditional = environment_row(lights, row);
+static inline float environment_sample(const Picture* picture, float2 u, float3* direction, float2* uv) {
+  const uint width = picture->width, height = picture->height;
+  const uint row = cdf_cell(picture->cdf, height, u.y);
+  __global const float* conditional = environment_row(picture, row);
   const uint column = cdf_cell(conditional, width, u.x);
   const float x_begin = conditional[column], x_step = conditional[column + 1] - x_begin;
-  const float y_begin = lights->environment_cdf[row], y_step = lights->environment_cdf[row + 1] - y_begin;
+  const float y_begin = picture->cdf[row], y_step = picture->cdf[row + 1] - y_begin;
   if (!(x_step > 0.0f && y_step > 0.0f)) return 0.0f;
   *uv = (float2)(((float)column + clamp((u.x - x_begin) / x_step, 0.0f, 1.0f)) / (float)width,
                  ((float)row + clamp((u.y - y_begin) / y_step, 0.0f, 1.0f)) / (float)height);
   float sine = 1.0f;
-  *direction = lights->lighting->environment_square ? square_to_sphere(*uv) : latlong_to_sphere(*uv, &sine);
-  return environment_solid_angle_density(lights, environment_density(lights, column, row), sine);
+  *direction = picture->square ? square_to_sphere(*uv) : latlong_to_sphere(*uv, &sine);
+  return environment_solid_angle_density(picture, environment_density(picture, column, row), sine);
 }
 
 // Place of a direction (light's space) in the image, and the density that environment_sample has for it.
-static inline float2 environment_locate(const Lights* lights, float3 direction, float* pdf) {
-  const uint width = lights->lighting->environment_width, height = lights->lighting->environment_height;
+static inline float2 environment_locate(const Picture* picture, float3 direction, float* pdf) {
+  const uint width = picture->width, height = picture->height;
   float sine = 1.0f;
-  const float2 uv = lights->lighting->environment_square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
+  const float2 uv = picture->square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
   const uint column = min((uint)(uv.x * (float)width), width - 1u), row = min((uint)(uv.y * (float)height), height - 1u);
-  *pdf = environment_solid_angle_density(lights, environment_density(lights, column, row), sine);
+  *pdf = environment_solid_angle_density(picture, environment_density(picture, column, row), sine);
   return uv;
 }
 

@@ -26,6 +26,33 @@ static inline __global const float* light_data_of(const Lights* lights, __global
   return lights->light_data + light->data;
 }
 
+// An image of a light (lights.def).
+typedef struct {
+  __global const float *texels, *cdf;
+  uint width, height, square;
+} Picture;
+
+static inline Picture picture_of(const Lights* lights, __global const float* field) {
+  const Picture picture = {lights->light_texels + as_uint(field[0]), lights->light_cdf + as_uint(field[1]), as_uint(field[2]), as_uint(field[3]), as_uint(field[4])};
+  return picture;
+}
+
+// Number of the texel that holds uv, which are within 0 and 1.
+static inline size_t picture_nearest(const Picture* picture, float2 uv) {
+  const uint x = min((uint)(uv.x * (float)picture->width), picture->width - 1u), y = min((uint)(uv.y * (float)picture->height), picture->height - 1u);
+  return (size_t)y * picture->width + x;
+}
+
+// The table of the illuminant that the colours of a light's picture are under.
+static inline __global const float* picture_illuminant(const Spectra* spectra, __global const LightRecord* light) {
+  return spectra->spectrum_tables + spectra->spectra[light->spectrum].table;
+}
+
+// v under a turn (lights.def).
+static inline float3 light_turned(__global const float* turn, float3 v) {
+  return (float3)(dot(load3(turn), v), dot(load3(turn + 3), v), dot(load3(turn + 6), v));
+}
+
 // The light's own spectrum.
 static inline float4 light_spectrum(const Spectra* spectra, __global const LightRecord* light, float4 lambda, float weight) {
   return spectrum_eval(spectra, light->spectrum, lambda) * (light->scale * weight);

@@ -8,7 +8,8 @@
 //   int NAME_light_sample(scene, light, p, lambda, u, s)      as light_sample: fills wi, target, radiance and pdf (of wi alone; delta
 //                                                             lights: 1). Not asked of what glows
 //   float NAME_light_pdf(scene, light, p, hit, wi)            surface: density that it has for wi, which meets the light at `hit`
-//   float4 NAME_light_radiance(spectra, lights, light, wi, lambda, pdf)   sky, glow: from direction wi, and the density for it (sky)
+//   float4 NAME_light_emitted(spectra, lights, light, uv, lambda)   surface: radiance at uv of it, on a side that emits
+//   float4 NAME_light_radiance(spectra, lights, light, p, wi, lambda, pdf)   sky, glow: that comes to p from direction wi, and the density for it (sky)
 #ifndef CAPLET_LIGHTS_LIGHTS_CL
 #define CAPLET_LIGHTS_LIGHTS_CL
 
@@ -102,11 +103,22 @@ static inline int light_sample(const Scene* scene, LightReceiver at, float4 lamb
   return s->pdf > 0.0f;
 }
 
-// Radiance of area light `light` at a point with normal ng (Surface.ng) towards wo; 0 from the dark side.
-static inline float4 light_emitted(const Spectra* spectra, const Lights* lights, uint light, float3 ng, float3 wo, float4 lambda) {
+// Radiance of area light `light` at a point with normal ng (Surface.ng) and uv, towards wo; 0 from the dark side.
+static inline float4 light_emitted(const Spectra* spectra, const Lights* lights, uint light, float3 ng, float2 uv, float3 wo, float4 lambda) {
   __global const LightRecord* record = lights->lights + light;
   if (!(record->flags & CAPLET_LIGHT_BOTH_SIDES) && !(dot(ng, wo) > 0.0f)) return (float4)(0.0f);
-  return spectrum_eval(spectra, record->spectrum, lambda) * record->scale;
+  switch (record->kind) {
+#define LIGHT_EMITTED_surface(name) \
+  case light_##name: return name##_light_emitted(spectra, lights, record, uv, lambda);
+#define LIGHT_EMITTED_delta(name)
+#define LIGHT_EMITTED_far_delta(name)
+#define LIGHT_EMITTED_sky(name)
+#define LIGHT_EMITTED_glow(name)
+#define LIGHT(name, way) LIGHT_EMITTED_##way(name)
+#include "rows/lights.def"
+#undef LIGHT
+    default: return (float4)(0.0f);
+  }
 }
 
 // Density (solid angle times chance of the light) that light_sample has at `at` for the unit direction wi, which meets light `light` at `hit`.
@@ -129,9 +141,9 @@ static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver
   }
 }
 
-// Sum over infinite lights of radiance times MIS weight, for a ray of direction wi (unit) that left the scene. bsdf_pdf:
+// Sum over infinite lights of radiance times MIS weight, for a ray from p in direction wi (unit) that left the scene. bsdf_pdf:
 // solid-angle density that the ray was made with; `specular`: no light sample could have made it (also camera rays).
-static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
+static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 p, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
   float4 sum = (float4)(0.0f);
   const LightReceiver anywhere = {(float3)(0.0f), CAPLET_NONE};  // no infinite light is in the tree
   for (uint i = lights->lighting->infinite_begin; i < lights->lighting->light_count; ++i) {
@@ -143,13 +155,13 @@ static inline float4 light_infinite(const Spectra* spectra, const Lights* lights
 #define LIGHT_MET_far_delta(name)
 #define LIGHT_MET_sky(name)                                                                                \
   case light_##name: {                                                                                     \
-    const float4 radiance = name##_light_radiance(spectra, lights, light, wi, lambda, &pdf);               \
+    const float4 radiance = name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf);               \
     pdf *= lights->lighting->sampled_light_count > 0u ? light_chance(lights, i, &anywhere) : 0.0f;           \
     sum += radiance * (specular ? 1.0f : power_heuristic(bsdf_pdf, pdf));                                  \
     break;                                                                                                 \
   }
 #define LIGHT_MET_glow(name) \
-  case light_##name: sum += name##_light_radiance(spectra, lights, light, wi, lambda, &pdf); break;
+  case light_##name: sum += name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf); break;
 #define LIGHT(name, way) LIGHT_MET_##way(name)
 #include "rows/lights.def"
 #undef LIGHT

@@ -19,6 +19,7 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_scalar 1
 #define CAPLET_FLOATS_OF_vector 3
 #define CAPLET_FLOATS_OF_turn 9
+#define CAPLET_FLOATS_OF_picture 5
 #define CAPLET_FLOATS_OF_spectrum 1
 #define CAPLET_FLOATS_OF_texture 1
 #define CAPLET_FLOATS_OF_number 1
@@ -65,6 +66,7 @@ enum {
 #define CAPLET_FIELD_vector(function, at) \
   CAPLET_ACCESSOR(CAPLET_DATA) function(CAPLET_DATA data) { return data + (at); }
 #define CAPLET_FIELD_turn(function, at) CAPLET_FIELD_vector(function, at)
+#define CAPLET_FIELD_picture(function, at) CAPLET_FIELD_vector(function, at)
 #define CAPLET_FIELD_spectrum(function, at) \
   CAPLET_ACCESSOR(CAPLET_UINT) function(CAPLET_DATA data) { return CAPLET_BITS(data[at]); }
 #define CAPLET_FIELD_texture(function, at) CAPLET_FIELD_spectrum(function, at)
@@ -91,6 +93,7 @@ enum {
 #undef CAPLET_FIELD_scalar
 #undef CAPLET_FIELD_vector
 #undef CAPLET_FIELD_turn
+#undef CAPLET_FIELD_picture
 #undef CAPLET_FIELD_spectrum
 #undef CAPLET_FIELD_texture
 #undef CAPLET_FIELD_number

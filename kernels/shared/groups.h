@@ -58,8 +58,8 @@
   BUFFER(light_alias, AliasRecord, IN)                                                                          \
   BUFFER(light_nodes, uint, IN)  /* of the light tree, CAPLET_LIGHT_NODE each (lights/tree.cl) */               \
   BUFFER(light_places, uint, IN) /* of each light and, behind them, of each of its nodes: where it stands in a node, or CAPLET_NONE */ \
-  BUFFER(environment_texels, float, IN) /* 4 a texel: sigmoid c0 c1 c2, scale (times the illuminant) */         \
-  BUFFER(environment_cdf, float, IN)    /* rows: marginal (height + 1), then height times (width + 1) conditional */ \
+  BUFFER(light_texels, float, IN) /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the illuminant) */ \
+  BUFFER(light_cdf, float, IN)    /* what they are sampled by (environment.cl, portal.cl) */ \
   GROUP_END(Lights)
 
 // The same for every scene.

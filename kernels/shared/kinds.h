@@ -95,6 +95,7 @@ enum {
 #define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
+#define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it
 // InstanceRecord.flags
 #define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
 #define CAPLET_INSTANCE_NO_LEAVING 2u      // leaving hits within are not seen ("onesided")

@@ -121,7 +121,7 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
 #endif
 
 static void shade_item(const Stage* g, Outbox* out, uint item) {
-  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const uint path = g->queues.queue[item];
   const RayRecord ray = g->rays.path_ray[path];
   const HitRecord hit = g->rays.path_hit[path];
@@ -135,7 +135,7 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
 
   if (hit.slot == CAPLET_NONE) {
-    const float4 sky = light_infinite(&g->spectra, &g->lights, direction, wavelengths, scatter.x, specular);
+    const float4 sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
     g->radiance.path_radiance[path] += throughput * sky;
     return;
   }
@@ -143,7 +143,7 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
   Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
   const float3 wo = -direction;
   if (any_surface_light && s.light != CAPLET_NONE) {
-    const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, wo, wavelengths);
+    const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
       // What a refracted ray finds of the primitive that it crossed has no other strategy.

@@ -42,4 +42,12 @@ static inline float4 texture_eval(uint first, const TexturePoint* at) {
   return values[steps - 1];
 }
 
+// The chance, 0 to 1, that a surface stops a ray at a point: that of the texture with the first step `alpha`. n: geometric normal, unit.
+static inline float alpha_chance(const Materials* materials, const Spectra* spectra, uint alpha, float2 uv, float3 p, float3 n) {
+  TexturePoint at = {materials, spectra, texture_place(uv), (float4)(550.0f)};
+  at.place.p = p;
+  at.place.n = n;
+  return texture_eval(alpha, &at).x;
+}
+
 #endif

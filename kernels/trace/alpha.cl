@@ -23,10 +23,7 @@ static inline int alpha_stops(const AlphaScene* scene, const RayRecord* ray, con
   const uint alpha = scene->surfaces.geometries[scene->surfaces.primitive_geometry[primitive]].alpha;
   if (alpha == CAPLET_NONE) return 1;
   const Surface s = surface_at(&scene->tree, &scene->surfaces, ray, hit);
-  TexturePoint at = {&scene->materials, &scene->spectra, texture_place(s.uv), (float4)(550.0f)};
-  at.place.p = s.p;
-  at.place.n = s.ng;
-  const float chance = texture_eval(alpha, &at).x;
+  const float chance = alpha_chance(&scene->materials, &scene->spectra, alpha, s.uv, s.p, s.ng);
   uint number = hash_combine(as_uint(ray->ox), as_uint(ray->oy));
   number = hash_combine(hash_combine(number, as_uint(ray->oz)), as_uint(ray->dx));
   number = hash_combine(hash_combine(number, as_uint(ray->dy)), as_uint(ray->dz));

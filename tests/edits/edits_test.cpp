@@ -460,14 +460,29 @@ TEST_F(OneEdit, AWrongOneChangesNothing) {
   ViewEdit view = view_of(edited.live.scene());
   view.camera.fov = 4;
   EXPECT_THROW(edited.edit(view), InputError);
-  // Two image lights: refused where they are lowered.
-  const auto image = std::make_shared<EnvironmentImage>(EnvironmentImage{2, 1, {1, 1, 1, 2, 2, 2}, ColorSpace::srgb, false});
-  edited.edit(LightEdit{0, {InfiniteLight{ConstantSpectrum{1}, image, glm::dmat3(1)}, 1, {}, {}, {}}});
-  edited.expect_fresh("an image");
-  EXPECT_THROW(edited.edit(LightEdit{1, {InfiniteLight{ConstantSpectrum{1}, image, glm::dmat3(1)}, 1, {}, {}, {}}}), InputError);
   EXPECT_EQ(capsule_at(edited.live.scene(), capsules, 3).p0, was.p0);
   EXPECT_TRUE(std::holds_alternative<PointLight>(edited.live.scene().lights[1].model));
   edited.expect_fresh("wrong edits");
+}
+
+// What lights hold of images is made anew where it changes, and stays where it does not.
+TEST_F(OneEdit, OfLightsWithImagesIsThatOfAFreshScene) {
+  const auto image = std::make_shared<EnvironmentImage>(EnvironmentImage{2, 1, {1, 1, 1, 2, 2, 2}, ColorSpace::srgb, false});
+  const auto square = std::make_shared<EnvironmentImage>(EnvironmentImage{1, 1, {1, 2, 3}, ColorSpace::srgb, true});
+  const auto light = [](auto model) { return Light{std::move(model), 1, {}, {}, {}}; };
+  edited.edit(LightEdit{0, light(InfiniteLight{ConstantSpectrum{1}, image, glm::dmat3(1), {}})});
+  edited.expect_fresh("a sky");
+  edited.edit(LightEdit{1, light(InfiniteLight{ConstantSpectrum{1}, square, glm::dmat3(1), {}})});
+  edited.expect_fresh("two skies");
+  edited.edit(LightEdit{0, light(GoniometricLight{ConstantSpectrum{1}, square, dvec3(0, 0, 4), glm::dmat3(1)})});
+  edited.expect_fresh("a goniometric light before a sky");
+  edited.edit(LightEdit{1, light(ProjectionLight{image, 60, dvec3(0, 0, 4), glm::dmat3(1)})});
+  edited.expect_fresh("a projection in the sky's place");
+  const LightPortal portal = {dvec3(0, 0, 4), dvec3(0, 1, 4), dvec3(1, 1, 4), dvec3(1, 0, 4)};
+  edited.edit(LightEdit{0, light(InfiniteLight{ConstantSpectrum{1}, square, glm::dmat3(1), portal})});
+  edited.expect_fresh("a portal");
+  edited.edit(LightEdit{1, light(PointLight{})});
+  edited.expect_fresh("no picture but the portal's");
 }
 
 // Kernels are built for the kinds that a scene has.

@@ -92,7 +92,7 @@ void lights(const HostGroups* g, const float (&lambda)[4], FuzzNumbers& numbers)
   }
   const Direction d = direction(numbers);
   float sky[4];
-  host_kernels(8).light_infinite(g, d.v, lambda, random_number(numbers), numbers.below(2) != 0, sky);
+  host_kernels(8).light_infinite(g, p, d.v, lambda, random_number(numbers), numbers.below(2) != 0, sky);
   require(radiometric(sky));
 }
 

@@ -77,7 +77,7 @@ void HOST(offset_origin)(const HostSurface* surface, const float* direction, flo
 
 int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
   LightSample s;
-  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const LightReceiver at = {three(p), CAPLET_NONE};
   if (!light_sample(&scene, at, four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
   vstore3(s.wi, 0, out->wi);
@@ -92,14 +92,14 @@ int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda,
 float HOST(light_area)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, const float* lambda, float* emitted) {
   const Surface s = surface_at(&g->tree, &g->surfaces, ray, hit);
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
-  vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, -d, four(lambda)), 0, emitted);
-  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights};
+  vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, -d, four(lambda)), 0, emitted);
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const LightReceiver at = {(float3)(ray->ox, ray->oy, ray->oz), CAPLET_NONE};
   return light_area_pdf(&scene, s.light, at, &s, d);
 }
 
-void HOST(light_infinite)(const HostGroups* g, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {
-  vstore4(light_infinite(&g->spectra, &g->lights, three(direction), four(lambda), last_pdf, specular), 0, out);
+void HOST(light_infinite)(const HostGroups* g, const float* origin, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {
+  vstore4(light_infinite(&g->spectra, &g->lights, three(origin), three(direction), four(lambda), last_pdf, specular), 0, out);
 }
 
 static Bsdf host_bsdf(const HostGroups* g, uint material, const float* lambda) {
@@ -148,9 +148,9 @@ void HOST(answer)(const HostGroups* g, const HostQuestion* question, __global Ho
   a.closest = HOST(trace_closest)(g, &q.ray);
   a.any = HOST(trace_any)(g, &q.ray);
   HOST(camera)(g, q.x, q.y, q.u, &a.camera_ray, &a.camera);
-  const float direction[3] = {q.ray.dx, q.ray.dy, q.ray.dz};
+  const float from[3] = {q.ray.ox, q.ray.oy, q.ray.oz}, direction[3] = {q.ray.dx, q.ray.dy, q.ray.dz};
   if (a.closest.slot == CAPLET_NONE) {
-    HOST(light_infinite)(g, direction, q.lambda, q.u[7], q.x & 1u, a.sky);
+    HOST(light_infinite)(g, from, direction, q.lambda, q.u[7], q.x & 1u, a.sky);
   } else {
     a.found_surface = 1;
     HOST(surface_at)(g, &q.ray, &a.closest, &a.surface);

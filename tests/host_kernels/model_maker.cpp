@@ -232,6 +232,14 @@ Light ModelMaker::light() {
     const double z = 2 * numbers_.fraction() - 1, phi = full_turn * numbers_.fraction(), r = std::sqrt(std::max(0.0, 1 - z * z));
     return glm::dvec3(r * std::cos(phi), r * std::sin(phi), z);
   };
+  const auto image = [&](int width, int height) {
+    auto made = std::make_shared<EnvironmentImage>();
+    made->width = width;
+    made->height = height;
+    made->equal_area = width == height;
+    for (int i = 0; i < 3 * width * height; ++i) made->rgb.push_back(static_cast<float>(numbers_.fraction()));
+    return made;
+  };
   switch (numbers_.below(5)) {
     case 0:
       out.model = PointLight{spectrum(10), point()};
@@ -243,15 +251,32 @@ Light ModelMaker::light() {
       out.model = DistantLight{spectrum(10), unit()};
       break;
     case 3:
-      out.model = InfiniteLight{spectrum(10), nullptr, glm::dmat3(1)};
+      switch (numbers_.below(5)) {
+        case 1:
+          out.model = GoniometricLight{spectrum(10), image(2, 2), point(), glm::dmat3(1)};
+          break;
+        case 2:
+          out.model = ProjectionLight{image(2, 1), 1 + 170 * numbers_.fraction(), point(), glm::dmat3(1)};
+          break;
+        case 3:
+          out.model = IesLight{
+              spectrum(10), std::make_shared<IesProfile>(IesProfile{{0, 1 + numbers_.fraction()}, {0}, {numbers_.fraction(), 1}}),
+              point(), glm::dmat3(1)};
+          break;
+        case 4: {
+          const glm::dvec3 corner = point(), x(numbers_.length(), 0, 0), y(0, numbers_.length(), 0);
+          InfiniteLight model{spectrum(10), nullptr, glm::dmat3(1), LightPortal{corner, corner + y, corner + x + y, corner + x}};
+          if (numbers_.below(2) == 0) model.image = image(2, 2);
+          out.model = model;
+          break;
+        }
+        default:
+          out.model = InfiniteLight{spectrum(10), nullptr, glm::dmat3(1), {}};
+      }
       break;
     default: {
-      auto image = std::make_shared<EnvironmentImage>();
-      image->equal_area = numbers_.below(2) == 0;
-      image->width = 2;
-      image->height = image->equal_area ? 2 : 1;
-      for (int i = 0; i < 3 * image->width * image->height; ++i) image->rgb.push_back(static_cast<float>(numbers_.fraction()));
-      out.model = InfiniteLight{ConstantSpectrum{1}, std::move(image), glm::dmat3(1)};
+      const bool square = numbers_.below(2) == 0;
+      out.model = InfiniteLight{ConstantSpectrum{1}, image(2, square ? 2 : 1), glm::dmat3(1), {}};
       break;
     }
   }

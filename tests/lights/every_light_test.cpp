@@ -65,7 +65,7 @@ TEST_P(EveryLight, SamplesAreSoundAndGiveItsIrradiance) {
       // which has 1e-7 / (1 - weight), and of texels' borders either one.
       std::vector<glm::dvec3> directions;
       for (std::size_t i = 0; i < 1000; ++i) directions.push_back(samples[i].wi);
-      const std::vector<glm::dvec2> sky = bench.sky(directions);
+      const std::vector<glm::dvec2> sky = bench.sky(directions, trial.p);
       int apart = 0;
       for (std::size_t i = 0; i < directions.size(); ++i) {
         EXPECT_NEAR(sky[i].x, samples[i].radiance, 1e-3 * samples[i].radiance + 1e-5);
@@ -109,7 +109,8 @@ TEST_P(EveryLight, KernelsOfItAloneSayTheSameAndThoseOfAllOthersNothing) {
   }
   EXPECT_EQ(expected[0].pdf > 0, trial.is_sampled);
   const std::vector<glm::dvec3> directions = sphere_directions(1000);
-  const std::vector<glm::dvec2> sky = all.sky(directions), own_sky = alone.sky(directions), no_sky = others.sky(directions);
+  const std::vector<glm::dvec2> sky = all.sky(directions, trial.p), own_sky = alone.sky(directions, trial.p),
+                                no_sky = others.sky(directions, trial.p);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     ASSERT_EQ(own_sky[i].x, sky[i].x);
     ASSERT_EQ(no_sky[i].x, 0);

@@ -21,12 +21,13 @@ const char* const kernel_text = R"(
 #define GROUP_BEGIN(Type, group)
 #define BUFFER(name, type, access) access(type) name,
 #define GROUP_END(Type)
-#define SCENE GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS uint scene_end
+#define SCENE GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS GROUP_MATERIALS uint scene_end
 #define MAKE_SCENE                                                                                                    \
   const Scene scene = {{world, nodes, leaves, instances},                                                             \
                        {geometries, primitive_geometry, surface_materials, mesh_indices, mesh_normals, mesh_uvs},     \
                        {spectra, spectrum_tables},                                                                    \
-                       {lighting, lights, light_data, light_alias, light_nodes, light_places, environment_texels, environment_cdf}};             \
+                       {lighting, lights, light_data, light_alias, light_nodes, light_places, light_texels, light_cdf},       \
+                       {materials, material_data, textures, texture_data, images, texels}};                           \
   const uint i = (uint)get_global_id(0);                                                                              \
   if (i >= count) return;                                                                                             \
   const float4 lambda = (float4)(450.0f, 500.0f, 550.0f, 600.0f)
@@ -62,16 +63,18 @@ __kernel void area_densities(SCENE, uint light, float px, float py, float pz, __
   Surface hit;
   hit.p = vload3(2 * i, points);
   hit.ng = vload3(2 * i + 1, points);
+  hit.error = 0.0f;
   const LightReceiver at = {p, CAPLET_NONE};
   out[i] = light_area_pdf(&scene, light, at, &hit, normalize(hit.p - p)) + 0.0f * lambda.x;
 }
 
-__kernel void sky(SCENE, __global const float* directions, __global float* out, uint count) {
+__kernel void sky(SCENE, float px, float py, float pz, __global const float* directions, __global float* out, uint count) {
   MAKE_SCENE;
+  const float3 p = (float3)(px, py, pz);
   const float3 wi = vload3(i, directions);
-  out[2 * i] = light_infinite(&scene.spectra, &scene.lights, wi, lambda, 1.0f, 1).x;
+  out[2 * i] = light_infinite(&scene.spectra, &scene.lights, p, wi, lambda, 1.0f, 1).x;
   // With the density of the ray known, the weight gives away that of light sampling: w = 1 / (1 + pdf^2).
-  const float weight = light_infinite(&scene.spectra, &scene.lights, wi, lambda, 1.0f, 0).x / out[2 * i];
+  const float weight = light_infinite(&scene.spectra, &scene.lights, p, wi, lambda, 1.0f, 0).x / out[2 * i];
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
@@ -145,7 +148,7 @@ cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
     const Type##Buffers& buffers = scene_.group;
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
 #define GROUP_END(Type) }
-  GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS
+  GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_LIGHTS GROUP_MATERIALS
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
@@ -194,7 +197,7 @@ std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& 
   return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(points.size())};
 }
 
-std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& directions) {
+std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& directions, const glm::dvec3& p) {
   std::vector<float> flat;
   for (const glm::dvec3& d : directions)
     for (int k = 0; k < 3; ++k) flat.push_back(static_cast<float>(d[k]));
@@ -202,6 +205,7 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   Buffer<float> out(device_, 2 * directions.size());
   cl::Kernel kernel = program_->kernel("sky");
   cl_uint at = bind_scene(kernel);
+  for (int k = 0; k < 3; ++k) kernel.setArg(at++, static_cast<float>(p[k]));
   kernel.setArg(at++, in.handle());
   kernel.setArg(at++, out.handle());
   kernel.setArg(at++, static_cast<cl_uint>(directions.size()));

@@ -45,8 +45,8 @@ class LightBench {
   std::vector<SampledLight> sample(const glm::dvec3& p, std::size_t count);
   /// light_area_pdf of light `light` at p for the directions to `points`.
   std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points);
-  /// Radiance of the sky, and its sampling density times the chance of selection, for unit directions.
-  std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions);
+  /// Radiance of the sky as seen from p, and its sampling density times the chance of selection, for unit directions.
+  std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions, const glm::dvec3& p = glm::dvec3(0));
   /// How many of all 2^32 random numbers choose each of up to 8 lights; the ninth: how often the chance was not the light's own.
   std::vector<std::uint64_t> all_selections();
   /// The light that light_select chooses by each of the numbers.

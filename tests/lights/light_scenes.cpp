@@ -19,14 +19,13 @@ Scene scene_with(const std::vector<Light>& lights) {
   return scene;
 }
 
+std::shared_ptr<const EnvironmentImage> picture_image(int width, int height, const std::vector<float>& rgb, bool equal_area) {
+  return std::make_shared<EnvironmentImage>(EnvironmentImage{width, height, rgb, ColorSpace::srgb, equal_area});
+}
+
 Light image_light(int width, int height, bool equal_area, const std::vector<float>& rgb) {
-  auto image = std::make_shared<EnvironmentImage>();
-  image->width = width;
-  image->height = height;
-  image->equal_area = equal_area;
-  image->rgb = rgb;
   InfiniteLight model;
-  model.image = image;
+  model.image = picture_image(width, height, rgb, equal_area);
   return light_of(model);
 }
 

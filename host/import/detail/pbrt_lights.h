@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,11 +13,29 @@
 
 namespace caplet::pbrt {
 
+/// The images and profiles that lights name, each read once.
+class LightFiles {
+ public:
+  explicit LightFiles(const ImageReader& reader) : reader_(reader) {}
+  /// Of parameter `name`. Reports what is wrong with it, and is null then.
+  std::shared_ptr<const EnvironmentImage> image(Parameters& parameters, const char* name);
+  std::shared_ptr<const IesProfile> profile(Parameters& parameters, const char* name);
+
+ private:
+  template <class File, class Read>
+  std::shared_ptr<const File> file(Parameters& parameters, const char* name, Read&& read,
+                                   std::map<std::string, std::shared_ptr<const File>>& files);
+
+  const ImageReader& reader_;
+  std::map<std::string, std::shared_ptr<const EnvironmentImage>> images_;
+  std::map<std::string, std::shared_ptr<const IesProfile>> profiles_;
+};
+
 /// The light of a LightSource statement of an accepted type; no value when it had errors (reported).
 std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
-                                const ImageReader& images);
+                                LightFiles& files);
 
 /// The emission an AreaLightSource statement gives to the shapes after it.
-AreaEmission make_area_emission(Parameters& parameters);
+AreaEmission make_area_emission(Parameters& parameters, LightFiles& files);
 
 }  // namespace caplet::pbrt

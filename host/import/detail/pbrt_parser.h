@@ -14,6 +14,7 @@
 
 #include "base/spelling.h"
 #include "import/detail/pbrt_lexer.h"
+#include "import/detail/pbrt_lights.h"
 #include "import/detail/pbrt_materials.h"
 #include "import/detail/pbrt_names.h"
 #include "import/detail/pbrt_parameters.h"
@@ -24,7 +25,8 @@ namespace caplet::pbrt {
 
 class Parser {
  public:
-  Parser(std::string main_file, const ImageReader& images) : main_file_(std::move(main_file)), images_(images) {}
+  Parser(std::string main_file, const ImageReader& images)
+      : main_file_(std::move(main_file)), images_(images), light_files_(images) {}
 
   /// The scene of the main file's text. Throws InputError with everything that is wrong.
   Scene parse(std::string text);
@@ -160,6 +162,7 @@ class Parser {
 
   std::string main_file_;
   const ImageReader& images_;
+  LightFiles light_files_;
   Diagnostics diagnostics_;
   Scene scene_;
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <memory>
 
 #include "lower/flat_scene.h"
 #include "scene/scene.h"
@@ -22,15 +21,21 @@ struct EnvironmentIntegrals {
   double illuminance = 0;  // of a surface facing +z, in the light's space
 };
 
-/// The image whose texels a FlatScene holds.
-struct LoweredEnvironment {
-  std::shared_ptr<const EnvironmentImage> image;
-  EnvironmentIntegrals integrals;
-};
+/// A number that light can be: negative ones and NaN are 0, infinity is the largest float.
+float usable(float x);
+/// Luminance of linear RGB of `space`; 1 for (1 1 1).
+double luminance_of(const float* rgb, ColorSpace space);
 
-/// Fills environment_texels, environment_cdf and lighting.environment_*. The distribution is constant over a texel's cell and
-/// proportional to the integral of the radiance's luminance over it, so it is positive wherever the radiance is. Negative and NaN
-/// values count as 0, infinite ones as the largest float. An image without light has a distribution of zeros.
+/// Appends the texels of an image's colours to light_texels.
+void append_texels(const EnvironmentImage& image, FlatScene& out);
+
+/// Radiance (linear RGB) of an image of a sky from a direction of its space: bilinear between texels.
+glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& direction);
+
+/// Appends an image to light_texels, and its distribution to light_cdf: its rows' running sum (height + 1), then each row's
+/// (width + 1). The distribution is constant over a texel's cell and proportional to the integral of the radiance's luminance
+/// over it, so it is positive wherever the radiance is. Negative and NaN values count as 0, infinite ones as the largest float.
+/// An image without light has a distribution of zeros.
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out);
 
 }  // namespace caplet

@@ -4,8 +4,8 @@
 // A scene lowered, with all that is known of it beside the flat arrays.
 #pragma once
 
-#include "lower/detail/environment.h"
 #include "lower/detail/geometry.h"
+#include "lower/detail/light_images.h"
 #include "lower/detail/lights.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
@@ -24,7 +24,7 @@ struct Lowering {
   ImageNumbers images;
   SpectrumTable spectra;
   LoweredGeometry geometry;
-  LoweredEnvironment environment;
+  LightImages light_images;
 };
 
 }  // namespace caplet

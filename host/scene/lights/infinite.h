@@ -2,26 +2,28 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
-#include <vector>
+#include <optional>
 
+#include "scene/light_image.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
 
-/// An infinite light. Image pixels are linear RGB in `space`, row-major from the top, 3 floats each.
-struct EnvironmentImage {
-  int width = 0, height = 0;
-  std::vector<float> rgb;
-  ColorSpace space = ColorSpace::srgb;
-  bool equal_area = false;  // square equal-area octahedral (pbrt-v4); otherwise latitude-longitude, 2:1, z up
-};
+/// The corners of a rectangle in the world, in order around it. Light goes through it the way of (p3 - p0) x (p1 - p0), reversed:
+/// it is seen along that direction.
+using LightPortal = std::array<glm::dvec3, 4>;
+
+/// An infinite light.
 struct InfiniteLight {
   Spectrum radiance = ConstantSpectrum{1};  // without an image
   std::shared_ptr<const EnvironmentImage> image;
-  glm::dmat3 world_from_light{1};  // rotation, possibly mirroring
+  glm::dmat3 world_from_light{1};     // rotation, possibly mirroring
+  std::optional<LightPortal> portal{};  // through which alone it is seen
 
   static constexpr LightUnit unit = LightUnit::illuminance;
   template <class Self, class Visit>

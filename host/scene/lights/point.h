@@ -22,7 +22,7 @@ struct PointLight {
   }
   double per_unit() const { return 4 * std::numbers::pi; }
   double power(double) const { return per_unit(); }
-  LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0}; }
+  LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0, per_unit()}; }
   template <class Put>
   void data(Put&& put) const {
     put("position", position);

@@ -35,7 +35,7 @@ struct SpotLight {
   double power(double) const { return per_unit(); }
   LightReach reach() const {
     const double start = std::acos(cos_falloff_start());
-    return {position, direction, start, total_angle - start};
+    return {position, direction, start, total_angle - start, per_unit()};
   }
   template <class Put>
   void data(Put&& put) const {

@@ -15,6 +15,7 @@ struct LightReach {
   glm::dvec3 position{0};    // world
   glm::dvec3 axis{0, 0, 1};  // unit
   double cone = 0, reach = 0;
+  double solid_angle = 0;  // that its power goes to
 };
 
 }  // namespace caplet

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "scene/lights/unit.h"
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// What a luminaire sends where (ANSI/IES LM-63, type C). Angles in radians, ascending; linear between them; beyond the polar
+/// angles nothing.
+struct IesProfile {
+  std::vector<double> polar;     // from the light's -z on; at least 2
+  std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or one alone for all
+  std::vector<double> candela;   // for each azimuth those of all polar angles
+
+  /// Lumens: the integral of the intensity over all directions.
+  double flux() const {
+    double sum = 0;
+    for (std::size_t j = 0; j < azimuths.size(); ++j) {
+      // By the trapezoidal rule around, which is exact for what is linear.
+      const double before = j > 0 ? azimuths[j] - azimuths[j - 1] : 0;
+      const double behind = j + 1 < azimuths.size() ? azimuths[j + 1] - azimuths[j] : 0;
+      const double around = azimuths.size() == 1 ? 2 * std::numbers::pi : (before + behind) / 2;
+      for (std::size_t i = 0; i + 1 < polar.size(); ++i) {
+        const double a = polar[i], b = polar[i + 1], low = candela[j * polar.size() + i],
+                     high = candela[j * polar.size() + i + 1];
+        // The integral of (low + slope (t - a)) sin t, by parts.
+        const double slope = (high - low) / (b - a);
+        sum += around * (low * std::cos(a) - high * std::cos(b) + slope * (std::sin(b) - std::sin(a)));
+      }
+    }
+    return sum;
+  }
+};
+
+struct IesLight {
+  Spectrum intensity = ConstantSpectrum{1};  // for each candela
+  std::shared_ptr<const IesProfile> profile;
+  glm::dvec3 position{0};          // world
+  glm::dmat3 world_from_light{1};  // rotation, possibly mirroring
+
+  static constexpr LightUnit unit = LightUnit::power;
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.emission("I", self.intensity);
+    visit.place(self.position, self.world_from_light);
+    visit.profile("filename", self.profile);
+  }
+  double per_unit() const { return profile->flux(); }
+  LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0, 4 * std::numbers::pi}; }
+  template <class Put>
+  void data(Put&& put) const {
+    put("position", position);
+    put("light_from_world", world_from_light);
+    put("profile", profile);
+  }
+};
+
+}  // namespace caplet
