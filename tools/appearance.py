@@ -40,7 +40,11 @@ PRINCIPLED = {
     "white": dict(base_color=(1.0, 1.0, 1.0), roughness=1.0),
     "coat": dict(base_color=(0.5, 0.2, 0.2), roughness=0.6, coat=1.0, coat_roughness=0.2),
 }
+OWN_SHADOW = ("a fibre of Mitsuba shadows itself, so that light through it meets it again; here it has left. The model's values agree to 0.6 % "
+              "(`bsdf_tests`), and a furnace to 0.1 %")
 DIFFERENT = {
+    "half-glass": "the diffuse part is seen from inside as well; Mitsuba's is black there",
+    "hair-white": OWN_SHADOW, "hair-brown": OWN_SHADOW, "hair-rough": OWN_SHADOW, "hair-tilted": OWN_SHADOW,
     "white": "Burley's diffuse lobe and the interface together reflect more than comes in (1.4 at grazing); here the lobe is held to the rest",
     "coat": "Mitsuba's `clearcoat` is a quarter of a GTR1 lobe over a base that it does not dim; here it is GGX of the whole weight, "
             "and the base loses what it reflects",
@@ -140,9 +144,10 @@ def blocks(image, n=8):
     return image[:h, :w].reshape(h // n, n, w // n, n, 3).mean(axis=(1, 3))
 
 
-def compared(ours, theirs):
+def compared(ours, theirs, by_channel=True):
     a, b = blocks(ours), blocks(theirs)
-    return ours.mean() / theirs.mean() - 1, np.sqrt(np.mean(((a - b) / (b + 1e-3 * b.mean())) ** 2))
+    of = b if by_channel else b.mean(axis=-1, keepdims=True)
+    return ours.mean() / theirs.mean() - 1, np.sqrt(np.mean(((a - b) / (of + 1e-3 * b.mean())) ** 2))
 
 
 def side_by_side(file, *images):
@@ -197,8 +202,12 @@ Above ours, below Mitsuba's:
 # --- Scenes ---
 
 # Of scenes_pbrt: width, height, depth as their reference pictures have; the most that the mean may differ.
-SCENES = {"cornell-box": (256, 256, 65), "veach-mis": (320, 180, 65), "coffee": (200, 250, 65)}
-REMARKS = {}
+SCENES = {"cornell-box": (256, 256, 65), "veach-mis": (320, 180, 1), "coffee": (200, 250, 65)}
+REMARKS = {
+    "cornell-box": "RGB there: light between coloured walls",
+    "veach-mis": "at depth 1, as its picture; highlights there have not the tails of the GGX that the text asks for, and blocks of the plates are black",
+    "coffee": "Tungsten's plastic is another model than pbrt's `coateddiffuse`, whose walk ends after 10 events",
+}
 
 
 def scenes(given):
@@ -208,18 +217,18 @@ def scenes(given):
         folder = pathlib.Path(folder)
         for name, (width, height, depth) in SCENES.items():
             file = folder_of / name / "scene-v4.pbrt"
-            ours, seconds = ours_of(given.caplet, file, folder, given.spp, ("--size", f"{width}x{height}", "--depth", str(depth)))
+            ours, seconds = ours_of(given.caplet, file, folder, given.spp, ("--size", f"{width}x{height}", "--max-depth", str(depth)))
             theirs = rgb_of(folder_of / name / "TungstenRender.exr")
             sy, sx = theirs.shape[0] // height, theirs.shape[1] // width
             theirs = theirs[:sy * height, :sx * width].reshape(height, sy, width, sx, 3).mean(axis=(1, 3))
-            mean, rms = compared(ours, theirs)
+            mean, rms = compared(ours, theirs, by_channel=False)
             print(f"{name:12} mean {100 * mean:+.2f} %  blocks {100 * rms:.2f} %  ({seconds:.0f} s)", flush=True)
             rows.append(f"| {name} | {width} x {height} | {given.spp} | {seconds:.0f} | {100 * mean:+.2f} % | {100 * rms:.2f} % | {REMARKS.get(name, '')} |")
             side_by_side(f"scene-{name}.png", ours, theirs)
             pictures += f"\n![{name}](images/validation/scene-{name}.png)\n"
     put_section("Real scenes", """
 Written by `tools/appearance.py scenes`: Bitterli's scenes in pbrt-v4 text as they are, beside `TungstenRender.exr`, Tungsten's pictures in RGB, each made
-as small as ours. Blocks as above.
+as small as ours. Blocks: differences of channels over the mean of the three.
 
 | scene | pixels | samples | seconds | image mean | blocks rms | remark |
 |---|---|---:|---:|---:|---:|---|

@@ -6,9 +6,11 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 caplet=${1:-$root/build/release/bin/caplet}
-samples=${2:-128}
+samples=${2:-48}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 for name in materials hair; do
-  "$caplet" render "$root/scenes/$name.pbrt" -o "$folder/$name.exr" --preview "$root/docs/images/$name.png" --size 960x540 --spp "$samples"
+  size=960x540
+  [ $name = materials ] || size=640x360
+  "$caplet" render "$root/scenes/$name.pbrt" -o "$folder/$name.exr" --preview "$root/docs/images/$name.png" --size $size --spp "$samples"
 done

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "reference_scenes.h"
 #include "render_scene.h"
@@ -106,8 +107,13 @@ int main(int argc, char** argv) {
   }
   bool tungsten = false;
   text += cornell_box_row(std::max(16, samples / 4), tungsten);
+  // What tools/appearance.py writes stays.
+  std::ifstream before(document);
+  const std::string page{std::istreambuf_iterator<char>(before), {}};
+  before.close();
+  const std::size_t sections = std::min(page.find("\n## "), page.size());
   std::ofstream out(document);
-  out << text << pictures;
+  out << text << pictures << page.substr(sections);
   std::cout << text;
   if (!out) return std::cerr << "caplet_validate: " << document.string() << " cannot be written\n", 1;
   return all && tungsten ? 0 : 1;
