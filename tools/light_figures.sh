@@ -54,5 +54,5 @@ figure ies 'AttributeBegin Translate -0.6 1.6 2.6 LightSource "ies" "string file
 figure distant 'LightSource "distant" "point3 from" [-2 -3 4] "point3 to" [0 0 0] "float illuminance" 3' ''
 figure constant 'LightSource "infinite" "float illuminance" 3' ''
 figure image 'LightSource "infinite" "string filename" "sky.ppm" "float illuminance" 3' ''
-figure portal 'LightSource "infinite" "string filename" "sky.ppm" "float illuminance" 60 "point3 portal" [-3 -1 0.8  -3 -1 2.2  -3 0.6 2.2  -3 0.6 0.8]' ''
+figure portal 'LightSource "infinite" "string filename" "sky.ppm" "float illuminance" 60 "point3 portal" [-3 0.6 0.8  -3 0.6 2.2  -3 -1 2.2  -3 -1 0.8]' ''
 figure area 'AttributeBegin AreaLightSource "diffuse" "string filename" "tiles.ppm" "float scale" 2 "bool twosided" true Material "diffuse" "rgb reflectance" [0 0 0] Shape "bilinearmesh" "point3 P" [-2 0.6 0.3  -0.2 1.4 0.3  -2 0.6 2.1  -0.2 1.4 2.1] AttributeEnd' ''
