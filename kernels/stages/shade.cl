@@ -14,6 +14,9 @@
 #include "stages/layers.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
+#ifdef SHADE_IN_MEDIA
+#include "stages/media.cl"
+#endif
 
 // CIE XYZ under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
 static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
@@ -62,7 +65,7 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Stage* g, const Scene* scene, uint path, const Surface* s, const Frame* frame,
+static inline void sample_light(const Stage* g, const Scene* scene, uint path, const HitRecord* hit, const Surface* s, const Frame* frame,
                                 const Bsdf* bsdf, uint side, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
@@ -79,7 +82,12 @@ static inline void sample_light(const Stage* g, const Scene* scene, uint path, c
   if (transmitted && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
+#ifdef SHADE_IN_MEDIA
+  const float weight = 1.0f;  // connect_media knows it
+  media_shadow(g, path, hit, s, wo, &light, bsdf_pdf);
+#else
   const float weight = light.delta ? 1.0f : power_heuristic(light.pdf, bsdf_pdf);
+#endif
   const float4 contribution = throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
   RayRecord ray;
@@ -92,7 +100,7 @@ static inline void sample_light(const Stage* g, const Scene* scene, uint path, c
   g->shadows.queue_shadow[atomic_inc(&g->counters.counters[counter_shadow])] = path;
 }
 
-#ifdef CAPLET_PREFETCH
+#if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
 #define STAGE_LOOKS_AHEAD
 // Paths come in the order of their rays, so that everything of a path, of what it hit and of the object hit lies anywhere: each is asked
 // for when what leads to it has come.
@@ -132,6 +140,10 @@ static void stage_item(const Stage* g, uint item) {
   const uint depth = flags >> PATH_DEPTH_SHIFT;
   const int specular = (flags & PATH_SPECULAR) != 0;
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
+#ifdef SHADE_IN_MEDIA
+  if (hit.slot == CAPLET_SCATTERED) return;
+  scatter.x /= mean4(g->immersion.path_light_ratio[path]);
+#endif
 
   if (hit.slot == CAPLET_NONE) {
     const float4 sky = light_infinite(&g->spectra, &g->lights, direction, wavelengths, scatter.x, specular);
@@ -174,6 +186,9 @@ static void stage_item(const Stage* g, uint item) {
     const float u = sampler_2d(here.seed, here.sample, SCATTERING_SAMPLE(roulette, depth)).y;
     material = bsdf_chosen(&g->materials, &g->spectra, material, &place, wavelengths, u);
   }
+#ifdef SHADE_IN_MEDIA
+  if (media_passes(g, path, material, &ray, &hit)) return;
+#endif
   const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
   if (bent) s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv);
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
@@ -185,6 +200,9 @@ static void stage_item(const Stage* g, uint item) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
     throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
+#ifdef SHADE_IN_MEDIA
+    media_hero_alone(g, path, &throughput, wavelengths);
+#endif
     g->carried.path_wavelength_pdfs[path] = pdfs;
   }
 
@@ -193,7 +211,7 @@ static void stage_item(const Stage* g, uint item) {
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, &scene, path, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
+    sample_light(g, &scene, path, &hit, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
@@ -235,6 +253,9 @@ static void stage_item(const Stage* g, uint item) {
   g->carried.path_normal[path] = side;
 #endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
+#ifdef SHADE_IN_MEDIA
+  media_scattered(g, path, &hit, dot(wi, s.ng) * dot(wo, s.ng) < 0.0f);
+#endif
   const uint position = atomic_inc(&g->counters.counters[counter_next]);
   g->queues.queue_next[position] = path;
   if (g->batch.batch->sort_bits == CAPLET_NONE) return;
