@@ -14,6 +14,7 @@
 #define STATE_LAYERS(type) STATE(type)
 #define STATE_CONES(type) STATE(type)
 #define STATE_SIDES(type) STATE(type)
+#define STATE_MEDIA(type) STATE(type)
 
 #define GROUP_BEGIN(Type, group) typedef struct {
 #define BUFFER(name, type, access) access(type) name;

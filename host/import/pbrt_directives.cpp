@@ -44,6 +44,7 @@ void Parser::camera() {
   has_camera_ = true;
   coordinate_systems_["camera"] = glm::inverse(state_.ctm);
   if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, state_.ctm, scene_);
+  scene_.camera.medium = state_.media.outside;
 }
 
 void Parser::film() {
@@ -195,7 +196,10 @@ void Parser::attribute() {
 
 void Parser::material() {
   std::string type = string_argument("a type");
-  if (type.empty() || type == "none") type = "interface";  // as pbrt-v4
+  if (type.empty() || type == "none") {
+    diagnostics_.warning(where_, "Material " + in_quotes(type) + " is the old name of \"interface\"");
+    type = "interface";
+  }
   Parameters given = parameters(owner(type), "material");
   const Refusal refusal = refusal_of("Material", type);
   if (!refusal.is_known) {
@@ -234,32 +238,6 @@ std::uint32_t Parser::use_of_name(const std::string& name, const SourceLocation&
 void Parser::named_material() {
   const SourceLocation place = lexer_->place(lexer_->peek());
   state_.material = use_of_name(string_argument("a name"), place);
-}
-
-void Parser::make_named_medium() {
-  const std::string name = string_argument("a name");
-  Parameters given = parameters(owner(name), "medium");
-  const std::string type = given.text("type", "");
-  media_.emplace(name, Medium{where_, type});
-  if (!given.has("type")) return given.error("\"string type\" is missing");
-  const Refusal refusal = refusal_of("MakeNamedMedium", type);
-  if (!refusal.is_known) diagnostics_.error(given.where("type"), refusal.text, refusal.text);
-}
-
-void Parser::medium_interface() {
-  for (int side = 0; side < 2; ++side) {
-    const SourceLocation place = lexer_->place(lexer_->peek());
-    if (side == 1 && lexer_->peek().kind != Token::Kind::string) return;
-    const std::string name = string_argument("a medium's name (or \"\")");
-    if (name.empty()) continue;
-    if (const auto found = media_.find(name); found == media_.end())
-      diagnostics_.error(place, "the medium " + in_quotes(name) + " is not defined" + nearest(name, media_));
-    else
-      diagnostics_.error(place,
-                         "the medium " + in_quotes(name) + " is a MakeNamedMedium \"" + found->second.type + "\" (" +
-                             found->second.where.to_string() + "), which is not rendered yet",
-                         "MakeNamedMedium " + found->second.type);
-  }
 }
 
 TextureContext Parser::texture_context() {
@@ -334,6 +312,7 @@ void Parser::shape() {
   shape.world_from_object = state_.ctm;
   shape.reverse_orientation = state_.reverse_orientation;
   shape.emission = state_.emission;
+  shape.media = state_.media;
   (object_ ? scene_.objects[*object_].shapes : scene_.shapes).push_back(std::move(shape));
 }
 

@@ -4,6 +4,7 @@
 // Once all is read: which materials are used, made of their statements, and which a shape has.
 #include <algorithm>
 #include <functional>
+#include <map>
 
 #include "import/detail/pbrt_materials.h"
 #include "import/detail/pbrt_parser.h"
@@ -26,6 +27,26 @@ void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visi
       each_material(*own, visit);
       operand = std::move(own);
     }
+}
+
+/// With that of every surface that it shows.
+void each_surface(Shape& shape, const std::function<void(std::uint32_t)>& visit) {
+  if (const auto* csg = std::get_if<CsgShape>(&shape.geometry)) {
+    if (shape.materials.empty()) {
+      for (const std::shared_ptr<const Shape>& operand : csg->operands) {
+        Shape own = *operand;
+        each_surface(own, visit);
+      }
+      return;
+    }
+  }
+  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  if (!shape.materials.empty())
+    std::ranges::for_each(shape.materials, visit);
+  else if (capsules && !capsules->materials.empty())
+    std::ranges::for_each(capsules->materials, visit);
+  else
+    visit(shape.material);
 }
 
 void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visit) {
@@ -85,6 +106,13 @@ class Parser::MaterialMaking {
     for (const Made& made : made_) out.push_back(made.index);
     return out;
   }
+  /// The media behind boundaries, by the index of the boundary's material in the scene.
+  std::map<std::uint32_t, Medium> media_within() const {
+    std::map<std::uint32_t, Medium> out;
+    for (const Made& made : made_)
+      if (made.sound && made.within) out.emplace(made.index, *made.within);
+    return out;
+  }
   std::size_t left_out = 0;
   std::string first_left_out;
 
@@ -94,6 +122,7 @@ class Parser::MaterialMaking {
     State state = State::unseen;
     std::uint32_t index = 0;  // in the scene
     bool sound = false;
+    std::optional<Medium> within = {};
   };
 
   void make_unseen(std::size_t number) {
@@ -112,7 +141,7 @@ class Parser::MaterialMaking {
       statement.parameters.report_to(diagnostics);
       const PartFinder part_named = [this](const std::string& name, std::string& problem) { return part(name, problem); };
       Material material = make_material(statement.type, statement.parameters, parser_.textures_, parser_.texture_context().images,
-                                        part_named, parser_.scene_);
+                                        part_named, parser_.scene_, made.within);
       material.name = statement.name;
       made.index = static_cast<std::uint32_t>(parser_.scene_.materials.size());
       made.sound = !aside.has_errors();
@@ -139,6 +168,10 @@ class Parser::MaterialMaking {
       return std::nullopt;
     }
     make(found->second);
+    if (made.sound && made.within) {
+      problem = "names the material " + in_quotes(name) + ", a subsurface, of which no mix is made";
+      return std::nullopt;
+    }
     if (made.sound) return made.index;
     problem = "names the material " + in_quotes(name) +
               (made.index == interface_material ? ", an interface, of which no mix is made yet" : ", which is wrong itself");
@@ -159,6 +192,7 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
     diagnostics_.warning(
         {}, making.first_left_out + " (no shape has this material" +
                 (making.left_out > 1 ? ", nor " + std::to_string(making.left_out - 1) + " others that are wrong)" : ")"));
+  media_within_ = making.media_within();
   return making.indices();
 }
 
@@ -175,6 +209,13 @@ void Parser::resolve_materials() {
                          "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
   }
   drop_interfaces(index_of_use);
+  if (std::ranges::find(index_of_use, interface_material) != index_of_use.end()) {
+    const auto interface = static_cast<std::uint32_t>(scene_.materials.size());
+    bool is_used = false;
+    std::ranges::replace(index_of_use, interface_material, interface);
+    each_material(scene_, [&](std::uint32_t& use) { is_used = is_used || (use != 0 && index_of_use[use] == interface); });
+    if (is_used) scene_.materials.push_back({InterfaceMaterial{}, "interface", {main_file_}});
+  }
   bool uses_default = false;
   const auto default_index = static_cast<std::uint32_t>(scene_.materials.size());
   index_of_use[0] = default_index;
@@ -184,22 +225,47 @@ void Parser::resolve_materials() {
   });
   if (uses_default) scene_.materials.push_back({DiffuseMaterial{}, "default", {main_file_}});
   make_hair_one_sided();
+  fill_subsurfaces();
 }
 
-/// Takes out shapes whose material lets all light pass: without media nothing of them is seen.
+/// A shape whose material is a subsurface holds the medium of that.
+void Parser::fill_subsurfaces() {
+  if (media_within_.empty()) return;
+  std::map<std::uint32_t, std::uint32_t> index_of;
+  const auto visit = [&](Shape& shape) {
+    bool some = false, all = true;
+    std::optional<std::uint32_t> of;
+    each_surface(shape, [&](std::uint32_t material) {
+      const bool is_boundary = media_within_.contains(material) && (!of || *of == material);
+      some = some || media_within_.contains(material);
+      all = all && is_boundary;
+      of = material;
+    });
+    if (!some) return;
+    if (!all) return diagnostics_.error(shape.where, "all of a shape has one material where one is a \"subsurface\"");
+    const auto [found, fresh] = index_of.emplace(*of, static_cast<std::uint32_t>(scene_.media.size()));
+    if (fresh) {
+      scene_.media.push_back(media_within_.at(*of));
+      if (scene_.media.back().name.empty()) scene_.media.back().name = "subsurface";
+    }
+    shape.media.inside = found->second;
+  };
+  for (Shape& shape : scene_.shapes) visit(shape);
+  for (Object& object : scene_.objects)
+    for (Shape& shape : object.shapes) visit(shape);
+}
+
+/// Takes out shapes whose material lets all light pass: what parts no media is not seen.
 void Parser::drop_interfaces(const std::vector<std::uint32_t>& index_of_use) {
   const auto is_interface = [&](std::uint32_t use) { return use != 0 && index_of_use[use] == interface_material; };
   const auto passes = [&](Shape& shape) {
-    const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    if (is_interface(shape.material) && shape.materials.empty() && !(capsules && !capsules->materials.empty()) &&
-        !std::holds_alternative<CsgShape>(shape.geometry)) {
-      if (shape.emission) diagnostics_.warning(shape.where, "the shape emits nothing, as its material is \"interface\"");
-      return true;
+    bool all = true;
+    each_surface(shape, [&](std::uint32_t use) { all = all && is_interface(use); });
+    if (all && shape.emission) {
+      diagnostics_.warning(shape.where, "the shape emits nothing, as its material is \"interface\"");
+      shape.emission.reset();
     }
-    bool some = false;
-    each_material(shape, [&](std::uint32_t& use) { some = some || is_interface(use); });
-    if (some) diagnostics_.error(shape.where, "a part of a shape cannot be of the material \"interface\" yet");
-    return false;
+    return all && !shape.media.differ();
   };
   std::erase_if(scene_.shapes, passes);
   for (Object& object : scene_.objects) std::erase_if(object.shapes, passes);

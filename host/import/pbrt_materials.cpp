@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/spelling.h"
+#include "import/detail/pbrt_subsurface.h"
 
 namespace caplet::pbrt {
 
@@ -390,7 +391,7 @@ void read_bump(Parameters& parameters, const TextureTable& textures, const Textu
 }  // namespace
 
 Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
-                       const PartFinder& part_named, Scene& scene) {
+                       const PartFinder& part_named, Scene& scene, std::optional<Medium>& within) {
   Material material;
   material.where = parameters.where();
   read_bump(parameters, textures, images, material, scene);
@@ -401,6 +402,13 @@ Material make_material(const std::string& type, Parameters& parameters, const Te
     material.model = std::move(model);                                                      \
   }
 #include "scene/materials.def"
+  if (type == "subsurface") {
+    DielectricMaterial boundary;
+    boundary.eta = ConstantSpectrum{1.33};
+    DielectricMaterial::fields(boundary, MaterialReader{parameters, textures, part_named, material, scene});
+    within = subsurface_medium(parameters, textures, boundary.eta);
+    material.model = std::move(boundary);
+  }
   parameters.finish();
   return material;
 }

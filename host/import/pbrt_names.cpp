@@ -55,10 +55,15 @@ const std::vector<NameTable>& name_tables() {
 #include "scene/lights.def"
                },
                {}),
-      {"MakeNamedMedium", {}, {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}},
+      table_of("MakeNamedMedium",
+               {
+#define MEDIUM_MODEL(name, Type) #name,
+#include "scene/media.def"
+               },
+               {"cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"}),
       table_of("Material",
                {
-                   "interface",
+                   "subsurface",
 #define MATERIAL_MODEL(name, Type) #name,
 #include "scene/materials.def"
                },

@@ -81,6 +81,7 @@ Scene Parser::parse(std::string text) {
   parse_file(main_file_, std::move(text));
   report_unclosed(0);
   if (!in_world_ && !diagnostics_.has_errors()) diagnostics_.error({main_file_}, "the scene is empty: there is no WorldBegin");
+  resolve_media();
   resolve_materials();
   finish_attributes();
   resolve_instances();

@@ -40,6 +40,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   record.screen_per_pixel_y = static_cast<float>(unit * (screen[2] - screen[3]) / film.height);
   record.lens_radius = static_cast<float>(camera.lens_radius);
   record.focal_distance = static_cast<float>(camera.focal_distance);
+  record.medium = camera.medium.value_or(CAPLET_NONE);
+  record.origins = camera.lens_radius > 0 ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {

@@ -2,6 +2,10 @@
 // Copyright Caplet authors
 #include "lower/flat_scene.h"
 
+#include <algorithm>
+
+#include "shared/families.h"
+
 namespace caplet {
 
 namespace {
@@ -29,6 +33,13 @@ std::uint64_t FlatScene::material_kinds() const { return kinds_of(materials); }
 std::uint64_t FlatScene::texture_kinds() const { return kinds_of(textures); }
 
 std::uint64_t FlatScene::light_kinds() const { return kinds_of(lights); }
+
+std::uint64_t FlatScene::medium_kinds() const { return kinds_of(mediums); }
+
+bool FlatScene::has_media() const {
+  const auto passes = [](const MaterialRecord& material) { return (material_traits[material.kind] & trait_passes) != 0; };
+  return !mediums.empty() || std::ranges::any_of(materials, passes);
+}
 
 std::uint64_t FlatScene::geometry_bytes() const {
   return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +

@@ -29,6 +29,8 @@ struct FlatScene {
   std::uint64_t material_kinds() const;  // likewise, of `materials`, `textures` and `lights` as they are
   std::uint64_t texture_kinds() const;
   std::uint64_t light_kinds() const;
+  std::uint64_t medium_kinds() const;
+  bool has_media() const;  // or surfaces that light passes
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
 
   // For `info` and statistics.

@@ -303,6 +303,17 @@ struct LiveScene::State {
     lights_are_old = false;
   }
 
+  /// Whether other surfaces may part media afterwards, or in another order of size.
+  bool parts_media(const SceneEdit& edit, const SceneEdit& before) const {
+    const auto passes = [](const SceneEdit& one) {
+      const auto* material = std::get_if<MaterialEdit>(&one);
+      return material && std::holds_alternative<InterfaceMaterial>(material->to);
+    };
+    const bool moves = std::holds_alternative<CapsuleEdit>(edit) || std::holds_alternative<TransformEdit>(edit) ||
+                       std::holds_alternative<InstanceEdit>(edit);
+    return (moves && !lowering->flat.boundaries.empty()) || passes(edit) != passes(before);
+  }
+
   bool has_bad_tree() const {
     const auto is_bad = [&](const Part& part) {
       return part.primitives.size() >= rebuilt_from_primitives && trees->cost_growth(part) > rebuilt_at_growth;
@@ -320,6 +331,7 @@ struct LiveScene::State {
     try {
       const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
       const bool followed =
+          !parts_media(edit, before) &&
           std::visit([&](const auto& one) { return follow(one, std::get<std::decay_t<decltype(one)>>(before)); }, edit);
       if (!followed || has_bad_tree()) return lower_all();
       changes.spectra.add(spectra, flat().spectra.size() - spectra);

@@ -11,6 +11,7 @@
 #include "lower/detail/images.h"
 #include "lower/detail/lowering.h"
 #include "lower/detail/materials.h"
+#include "lower/detail/media.h"
 
 namespace caplet {
 
@@ -19,7 +20,9 @@ Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), 
   lower_images(scene, images, flat);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));
+  lower_media(scene, spectra, flat);
   geometry = lower_geometry(scene, images, spectra, flat);
+  lower_boundaries(scene, geometry, flat);
   lower_lights(scene, geometry.emitters, spectra, light_images, flat);
   flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -72,6 +72,7 @@ struct PathNeeds {
   Layers layers;
   bool cones = false;  // of textured scenes
   bool sides = false;  // of scenes with a light tree
+  bool media = false;  // of scenes with media
 };
 
 /// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them.

@@ -41,6 +41,8 @@ class DeviceScene {
   bool has_textures() const { return options_.rows.at("textures") != 0; }
   /// Whether lights are chosen by a light tree.
   bool has_light_tree() const { return has_light_tree_; }
+  /// Whether there are media, or surfaces that light passes.
+  bool has_media() const { return has_media_; }
   /// Nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
@@ -53,6 +55,7 @@ class DeviceScene {
   WorldRecord world_;
   float light_radiance_ = 0;
   bool has_light_tree_ = false;
+  bool has_media_ = false;
   bool has_camera_stage_ = false;
   std::uint64_t bvh_nodes_ = 0;
   std::uint64_t bytes_updated_ = 0;

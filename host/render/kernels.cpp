@@ -111,7 +111,8 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
           {{"shapes", shapes_on_trial(scene.shapes)},
            {"materials", scene.material_kinds()},
            {"textures", scene.texture_kinds()},
-           {"lights", scene.light_kinds()}}};
+           {"lights", scene.light_kinds()},
+           {"media", scene.medium_kinds()}}};
 }
 
 StageOptions StageOptions::together_with(const StageOptions& others) const {

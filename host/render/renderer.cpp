@@ -49,20 +49,32 @@ double extent_of(const WorldRecord& world, const CameraRecord& camera) {
          double{world.radius};
 }
 
-PathNeeds needs_of(const DeviceScene& scene, Layers layers) { return {layers, scene.has_textures(), scene.has_light_tree()}; }
-
-/// The stages that trace a round's rays.
-struct TracingStages {
-  Stage first, later;  // camera rays, and all others
-  Stage connect;
-};
-TracingStages tracing_stages(const DeviceScene& scene) {
-  if (scene.has_alpha()) return {Stage::extend_alpha, Stage::extend_alpha, Stage::connect_alpha};
-  return {scene.has_camera_stage() ? Stage::extend_camera : Stage::extend, Stage::extend, Stage::connect};
+PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
+  return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media()};
 }
-bool is_tracing(Stage stage) {
-  constexpr std::array all{Stage::extend, Stage::extend_camera, Stage::extend_alpha, Stage::connect, Stage::connect_alpha};
-  return std::ranges::find(all, stage) != all.end();
+
+/// The stages of a round, of which scenes have one or the other.
+struct RoundStages {
+  Stage first, later;  // that trace camera rays, and all others
+  Stage shade, connect;
+};
+RoundStages round_stages(const DeviceScene& scene) {
+  RoundStages out{scene.has_camera_stage() ? Stage::extend_camera : Stage::extend, Stage::extend, Stage::shade, Stage::connect};
+  if (scene.has_alpha()) out = {Stage::extend_alpha, Stage::extend_alpha, Stage::shade, Stage::connect_alpha};
+  if (scene.has_media()) {
+    out.shade = Stage::shade_media;
+    out.connect = Stage::connect_media;
+  }
+  return out;
+}
+/// Whether such a scene's renders have no use for a stage.
+bool is_idle(Stage stage, const DeviceScene& scene) {
+  if (stage == Stage::immerse || stage == Stage::travel) return !scene.has_media();
+  constexpr std::array choices{Stage::extend,      Stage::extend_camera, Stage::extend_alpha,  Stage::shade,
+                               Stage::shade_media, Stage::connect,       Stage::connect_alpha, Stage::connect_media};
+  if (std::ranges::find(choices, stage) == choices.end()) return false;
+  const RoundStages used = round_stages(scene);
+  return stage != used.first && stage != used.later && stage != used.shade && stage != used.connect;
 }
 
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
@@ -129,6 +141,7 @@ void Renderer::reset(const FlatView& view) {
   }
   paths_.provide(scene_.device(), batch_paths_, needs_of(scene_, layers_));
   sensor_ = SensorBuffers(scene_.device(), view);
+  origins_differ_ = view.camera.origins != 0;
   FilmLayout layout;
   layout.width = narrow<int>(view.view.width);
   layout.height = narrow<int>(view.view.height);
@@ -145,9 +158,7 @@ void Renderer::reset(const FlatView& view) {
   film_.parts.clear();
   is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
-  std::erase_if(stages, [tracing = tracing_stages(scene_)](Stage stage) {
-    return is_tracing(stage) && stage != tracing.first && stage != tracing.later && stage != tracing.connect;
-  });
+  std::erase_if(stages, [&](Stage stage) { return is_idle(stage, scene_); });
   if (!drive_of(scene_.device().profile()).counts_on_device)
     std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
   scene_.kernels().compile(stages, batch_paths_);
@@ -216,6 +227,7 @@ void Renderer::batch(const BatchRecord& record) {
   paths_.counters.counters.write(counters);
   kernels.set_chunk(chunk_);
   kernels.run(Stage::generate, bindings, record.path_count);
+  if (scene_.has_media()) kernels.run(Stage::immerse, bindings, origins_differ_ ? record.path_count : 1);
   rays_.camera += record.path_count;
   drive.counts_on_device ? rounds_on_device(bindings, record.path_count) : rounds_by_host(bindings, record.path_count);
   const auto layers = static_cast<std::size_t>(std::popcount(layers_.bits()));
@@ -229,17 +241,18 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
   Kernels& kernels = scene_.kernels();
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
-  const TracingStages tracing = tracing_stages(scene_);
-  Stage extend = tracing.first;
+  const RoundStages stages = round_stages(scene_);
+  Stage extend = stages.first;
   while (paths > 0) {
     if (sorts) paths_.sort.sort_bins.clear();
     kernels.run(extend, bindings, paths);
-    extend = tracing.later;
-    kernels.run(Stage::shade, bindings, paths);
+    extend = stages.later;
+    if (scene_.has_media()) kernels.run(Stage::travel, bindings, paths);
+    kernels.run(stages.shade, bindings, paths);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
     const uint next = counters[counter_next], shadow = counters[counter_shadow];
-    kernels.run(tracing.connect, bindings, shadow);
+    kernels.run(stages.connect, bindings, shadow);
     if (!sorts)
       std::swap(paths_.queues.queue, paths_.queues.queue_next);
     else if (next > 0)
@@ -257,16 +270,17 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
   const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
   uint bounces = 0, shadows = 0;
-  const TracingStages tracing = tracing_stages(scene_);
-  Stage extend = tracing.first;
+  const RoundStages stages = round_stages(scene_);
+  Stage extend = stages.first;
   while (paths > 0) {
     const Clock::time_point start = Clock::now();
     for (int round = 0; round < rounds_unasked; ++round) {
       if (sorts) paths_.sort.sort_bins.clear();
       kernels.run(extend, bindings, paths, 0, counter_queued);
-      extend = tracing.later;
-      kernels.run(Stage::shade, bindings, paths, 0, counter_queued);
-      kernels.run(tracing.connect, bindings, paths, 0, counter_shadow);
+      extend = stages.later;
+      if (scene_.has_media()) kernels.run(Stage::travel, bindings, paths, 0, counter_queued);
+      kernels.run(stages.shade, bindings, paths, 0, counter_queued);
+      kernels.run(stages.connect, bindings, paths, 0, counter_shadow);
       if (sorts)
         sort(bindings, paths, counter_next);
       else
@@ -292,6 +306,6 @@ void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter
   kernels.run(Stage::sort_scatter, bindings, paths, 0, counter);
 }
 
-std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path({Layers::all(), true, true}) * least_batch_paths; }
+std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path({Layers::all(), true, true, true}) * least_batch_paths; }
 
 }  // namespace caplet

@@ -76,7 +76,8 @@ class Renderer {
   Layers layers_;
   PathBuffers paths_;
   std::uint32_t sort_bits_;
-  std::size_t chunk_;  // Kernels::set_chunk
+  bool origins_differ_ = false;  // of camera rays
+  std::size_t chunk_;            // Kernels::set_chunk
   SensorBuffers sensor_;
   mutable DeviceFilm film_;
   mutable bool is_old_ = true;  // the film's words are those of before a reset: they count as zeros

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/medium.h"
 #include "scene/shape.h"
 #include "scene/spectrum.h"
 
@@ -46,6 +47,7 @@ struct Camera {
   std::optional<std::array<double, 4>> screen_window;  // x min, x max, y min, y max
   double lens_radius = 0;
   double focal_distance = 1e6;
+  std::optional<std::uint32_t> medium = {};  // where no solid holds the camera: index into Scene::media
 };
 
 struct PixelFilter {
@@ -76,6 +78,7 @@ struct IntegratorSettings {
 struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;
+  std::vector<Medium> media;
   std::vector<Shape> shapes;  // world
   std::vector<Object> objects;
   std::vector<Instance> instances;

@@ -16,6 +16,7 @@
 #include "scene/bounds.h"
 #include "scene/geometries.def"
 #include "scene/light_image.h"
+#include "scene/medium.h"
 #include "scene/spectrum.h"
 #include "scene/texture_operand.h"
 
@@ -47,6 +48,7 @@ struct Shape {
   bool one_sided = false;                // hits from inside (open shapes: from behind) are not seen
   std::optional<AreaEmission> emission;
   bool reverse_orientation = false;
+  MediumSides media = {};
   std::string name;
   SourceLocation where;
 };
@@ -56,6 +58,10 @@ std::size_t surface_count(const Shape& shape);
 
 /// True for shapes with an inside: what csg can combine.
 bool is_closed(const Shape& shape);
+
+/// Of the edges of a shape the share that an odd number of its faces have: 0 of solids and of meshes that enclose what is in
+/// them, 1 of other open shapes. Faces meet where their corners are the same points.
+double open_edges(const Shape& shape);
 
 /// Solids in a csg shape, nested ones counted; 1 for other shapes. Counting stops above max_csg_operands.
 std::size_t solid_count(const Shape& shape);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -41,6 +42,8 @@ class Validator {
       if (textures_are_sound) textured(material);
     }
     mixes();
+    for (const Medium& medium : scene_.media)
+      std::visit([&](const auto& m) { m.fields(m, MediumFields{*this, medium.where}); }, medium.model);
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
       for (const Shape& one : object.shapes) shape(one);
@@ -49,6 +52,7 @@ class Validator {
       transform(instance.world_from_object, instance.where);
     }
     if (said_.empty()) instances();
+    if (said_.empty()) open_surfaces();
     for (const Light& one : scene_.lights) light(one);
     camera(file);
     film(file);
@@ -243,6 +247,111 @@ class Validator {
     }
   }
 
+  /// Of the calls of media.def.
+  struct MediumFields {
+    Validator& validator;
+    const SourceLocation& where;
+
+    template <class Preset>
+    void scattering(const ScatteringProperties& of, Preset&&) {
+      validator.spectrum(of.sigma_a, where, "sigma_a");
+      validator.spectrum(of.sigma_s, where, "sigma_s");
+      number("scale", of.scale, 0, std::numeric_limits<double>::infinity());
+      number("g", of.g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry);
+    }
+    void emission(const char* name, const std::optional<Spectrum>& radiance, double scale) {
+      if (radiance) validator.spectrum(*radiance, where, name);
+      number("Lescale", scale, 0, std::numeric_limits<double>::infinity());
+    }
+    void emission(const char* name, const std::optional<Spectrum>& radiance) { emission(name, radiance, 0); }
+    void number(const char* name, double value, double low, double high) {
+      if (!(value >= low && value <= high && std::isfinite(value)))
+        validator.error(where, std::string(name) + ' ' + must_lie_within(low, high));
+    }
+    void asymmetry(double g) { number("g", g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry); }
+    void bounds(const MediumBounds& of) {
+      for (int k = 0; k < 3; ++k)
+        if (!(of.p0[k] < of.p1[k] && of.p0[k] >= -largest_length && of.p1[k] <= largest_length))
+          return validator.error(where, "the medium's box from p0 to p1 has no inside");
+      validator.transform(of.world_from_medium, where);
+    }
+    void counts(const GridCounts& of) {
+      for (const int count : of)
+        if (count < 1) return validator.error(where, "a grid must have at least one cell along each side");
+    }
+    void grid(const char* name, const FloatGrid& of, const GridCounts& counts, bool is_needed) {
+      if (of || is_needed) values(name, of, counts, 1);
+    }
+    void colors(const char* name, const ColorGrid& of, const GridCounts& counts) {
+      if (of.rgb) values(name, of.rgb, counts, 3);
+    }
+    void volume(const SparseGridPointer& density, const SparseGridPointer& temperature, const glm::dmat4& world_from_medium) {
+      if (!density || density->bricks.empty()) return validator.error(where, "the medium has no density anywhere");
+      bounds({density->box.min, density->box.max, world_from_medium});
+      for (const SparseGridPointer& grid : {density, temperature}) {
+        if (!grid) continue;
+        std::array<std::int64_t, 3> low{}, high{};
+        for (const auto& brick : grid->bricks)
+          for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min<std::int64_t>(low[k], brick[k]);
+            high[k] = std::max<std::int64_t>(high[k], brick[k]);
+          }
+        double spanned = 1;
+        for (std::size_t k = 0; k < 3; ++k) spanned *= static_cast<double>(high[k] - low[k] + 1);
+        if (spanned > static_cast<double>(most_spanned_bricks) || grid->values.size() != 512 * grid->bricks.size())
+          return validator.error(where, "a grid's bricks span too much, or have the wrong number of values");
+        validator.transform(world_from_medium * grid->medium_from_voxels, where);
+        for (const float value : grid->values)
+          if (!(value >= 0 && std::isfinite(value)))
+            return validator.error(where, "a grid has values that are negative or not finite");
+      }
+    }
+    void heat(const std::optional<Spectrum>& radiance, const FloatGrid& temperature) {
+      if (radiance && temperature) validator.error(where, "a medium cannot have both an \"Le\" and a \"temperature\"");
+    }
+    void any_of(const ColorGrid& sigma_a, const ColorGrid& sigma_s, const ColorGrid& radiance) {
+      if (!sigma_a.rgb && !sigma_s.rgb) validator.error(where, "the grid needs a \"sigma_a\" or a \"sigma_s\"");
+      if (radiance.rgb && !sigma_a.rgb) validator.error(where, "an \"Le\" needs a \"sigma_a\"");
+    }
+    void values(const char* name, const FloatGrid& of, const GridCounts& counts, std::size_t each) {
+      const std::size_t expected = each * cells_of(counts), given = of ? of->size() : 0;
+      if (given != expected)
+        return validator.error(where, std::string(name) + " has " + std::to_string(given) + " values, but a grid of " +
+                                          std::to_string(counts[0]) + " x " + std::to_string(counts[1]) + " x " +
+                                          std::to_string(counts[2]) + " cells takes " + std::to_string(expected));
+      for (const float value : *of)
+        if (!(value >= 0 && std::isfinite(value)))
+          return validator.error(where, std::string(name) + " has values that are negative or not finite");
+    }
+  };
+
+  void medium(const std::optional<std::uint32_t>& index, const SourceLocation& where, const char* what) {
+    if (index && *index >= scene_.media.size()) error(where, std::string(what) + " has a medium that does not exist");
+  }
+
+  /// A medium needs something that encloses it: a solid, a closed mesh, or several surfaces, which are trusted to do it together.
+  void open_surfaces() {
+    std::map<std::pair<std::optional<std::uint32_t>, std::optional<std::uint32_t>>, std::vector<const Shape*>> open;
+    const auto add = [&](const std::vector<Shape>& shapes) {
+      for (const Shape& shape : shapes)
+        if (shape.media.inside && shape.media.differ() && open_edges(shape) > 0)
+          open[{shape.media.inside, shape.media.outside}].push_back(&shape);
+    };
+    add(scene_.shapes);
+    for (const Object& object : scene_.objects) add(object.shapes);
+    for (const auto& [sides, shapes] : open) {
+      if (shapes.size() > 1) continue;
+      const Shape& shape = *shapes[0];
+      const std::string said = "the medium " + scene_.media[*shape.media.inside].name + " is on an open surface: a " +
+                               geometry_name(shape) + " does not enclose it";
+      if (open_edges(shape) > most_open_edges)
+        error(shape.where, said);
+      else
+        diagnostics_.warning(shape.where, said + " altogether");
+    }
+  }
+  static constexpr double most_open_edges = 0.1;  // of a mesh that counts as closed but for holes
+
   /// Of the calls of materials.def and lights.def.
   struct Fields {
     Validator& validator;
@@ -382,6 +491,9 @@ class Validator {
     if (const auto* csg = std::get_if<CsgShape>(&s.geometry))
       for (const auto& operand : csg->operands)
         if (operand->alpha) error(operand->where, "an operand of a csg has no \"alpha\" of its own: give it to the csg");
+    medium(s.media.inside, s.where, "the inside of the shape");
+    medium(s.media.outside, s.where, "the outside of the shape");
+    if (s.one_sided && s.media.inside && s.media.differ()) error(s.where, "a shape that is not seen from inside holds no medium");
     if (s.material >= scene_.materials.size()) error(s.where, "the shape has a material that does not exist");
     for (const std::uint32_t material : s.materials)
       if (material >= scene_.materials.size()) error(s.where, "a surface of the shape has a material that does not exist");
@@ -433,6 +545,7 @@ class Validator {
 
   void camera(const SourceLocation& file) {
     const Camera& c = scene_.camera;
+    medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
     if (!(c.fov > 0 && c.fov < 3.14159265358979)) error(file, "the camera's field of view must be above 0 and below 180 degrees");

@@ -13,6 +13,7 @@
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
+#include "math/phase.cl"
 #include "math/rng.cl"
 
 // Independent numbers in [0, 1), by their count from a key.
@@ -156,21 +157,6 @@ static inline int coat_scatters(const BsdfCoat* coat) { return max4(coat->albedo
 
 // What is not extinguished over the height dz in direction w.
 static inline float coat_passes(float dz, float3 w) { return exp(-fabs(dz / w.z)); }
-
-// Henyey and Greenstein's density of a turn by that cosine.
-static inline float phase_density(float cosine, float g) {
-  const float d = fmax(1.0f + g * g - 2.0f * g * cosine, 1e-12f);
-  return 0.25f * CAPLET_INV_PI * (1.0f - g * g) / (d * sqrt(d));
-}
-
-static inline float3 phase_sample(float3 w, float g, float2 u, float* pdf) {
-  const float t = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
-  const float cosine = clamp(fabs(g) < 1e-3f ? 1.0f - 2.0f * u.x : (1.0f + g * g - t * t) / (2.0f * g), -1.0f, 1.0f);
-  const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine)), phi = 2.0f * CAPLET_PI * u.y;
-  const Frame frame = frame_from_normal(w);
-  *pdf = phase_density(cosine, g);
-  return normalize(to_world(&frame, (float3)(sine * cos(phi), sine * sin(phi), cosine)));
-}
 
 // Russian roulette of walks: 0 where one ends.
 static inline int walk_goes_on(int depth, float4* weight, WalkNumbers* numbers) {

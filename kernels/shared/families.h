@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where the data of materials, textures and lights lie in material_data, texture_data and light_data, and what their lists say of
-// them. Valid as OpenCL C 1.2 and as C++.
+// Where the data of materials, textures, lights and media lie in material_data, texture_data, light_data and media_data, and what their
+// lists say of them. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_FAMILIES_H
 #define CAPLET_SHARED_FAMILIES_H
 
@@ -28,7 +28,7 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_material 1
 
 // spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
-// textures, which share names with lights: mix_texture_at_amount, mix_texture_floats.
+// textures and media, which share names with others: mix_texture_at_amount, mix_texture_floats.
 enum {
 #define MATERIAL(name, traits) name##_before_floats = -1,
 #define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
@@ -46,6 +46,12 @@ enum {
 #define LIGHT_END(name) name##_floats,
 #include "shared/lights.def"
 #undef LIGHT
+#define MEDIUM(name, way) name##_medium_before_floats = -1,
+#define FIELD(kind, name, type) \
+  kind##_medium_at_##name, kind##_medium_end_of_##name = kind##_medium_at_##name + CAPLET_FLOATS_OF_##type - 1,
+#define MEDIUM_END(name) name##_medium_floats,
+#include "shared/media.def"
+#undef MEDIUM
   family_floats_end
 };
 
@@ -86,6 +92,10 @@ enum {
 #define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_##name, kind##_at_##name)
 #include "shared/lights.def"
 #undef LIGHT
+#define MEDIUM(name, way)
+#define FIELD(kind, name, type) CAPLET_FIELD_##type(kind##_medium_##name, kind##_medium_at_##name)
+#include "shared/media.def"
+#undef MEDIUM
 #undef CAPLET_DATA
 #undef CAPLET_ACCESSOR
 #undef CAPLET_BITS
@@ -103,7 +113,7 @@ enum {
 
 #ifdef __cplusplus
 
-/// A field of a material, texture or light.
+/// A field of a material, texture, light or medium.
 struct FamilyField {
   std::string_view name;
   std::uint32_t at, floats;
@@ -124,6 +134,11 @@ struct FamilyField {
 #define TEXTURE_END(name) {}};
 #include "shared/textures.def"
 #undef TEXTURE
+#define MEDIUM(name, way) inline constexpr FamilyField name##_medium_field_list[] = {
+#define FIELD(kind, name, type) {#name, kind##_medium_at_##name, CAPLET_FLOATS_OF_##type},
+#define MEDIUM_END(name) {}};
+#include "shared/media.def"
+#undef MEDIUM
 
 /// A kind's fields; without the last of each list, which is empty.
 inline constexpr std::span<const FamilyField> material_fields[] = {
@@ -140,6 +155,16 @@ inline constexpr std::span<const FamilyField> light_fields[] = {
 #define LIGHT(name, way) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
 #include "shared/lights.def"
 #undef LIGHT
+};
+inline constexpr std::span<const FamilyField> medium_fields[] = {
+#define MEDIUM(name, way) std::span<const FamilyField>(name##_medium_field_list).first(std::size(name##_medium_field_list) - 1),
+#include "shared/media.def"
+#undef MEDIUM
+};
+inline constexpr std::uint32_t medium_floats[] = {
+#define MEDIUM(name, way) name##_medium_floats,
+#include "shared/media.def"
+#undef MEDIUM
 };
 inline constexpr std::uint32_t material_floats[] = {
 #define MATERIAL(name, traits) name##_floats,
@@ -161,7 +186,7 @@ inline constexpr std::uint32_t material_traits[] = {
 #include "shared/materials.def"
 #undef MATERIAL
 };
-static_assert(material_count <= 64 && texture_count <= 64 && light_count <= 64, "masks have 64 bits");
+static_assert(material_count <= 64 && texture_count <= 64 && light_count <= 64 && medium_count <= 64, "masks have 64 bits");
 
 }  // namespace caplet
 #endif

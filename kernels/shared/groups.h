@@ -5,7 +5,7 @@
 // byte counts and argument binding on the host all expand from these lists: define
 //   GROUP_BEGIN(Type, group)      // Tree, tree: the struct of its buffers and the name that stages know it by
 //   BUFFER(name, type, access)    // access: ONE (a record, read only), IN (an array, read only) or STATE; of paths also what only some
-//                                 // renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES, STATE_SIDES
+//                                 // renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES, STATE_SIDES, STATE_MEDIA
 //   GROUP_END(Type)
 // and write GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_GROUPS_H
@@ -61,6 +61,15 @@
   BUFFER(light_texels, float, IN) /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the illuminant) */ \
   BUFFER(light_cdf, float, IN)    /* what they are sampled by (environment.cl, portal.cl) */ \
   GROUP_END(Lights)
+
+#define GROUP_MEDIA                                                                     \
+  GROUP_BEGIN(Media, media)                                                             \
+  BUFFER(mediums, MediumRecord, IN)                                                     \
+  BUFFER(media_data, float, IN)       /* media.def */                                   \
+  BUFFER(media_grids, float, IN)      /* by MediumRecords' data */                      \
+  BUFFER(boundaries, BoundaryRecord, IN)                                                \
+  BUFFER(geometry_boundary, uint, IN) /* by number of the geometry; CAPLET_NONE: none */ \
+  GROUP_END(Media)
 
 // The same for every scene.
 #define GROUP_OBSERVER                                                                                                    \
@@ -132,6 +141,19 @@
   BUFFER(queue_shadow, uint, STATE)           /* paths with a shadow ray */                         \
   GROUP_END(Shadows)
 
+// Of scenes with media.
+#define GROUP_IMMERSION                                                                                     \
+  GROUP_BEGIN(Immersion, immersion)                                                                         \
+  BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/immersion.cl) */ \
+  BUFFER(path_around, uint, STATE_MEDIA)                                                                    \
+  /* densities with which scattering, and a light sample, would have made the path at each wavelength, over the mean of the first (media/travel.cl) */ \
+  BUFFER(path_ratio, float4, STATE_MEDIA)                                                                   \
+  BUFFER(path_light_ratio, float4, STATE_MEDIA)                                                             \
+  BUFFER(shadow_inside, uint4, STATE_MEDIA)                                                                 \
+  BUFFER(shadow_around, uint, STATE_MEDIA)                                                                  \
+  BUFFER(shadow_pdfs, float2, STATE_MEDIA) /* of the light sample, and of scattering into its direction (0: a delta light) */ \
+  GROUP_END(Immersion)
+
 #define GROUP_QUEUES                                                        \
   GROUP_BEGIN(Queues, queues)                                               \
   BUFFER(queue, uint, STATE)      /* paths whose ray is to be extended */   \
@@ -177,10 +199,12 @@
   BUFFER(picks, PickRecord, STATE)  \
   GROUP_END(Picks)
 
-#define SCENE_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER
+// What all shading takes.
+#define SHADING_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER
+#define SCENE_GROUPS SHADING_GROUPS GROUP_MEDIA
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
-  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
+  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_IMMERSION GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
 #define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 

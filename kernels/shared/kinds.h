@@ -42,7 +42,8 @@ enum {
   trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
   trait_opaque = 2,      // it scatters light on the side alone that it comes from
   trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
-  trait_metal_base = 8   // a coat over a metal (layered.cl)
+  trait_metal_base = 8,  // a coat over a metal (layered.cl)
+  trait_passes = 16      // light goes on as if there were nothing: it may bound a medium
 };
 
 enum {
@@ -57,6 +58,13 @@ enum {
 #include "shared/lights.def"
 #undef LIGHT
   light_count
+};
+
+enum {
+#define MEDIUM(name, way) medium_##name,
+#include "shared/media.def"
+#undef MEDIUM
+  medium_count
 };
 
 enum {
@@ -120,6 +128,15 @@ enum {
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
+
+// HitRecord.slot of a path that has come to its end, or has been scattered, before what it hit
+#define CAPLET_SCATTERED 0xfffffffeu
+// BoundaryRecord.flags
+#define CAPLET_BOUNDARY_SHEET 1u   // surfaces without an inside of their own: their normals say which side is in
+#define CAPLET_BOUNDARY_CLOSED 2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within
+// Boundaries that are told apart at a point; the numbers of those that there may be
+#define CAPLET_HELD_BY 4
+#define CAPLET_MOST_BOUNDARIES 0xfffffeu
 
 // Fields of textures (textures.def): what spectra of an image are
 #define CAPLET_USE_ALBEDO 0u     // from 0 to 1

@@ -28,6 +28,9 @@
 #define CAPLET_LIGHT_LEAF 0x80000000u   // of a child: a light
 #define CAPLET_LIGHT_TREE_FROM 16       // lights: fewer are chosen by the table alone
 
+#define CAPLET_SPARSE_MAJORANT_CELLS 64
+#define CAPLET_MAJORANT_CELLS 16  // along each side of a medium that varies (kernels/media/majorants.cl)
+
 #define CAPLET_CSG_MAX_OPERANDS 32
 #define CAPLET_TEXTURE_MAX_STEPS 32  // of a texture: itself, and the textures and constants that it is made of
 

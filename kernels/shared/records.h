@@ -18,6 +18,9 @@ struct float2 {
 struct float4 {
   float x, y, z, w;
 };
+struct uint4 {
+  uint x, y, z, w;
+};
 #define CAPLET_SIZE_ASSERT(name, bytes) static_assert(sizeof(name) == (bytes) && (bytes) % 16 == 0, #name);
 #else
 #define CAPLET_SIZE_ASSERT(name, bytes) typedef char name##_size_assert[(sizeof(name) == (bytes) && (bytes) % 16 == 0) ? 1 : -1];

@@ -15,6 +15,9 @@
 #include "stages/outbox.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
+#ifdef SHADE_IN_MEDIA
+#include "stages/media.cl"
+#endif
 
 // CIE XYZ under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
 static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
@@ -63,7 +66,7 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 }
 
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const Surface* s, const Frame* frame,
+static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const HitRecord* hit, const Surface* s, const Frame* frame,
                                 const Bsdf* bsdf, uint side, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
@@ -80,7 +83,12 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   if (transmitted && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
+#ifdef SHADE_IN_MEDIA
+  const float weight = 1.0f;  // connect_media knows it
+  media_shadow(g, path, hit, s, wo, &light, bsdf_pdf);
+#else
   const float weight = light.delta ? 1.0f : power_heuristic(light.pdf, bsdf_pdf);
+#endif
   const float4 contribution = throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
   RayRecord ray;
@@ -93,7 +101,7 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   append_shadow(g, out, path);
 }
 
-#ifdef CAPLET_PREFETCH
+#if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
 #define STAGE_LOOKS_AHEAD
 // Paths come in the order of their rays, so that everything of a path, of what it hit and of the object hit lies anywhere: each is asked
 // for when what leads to it has come.
@@ -120,7 +128,7 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
 }
 #endif
 
-static void shade_item(const Stage* g, Outbox* out, uint item) {
+static void sending_item(const Stage* g, Outbox* out, uint item) {
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const uint path = g->queues.queue[item];
   const RayRecord ray = g->rays.path_ray[path];
@@ -133,6 +141,10 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
   const uint depth = flags >> PATH_DEPTH_SHIFT;
   const int specular = (flags & PATH_SPECULAR) != 0;
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
+#ifdef SHADE_IN_MEDIA
+  if (hit.slot == CAPLET_SCATTERED) return;
+  scatter.x /= mean4(g->immersion.path_light_ratio[path]);
+#endif
 
   if (hit.slot == CAPLET_NONE) {
     const float4 sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
@@ -175,6 +187,9 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
     const float u = sampler_2d(here.seed, here.sample, SCATTERING_SAMPLE(roulette, depth)).y;
     material = bsdf_chosen(&g->materials, &g->spectra, material, &place, wavelengths, u);
   }
+#ifdef SHADE_IN_MEDIA
+  if (media_passes(g, out, path, material, &ray, &hit)) return;
+#endif
   const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
   if (bent) s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv);
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
@@ -186,6 +201,9 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
     throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
+#ifdef SHADE_IN_MEDIA
+    media_hero_alone(g, path, &throughput, wavelengths);
+#endif
     g->carried.path_wavelength_pdfs[path] = pdfs;
   }
 
@@ -194,7 +212,7 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, out, &scene, path, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
+    sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
@@ -236,25 +254,11 @@ static void shade_item(const Stage* g, Outbox* out, uint item) {
   g->carried.path_normal[path] = side;
 #endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
+#ifdef SHADE_IN_MEDIA
+  media_scattered(g, path, &hit, dot(wi, s.ng) * dot(wo, s.ng) < 0.0f);
+#endif
   const uint bits = g->batch.batch->sort_bits;
   append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);
 }
 
-#ifdef STAGE_TAKES_SHARES
-static void stage_share(const Stage* g, uint begin, uint end) {
-  Outbox out;
-  outbox_open(&out);
-  for (uint item = begin; item < end; item++) {
-#ifdef STAGE_LOOKS_AHEAD
-    stage_ahead(g, item, end);
-#endif
-    shade_item(g, &out, item);
-  }
-  outbox_send(g, &out);
-}
-#else
-static void stage_item(const Stage* g, uint item) {
-  Outbox none;
-  shade_item(g, &none, item);
-}
-#endif
+#include "stages/sending.cl"

@@ -219,11 +219,13 @@ TEST(Interfaces, AreNotSeen) {
   ASSERT_EQ(scene.shapes.size(), 1u);
   EXPECT_EQ(std::get<SphereShape>(scene.shapes[0].geometry).radius, 3);
   EXPECT_EQ(scene.objects.at(0).shapes.size(), 1u);
-  EXPECT_THAT(
-      complaints("WorldBegin\nMakeNamedMaterial \"i\" \"string type\" \"interface\"\nMakeNamedMaterial \"d\" \"string type\" "
-                 "\"diffuse\"\nShape \"cylinder\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 1] \"float radius\" 1 \"string "
-                 "materials\" [\"i\" \"d\" \"d\"]"),
-      ElementsAre("scene.pbrt:4:1: a part of a shape cannot be of the material \"interface\" yet"));
+  // Parts of a shape that are seen keep the whole of it.
+  const Scene parts = world_of(
+      "MakeNamedMaterial \"i\" \"string type\" \"interface\"\nMakeNamedMaterial \"d\" \"string type\" \"diffuse\"\n"
+      "Shape \"cylinder\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 1] \"float radius\" 1 \"string materials\" [\"i\" \"d\" "
+      "\"d\"]");
+  ASSERT_EQ(parts.shapes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<InterfaceMaterial>(parts.materials.at(parts.shapes[0].materials.at(0)).model));
   EXPECT_THAT(complaints("WorldBegin\nMaterial \"interface\" \"float g\" 1\nShape \"sphere\"").front(),
               HasSubstr("scene.pbrt:2:22: Material \"interface\": unknown parameter \"g\""));
 }

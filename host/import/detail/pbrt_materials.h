@@ -32,8 +32,9 @@ TextureValue make_texture(const std::string& name, const std::string& kind, cons
 /// The index in the scene of the material that a mix names; none with the reason in `problem`.
 using PartFinder = std::function<std::optional<std::uint32_t>(const std::string& name, std::string& problem)>;
 
-/// The material of an accepted type. The scene gets the textures that its remapped roughness takes.
+/// The material of an accepted type. The scene gets the textures that its remapped roughness takes. `within`: of a "subsurface",
+/// the medium behind its boundary.
 Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
-                       const PartFinder& part_named, Scene& scene);
+                       const PartFinder& part_named, Scene& scene, std::optional<Medium>& within);
 
 }  // namespace caplet::pbrt

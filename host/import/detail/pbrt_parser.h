@@ -16,6 +16,7 @@
 #include "import/detail/pbrt_lexer.h"
 #include "import/detail/pbrt_lights.h"
 #include "import/detail/pbrt_materials.h"
+#include "import/detail/pbrt_media.h"
 #include "import/detail/pbrt_names.h"
 #include "import/detail/pbrt_parameters.h"
 #include "scene/image_reader.h"
@@ -38,6 +39,7 @@ class Parser {
     ColorSpace space = ColorSpace::srgb;
     std::uint32_t material = 0;  // index into uses_
     std::optional<AreaEmission> emission;
+    MediumSides media;  // indices into medium_uses_
     std::map<std::string, SharedParameters> attributes;
   };
   struct Block {
@@ -58,9 +60,14 @@ class Parser {
     SourceLocation where;
   };
   class MaterialMaking;
-  struct Medium {
+  struct MediumStatement {
+    Medium medium;
+    bool sound = false;
+    std::optional<std::uint32_t> index = {};  // in the scene, once something has it
+  };
+  struct MediumUse {
+    std::string name;
     SourceLocation where;
-    std::string type;
   };
   struct OpenFile {
     std::string name, canonical;
@@ -157,6 +164,8 @@ class Parser {
   void resolve_materials();
   void drop_interfaces(const std::vector<std::uint32_t>& index_of_use);
   void make_hair_one_sided();
+  void resolve_media();
+  void fill_subsurfaces();
   void resolve_instances();
   void present();
 
@@ -186,7 +195,9 @@ class Parser {
   std::map<std::string, std::size_t> named_materials_;
   std::vector<MaterialUse> uses_{1};
   std::map<std::string, std::uint32_t> uses_by_name_;
-  std::map<std::string, Medium> media_;
+  std::map<std::string, MediumStatement> media_;
+  std::vector<MediumUse> medium_uses_;
+  std::map<std::uint32_t, Medium> media_within_;  // of materials of the scene
   TextureTable textures_;
   std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images_;
   SharedParameters all_attributes_;

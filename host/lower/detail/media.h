@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Media of the model -> records and their data; which geometries part them.
+#pragma once
+
+#include "lower/detail/parts.h"
+#include "lower/flat_scene.h"
+#include "lower/spectrum.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// Fills mediums, media_data and media_grids.
+void lower_media(const Scene& scene, SpectrumTable& spectra, FlatScene& out);
+
+/// Fills boundaries and geometry_boundary, of scenes with media; `geometry`: of the same scene, lowered into `out`. Boundaries
+/// are numbered by the surface of their shapes' bounds, large ones first (of an object: the smallest that its instances make),
+/// and shapes that follow each other by that with the same media on both sides share one. Open surfaces have one for the same
+/// media. Throws InputError for more than CAPLET_MOST_BOUNDARIES.
+void lower_boundaries(const Scene& scene, const LoweredGeometry& geometry, FlatScene& out);
+
+}  // namespace caplet

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <limits>
+
+#include "scene/media/scattering.h"
+#include "scene/media/sparse_grid.h"
+
+namespace caplet {
+
+/// One stuff of densities that are 0 in most places. Where there are temperatures it glows as UniformGridMedium does.
+struct NanovdbMedium {
+  ScatteringProperties scattering;
+  SparseGridPointer density, temperature;
+  glm::dmat4 world_from_medium{1};
+  double radiance_scale = 1, temperature_scale = 1, temperature_offset = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    visit.scattering(self.scattering, unit_scattering);
+    visit.volume(self.density, self.temperature, self.world_from_medium);
+    visit.number("Lescale", self.radiance_scale, 0, most);
+    visit.number("temperaturescale", self.temperature_scale, -most, most);
+    visit.number("temperatureoffset", self.temperature_offset, -most, most);
+  }
+};
+
+}  // namespace caplet

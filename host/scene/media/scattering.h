@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// How a medium absorbs and scatters, per unit of length in the world. scale: of both coefficients. g: mean cosine of a
+/// scattering (Henyey and Greenstein), -1 < g < 1.
+struct ScatteringProperties {
+  Spectrum sigma_a = ConstantSpectrum{1}, sigma_s = ConstantSpectrum{1};
+  double scale = 1, g = 0;
+
+  static constexpr double most_asymmetry = 0.999999;
+};
+
+/// 1 of each, for all light.
+inline ScatteringProperties unit_scattering() { return {}; }
+
+/// Absorption and reduced scattering of a measured stuff, per millimetre: of pbrt-v4's names, after Jensen et al., "A practical
+/// model for subsurface light transport", 2001 ("Skin1", "Marble"), and Narasimhan et al., "Acquiring scattering properties of
+/// participating media by dilution", 2006 ("Espresso"); no value if unknown.
+std::optional<ScatteringProperties> named_scattering(const std::string& name);
+/// All names that named_scattering knows.
+std::vector<std::string> named_scattering_names();
+
+}  // namespace caplet

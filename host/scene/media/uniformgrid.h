@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "scene/media/grid.h"
+#include "scene/media/scattering.h"
+#include "scene/spectrum.h"
+
+namespace caplet {
+
+/// One stuff of different densities: coefficients are those of density 1. It emits `radiance` per absorption, or as a black body
+/// of temperaturescale (temperature - temperatureoffset) kelvin, times `radiance_scale`.
+struct UniformGridMedium {
+  ScatteringProperties scattering;
+  MediumBounds bounds;
+  GridCounts counts{1, 1, 1};
+  FloatGrid density, radiance_scale, temperature;
+  std::optional<Spectrum> radiance;
+  double temperature_scale = 1, temperature_offset = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    constexpr double most = std::numeric_limits<double>::infinity();
+    visit.scattering(self.scattering, unit_scattering);
+    visit.bounds(self.bounds);
+    visit.counts(self.counts);
+    visit.grid("density", self.density, self.counts, true);
+    visit.emission("Le", self.radiance);
+    visit.grid("Lescale", self.radiance_scale, self.counts, false);
+    visit.grid("temperature", self.temperature, self.counts, false);
+    visit.number("temperaturescale", self.temperature_scale, -most, most);
+    visit.number("temperatureoffset", self.temperature_offset, -most, most);
+    visit.heat(self.radiance, self.temperature);
+  }
+};
+
+}  // namespace caplet

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Which medium a point of a ray is in: that within the boundary of the highest number of those whose solids hold the point, as often as there are
+// such solids (docs/media.md). A ray carries the boundaries that it is within, at most CAPLET_HELD_BY of them; of more, the lowest numbers are forgotten.
+#ifndef CAPLET_MEDIA_IMMERSION_CL
+#define CAPLET_MEDIA_IMMERSION_CL
+
+#include "groups.cl"
+#include "shared/kinds.h"
+
+// inside: of each boundary its number + 1 above a count in bits 0..7, 0 where there is none. around: the medium where no solid is.
+typedef struct {
+  uint4 inside;
+  uint around;
+} Held;
+
+static inline uint held_highest(const Held* held) {
+  return max(max(held->inside.x, held->inside.y), max(held->inside.z, held->inside.w));
+}
+
+static inline uint held_medium(const Media* media, const Held* held) {
+  const uint highest = held_highest(held);
+  return highest == 0u ? held->around : media->boundaries[(highest >> 8) - 1u].inside;
+}
+
+static inline int held_by(const Held* held, uint boundary) {
+  const uint key = boundary + 1u;
+  return (held->inside.x >> 8) == key || (held->inside.y >> 8) == key || (held->inside.z >> 8) == key || (held->inside.w >> 8) == key;
+}
+
+static inline void held_enter(Held* held, uint boundary) {
+  const uint key = boundary + 1u;
+  uint all[CAPLET_HELD_BY];
+  vstore4(held->inside, 0, all);
+  int place = 0;
+  for (int i = 0; i < CAPLET_HELD_BY; ++i) {
+    if ((all[i] >> 8) == key) {
+      if ((all[i] & 255u) < 255u) all[i] += 1u;
+      held->inside = vload4(0, all);
+      return;
+    }
+    if (all[i] < all[place]) place = i;
+  }
+  const uint entry = key << 8 | 1u;
+  if (all[place] < entry) all[place] = entry;
+  held->inside = vload4(0, all);
+}
+
+static inline void held_leave(const Media* media, Held* held, uint boundary) {
+  const uint key = boundary + 1u;
+  uint all[CAPLET_HELD_BY];
+  vstore4(held->inside, 0, all);
+  for (int i = 0; i < CAPLET_HELD_BY; ++i)
+    if ((all[i] >> 8) == key) all[i] = (all[i] & 255u) > 1u ? all[i] - 1u : 0u;
+  held->inside = vload4(0, all);
+  if (held_highest(held) == 0u) held->around = media->boundaries[boundary].outside;
+}
+
+// The boundary of a hit, or CAPLET_NONE.
+static inline uint boundary_of(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit) {
+  return media->geometry_boundary[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]];
+}
+
+// Whether a ray that goes through the surface of a hit comes out of what the boundary holds.
+static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, const Media* media, uint boundary, const HitRecord* hit) {
+  const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
+  if (!(media->boundaries[boundary].flags & CAPLET_BOUNDARY_SHEET)) return leaving;
+  const uint flags = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]].flags;
+  return leaving != ((flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0);
+}
+
+// What holds a ray that went through the surface of a hit.
+static inline void held_cross(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, Held* held) {
+  const uint boundary = boundary_of(tree, surfaces, media, hit);
+  if (boundary == CAPLET_NONE) return;
+  if (boundary_is_left(tree, surfaces, media, boundary, hit))
+    held_leave(media, held, boundary);
+  else
+    held_enter(held, boundary);
+}
+
+// What holds a ray on its way to a hit. Solids that touch are crossed in one point, of which a ray meets one alone: that it is within the other
+// shows as it leaves that.
+static inline Held held_before(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, Held held) {
+  if (hit->slot == CAPLET_NONE) {
+    // Nothing closed holds what goes on for ever: the surfaces by which the ray left it were met together with others.
+    uint all[CAPLET_HELD_BY];
+    vstore4(held.inside, 0, all);
+    for (int i = 0; i < CAPLET_HELD_BY; ++i)
+      if (all[i] != 0u && (media->boundaries[(all[i] >> 8) - 1u].flags & CAPLET_BOUNDARY_CLOSED) != 0) {
+        all[i] = 1u | (all[i] & ~255u);
+        held.inside = vload4(0, all);
+        held_leave(media, &held, (all[i] >> 8) - 1u);
+        vstore4(held.inside, 0, all);
+      }
+    return held;
+  }
+  const uint boundary = boundary_of(tree, surfaces, media, hit);
+  if (boundary == CAPLET_NONE || (media->boundaries[boundary].flags & CAPLET_BOUNDARY_CLOSED) == 0) return held;
+  if (!held_by(&held, boundary) && boundary_is_left(tree, surfaces, media, boundary, hit)) held_enter(&held, boundary);
+  return held;
+}
+
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What the media share.
+#ifndef CAPLET_MEDIA_TYPES_CL
+#define CAPLET_MEDIA_TYPES_CL
+
+#include "groups.cl"
+#include "math/spectrum.cl"
+#include "math/vector.cl"
+#include "shared/families.h"
+
+// A medium as it is looked at: its data (media.def), and where it finds the rest. lambda: nm.
+typedef struct {
+  const Spectra* spectra;
+  __global const float* data;
+  __global const float* grids;
+  float4 lambda;
+} MediumView;
+
+// A medium at a point: absorption, scattering (1 over length), and radiance per absorption, at the four wavelengths.
+typedef struct {
+  float4 sigma_a, sigma_s, le;
+} MediumPoint;
+
+// Where a medium that varies is, and its majorants: of the cells of a box, size^3 of them, x fastest; extinction is at most the cell's times
+// `extinction`. place: 3x4 row-major, the unit cube from the world.
+typedef struct {
+  __global const float* place;
+  __global const float* majorants;
+  int size;
+  float4 extinction;
+} MediumBox;
+
+#endif

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The way of a ray through a medium: how far it comes, and what it loses. Distances are sampled for the hero wavelength, component 0, and the
+// others are weighed with it by the balance heuristic (Wilkie et al., "Hero wavelength spectral sampling", 2014). Where a medium varies, collisions are made
+// up to a majorant, and null collisions change nothing (Miller, Georgiev and Jarosz, "A null-scattering path integral formulation of light transport",
+// 2019; Pharr, Jakob and Humphreys 2023, 14.2). Unlike there, absorption ends no path where the medium scatters or lets pass as well: it lowers weights.
+//
+// A path keeps its throughput over the mean of the densities with which each of the four wavelengths as the hero would have made it: `scattering` are these,
+// with mean 1. `light`: the densities, in the same measure, of the same path with its last ray made as a shadow ray.
+#ifndef CAPLET_MEDIA_TRAVEL_CL
+#define CAPLET_MEDIA_TRAVEL_CL
+
+#include "math/rng.cl"
+#include "media/media.cl"
+
+// A path's number of which random numbers are made.
+typedef struct {
+  uint key, count;
+} MediumNumbers;
+static inline float medium_number(MediumNumbers* n) { return unit_float(hash_combine(n->key, n->count++)); }
+
+typedef struct {
+  float4 throughput, scattering, light;
+  float most;  // of shadow rays: what all of them had in the beginning
+} MediumWeights;
+
+// 0: nothing is left.
+static inline int weights_normalised(MediumWeights* w) {
+  const float mean = mean4(w->scattering);
+  if (!(mean > 0.0f && mean < INFINITY)) return 0;
+  const float scale = 1.0f / mean;
+  w->throughput *= scale;
+  w->scattering *= scale;
+  w->light *= scale;
+  return max4(fabs(w->throughput)) > 0.0f;
+}
+
+enum { medium_passed, medium_scattered, medium_ended };
+
+// Optical lengths are kept below what has no finite product.
+#define CAPLET_FARTHEST 1e30f
+
+// Radiance from the stretch of length d of a uniform medium.
+static inline float4 uniform_emission(MediumPoint at, float d) {
+  const float4 sigma_t = at.sigma_a + at.sigma_s, depth = sigma_t * d;
+  // (1 - exp(-x)) / x, by its series near 0
+  const float4 series = 1.0f - depth * (0.5f - depth * (1.0f / 6.0f));
+  const float4 exact = (1.0f - exp(-depth)) / fmax(depth, 1e-30f);
+  return at.sigma_a * at.le * d * select(exact, series, depth < 1e-2f);
+}
+
+static inline int travel_uniform(MediumPoint at, float d, int scatters, float u, MediumWeights* w, float4* emitted, float* length_gone) {
+  d = fmin(d, CAPLET_FARTHEST);
+  const float4 sigma_t = at.sigma_a + at.sigma_s;
+  if (scatters && max4(at.le) > 0.0f) *emitted += w->throughput * uniform_emission(at, d);
+  if (!(max4(at.sigma_s) > 0.0f)) {
+    w->throughput *= exp(-sigma_t * d);
+    return max4(fabs(w->throughput)) > 0.0f ? medium_passed : medium_ended;
+  }
+  const float hero = sigma_t.x;
+  const float gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
+  if (!(gone < d)) {
+    const float4 ratio = exp(-(sigma_t - hero) * d);
+    w->throughput *= ratio;
+    w->scattering *= ratio;
+    w->light *= exp(hero * d);
+    return weights_normalised(w) ? medium_passed : medium_ended;
+  }
+  if (!scatters) return medium_ended;
+  const float4 ratio = exp(-(sigma_t - hero) * gone) / hero;
+  w->throughput *= ratio * at.sigma_s;
+  w->scattering *= ratio * sigma_t;
+  *length_gone = gone;
+  return weights_normalised(w) ? medium_scattered : medium_ended;
+}
+
+// The chance of a scattering among collisions that do not absorb.
+static inline float4 scattering_share(float4 sigma_s, float4 null) {
+  const float4 both = sigma_s + null;
+  return select((float4)(0.0f), sigma_s / fmax(both, 1e-30f), both > 0.0f);
+}
+
+static inline int travel_varying(uint kind, const MediumView* view, float3 o, float3 d, float t0, float t1, int scatters, float u, MediumNumbers* numbers,
+                                 MediumWeights* w, float4* emitted, float* t_scattered) {
+  const MediumBox box = medium_box(kind, view);
+  MajorantWalk walk;
+  if (!majorants_begin(&box, o, d, t0, t1, &walk)) return medium_passed;
+  const float unit = length(d);
+  float t, end, cell;
+  while (majorants_next(&walk, &t, &end, &cell)) {
+    const float4 majorant = cell * box.extinction;
+    const float hero = majorant.x;
+    for (;;) {
+      const float gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
+      const int stays = gone < (end - t) * unit;
+      const float way = stays ? gone : (end - t) * unit;
+      float4 ratio = exp(-(majorant - hero) * way);
+      if (!stays) {
+        w->throughput *= ratio;
+        w->scattering *= ratio;
+        w->light *= ratio;
+        // What is left of the random number: the next stretch's.
+        u = hero > 0.0f ? clamp(1.0f - (1.0f - u) * exp(hero * way), 0.0f, 0x1.fffffep-1f) : u;
+        break;
+      }
+      t += gone / unit;
+      ratio /= hero;
+      const MediumPoint at = medium_at(kind, view, box.place, o + t * d);
+      if (scatters && max4(at.le) > 0.0f) {
+        const float density = mean4(w->scattering * ratio * majorant);
+        if (density > 0.0f) *emitted += w->throughput * ratio * at.sigma_a * at.le / density;
+      }
+      const float4 null = fmax(majorant - at.sigma_a - at.sigma_s, 0.0f);
+      const float4 share = scattering_share(at.sigma_s, null);
+      u = medium_number(numbers);
+      if (u < share.x) {
+        if (!scatters) return medium_ended;
+        ratio /= share.x;
+        w->throughput *= ratio * at.sigma_s;
+        w->scattering *= ratio * majorant * share;
+        *t_scattered = t;
+        return weights_normalised(w) ? medium_scattered : medium_ended;
+      }
+      ratio /= 1.0f - share.x;
+      w->throughput *= ratio * null;
+      w->scattering *= ratio * majorant * (1.0f - share);
+      w->light *= ratio * majorant;
+      if (!weights_normalised(w)) return medium_ended;
+      u = medium_number(numbers);
+    }
+    if (!weights_normalised(w)) return medium_ended;
+  }
+  return medium_passed;
+}
+
+// From t0 to t1 (which may be infinite) along o + t d. scatters: what scatters it goes on, and what is emitted counts. u: for the first length. Adds
+// what the medium emits to *emitted; *t_scattered: where a ray is scattered.
+static inline int medium_travel(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1, int scatters,
+                                float u, MediumNumbers* numbers, MediumWeights* w, float4* emitted, float* t_scattered) {
+  const uint kind = media->mediums[medium].kind;
+  const MediumView view = medium_view(media, spectra, medium, lambda);
+  if (any_varying_medium && !medium_is_uniform(kind))
+    return travel_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted, t_scattered);
+  const float unit = length(d);
+  float gone = 0.0f;
+  const int end = travel_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit, scatters, u, w, emitted, &gone);
+  *t_scattered = t0 + gone / unit;
+  return end;
+}
+
+// The same of a shadow ray, whose `throughput` is what is left of its light: nothing scatters it. Where it varies, by ratio tracking (Novak, Selle and
+// Jarosz, "Residual ratio tracking for estimating attenuation in participating media", 2014). 0: nothing is left.
+static inline int medium_dims(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1,
+                              MediumNumbers* numbers, MediumWeights* w) {
+  const uint kind = media->mediums[medium].kind;
+  const MediumView view = medium_view(media, spectra, medium, lambda);
+  const float unit = length(d);
+  if (!any_varying_medium || medium_is_uniform(kind)) {
+    const MediumPoint at = medium_everywhere(kind, &view);
+    const float4 passes = exp(-(at.sigma_a + at.sigma_s) * fmin((t1 - t0) * unit, CAPLET_FARTHEST));
+    w->throughput *= passes;
+    if (max4(at.sigma_s) > 0.0f) w->scattering *= passes;
+    return max4(fabs(w->throughput)) > 0.0f;
+  }
+  const MediumBox box = medium_box(kind, &view);
+  MajorantWalk walk;
+  if (!majorants_begin(&box, o, d, t0, t1, &walk)) return 1;
+  float t, end, cell;
+  while (majorants_next(&walk, &t, &end, &cell)) {
+    const float4 majorant = cell * box.extinction;
+    const float hero = majorant.x;
+    for (;;) {
+      const float gone = hero > 0.0f ? -log(1.0f - medium_number(numbers)) / hero : INFINITY;
+      const int stays = gone < (end - t) * unit;
+      const float way = stays ? gone : (end - t) * unit;
+      float4 ratio = exp(-(majorant - hero) * way);
+      if (!stays) {
+        w->throughput *= ratio;
+        w->scattering *= ratio;
+        w->light *= ratio;
+        break;
+      }
+      t += gone / unit;
+      ratio /= hero;
+      const MediumPoint at = medium_at(kind, &view, box.place, o + t * d);
+      const float4 null = fmax(majorant - at.sigma_a - at.sigma_s, 0.0f);
+      w->throughput *= ratio * null;
+      w->scattering *= ratio * majorant * (1.0f - scattering_share(at.sigma_s, null));
+      w->light *= ratio * majorant;
+      const float left = max4(fabs(w->throughput));
+      if (!(left > 0.0f)) return 0;
+      // What is nearly lost is lost three times of four.
+      const float share = left / fmax(mean4(w->light) * w->most, 1e-37f);
+      if (share < 0.05f) {
+        if (medium_number(numbers) < 0.75f) return 0;
+        w->throughput *= 4.0f;
+      }
+    }
+  }
+  return 1;
+}
+
+#endif

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What paths among media carry beside what all do.
+#ifndef CAPLET_STAGES_MEDIA_CL
+#define CAPLET_STAGES_MEDIA_CL
+
+#include "media/immersion.cl"
+#include "shapes/surface.cl"
+#include "stages/outbox.cl"
+#include "stages/path.cl"
+#include "stages/sort_key.cl"
+
+static inline Held path_held(const Stage* g, uint path) {
+  const Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
+  return held;
+}
+static inline void set_path_held(const Stage* g, uint path, Held held) {
+  g->immersion.path_inside[path] = held.inside;
+  g->immersion.path_around[path] = held.around;
+}
+static inline void set_shadow_held(const Stage* g, uint path, Held held) {
+  g->immersion.shadow_inside[path] = held.inside;
+  g->immersion.shadow_around[path] = held.around;
+}
+
+// The path's next ray is in path_ray: into the queue of the next round. `from`: about where it begins.
+static inline void media_goes_on(const Stage* g, Outbox* out, uint path, float3 from, float3 direction) {
+  const uint bits = g->batch.batch->sort_bits;
+  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
+}
+
+// 1: the path goes on behind a surface that light passes as if it were not there. Its ray begins where it did, so that the densities
+// of lights are those at the last scattering, and sees nothing up to the surface.
+static inline int media_passes(const Stage* g, Outbox* out, uint path, uint material, const RayRecord* ray, const HitRecord* hit) {
+  int passes = 0;
+  switch (g->materials.materials[material].kind) {
+#define MATERIAL(name, traits) \
+  case material_##name:        \
+    passes = ((traits)&trait_passes) != 0; \
+    break;
+#define CHOICE(name, traits)
+#include "rows/materials.def"
+#undef MATERIAL
+    default: break;
+  }
+  if (!passes) return 0;
+  Held held = path_held(g, path);
+  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
+  set_path_held(g, path, held);
+  g->rays.path_ray[path].t_min = hit->t;
+  const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
+  media_goes_on(g, out, path, o + hit->t * d, d);
+  return 1;
+}
+
+// What is to be known of a light sample beside its radiance: what holds its ray, and the densities.
+static inline void media_shadow(const Stage* g, uint path, const HitRecord* hit, const Surface* s, float3 wo, const LightSample* light, float bsdf_pdf) {
+  Held held = path_held(g, path);
+  if (dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f) held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
+  set_shadow_held(g, path, held);
+  g->immersion.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
+}
+
+// A direction that the hero wavelength alone can have: no other could have made the path.
+static inline void media_hero_alone(const Stage* g, uint path, float4* throughput, float4 wavelengths) {
+  throughput->x /= g->immersion.path_ratio[path].x;
+  g->immersion.path_ratio[path] = (float4)(1.0f);
+  g->carried.path_wavelengths[path] = (float4)(wavelengths.x);
+}
+
+// The path goes on from a scattering: at a surface, maybe through it.
+static inline void media_scattered(const Stage* g, uint path, const HitRecord* hit, int crosses) {
+  g->immersion.path_light_ratio[path] = g->immersion.path_ratio[path];
+  if (!crosses) return;
+  Held held = path_held(g, path);
+  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
+  set_path_held(g, path, held);
+}
+
+#endif

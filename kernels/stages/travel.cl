@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The way of each ray to what it hit, among media: paths that are scattered on it take one light sample and one of the phase function, and go on from there.
+#include "lights/lights.cl"
+#include "math/phase.cl"
+#include "media/travel.cl"
+#include "stages/cone_share.cl"
+#include "stages/media.cl"
+#include "stages/path.cl"
+
+// Random numbers beside those of dimensions.def: how far each of a path's rays comes.
+#define MEDIUM_SAMPLE(depth) (0x40000000u + (depth))
+
+static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene* scene, uint path, float3 p, float3 direction, float asymmetry, Held held, float4 throughput,
+                                       float4 wavelengths, uint u_select, float2 u) {
+  LightSample light;
+  const LightReceiver at = {p, CAPLET_NONE};
+  if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
+  const float phase = phase_density(dot(direction, light.wi), asymmetry);
+  const float4 contribution = throughput * light.radiance * (phase / light.pdf);
+  if (!(max4(fabs(contribution)) > 0.0f)) return;
+  const float3 to = light.infinite ? light.wi : light.target - p;
+  RayRecord ray;
+  ray.ox = p.x; ray.oy = p.y; ray.oz = p.z; ray.t_min = 0.0f;
+  ray.dx = to.x; ray.dy = to.y; ray.dz = to.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
+  set_shadow_held(g, path, held);
+  g->immersion.shadow_pdfs[path] = (float2)(light.pdf, light.delta ? 0.0f : phase);
+  g->shadows.path_shadow[path] = ray;
+  g->shadows.path_shadow_radiance[path] = contribution;
+  append_shadow(g, out, path);
+}
+
+static void sending_item(const Stage* g, Outbox* out, uint item) {
+  const uint path = g->queues.queue[item];
+  const RayRecord ray = g->rays.path_ray[path];
+  const HitRecord hit = g->rays.path_hit[path];
+  const uint depth = g->carried.path_flags[path] >> PATH_DEPTH_SHIFT;
+  Held held;
+  MediumWeights weights;
+  const int begins = depth == 0u && ray.t_min == 0.0f;
+  if (begins) {
+    held = path_held(g, g->camera.camera->origins ? path : 0u);
+    set_path_held(g, path, held);
+    weights.scattering = weights.light = (float4)(1.0f);
+    g->immersion.path_ratio[path] = weights.scattering;
+    g->immersion.path_light_ratio[path] = weights.light;
+  } else {
+    held = path_held(g, path);
+    weights.scattering = g->immersion.path_ratio[path];
+    weights.light = g->immersion.path_light_ratio[path];
+  }
+  const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, held);
+  const uint medium = held_medium(&g->media, &here);
+  if (medium == CAPLET_NONE) return;
+
+  const uint max_depth = g->view.view->max_depth;
+  const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
+  MediumNumbers numbers = {hash_combine(path_hash(at, depth) ^ 0x2c1b3c6du, as_uint(ray.t_min)), 0u};
+  const float u = ray.t_min == 0.0f ? sampler_1d(at.seed, at.sample, MEDIUM_SAMPLE(depth)) : medium_number(&numbers);
+  const float4 wavelengths = g->carried.path_wavelengths[path];
+  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
+  weights.throughput = g->carried.path_throughput[path];
+  float4 emitted = (float4)(0.0f);
+  float t;
+  const int end = medium_travel(&g->media, &g->spectra, medium, wavelengths, o, d, ray.t_min, hit.t, depth < max_depth, u, &numbers, &weights, &emitted, &t);
+  if (max4(fabs(emitted)) > 0.0f) g->radiance.path_radiance[path] += emitted;
+  float4 throughput = weights.throughput;
+  if (end == medium_passed) {
+    g->carried.path_throughput[path] = throughput;
+    g->immersion.path_ratio[path] = weights.scattering;
+    g->immersion.path_light_ratio[path] = weights.light;
+    return;
+  }
+  g->rays.path_hit[path].slot = CAPLET_SCATTERED;
+  if (end == medium_ended) return;
+
+  const float3 p = o + t * d;
+  const float asymmetry = medium_g(g->media.mediums[medium].kind, g->media.media_data + g->media.mediums[medium].data);
+  g->immersion.path_ratio[path] = weights.scattering;
+  g->immersion.path_light_ratio[path] = weights.scattering;
+  if (!begins) set_path_held(g, path, here);  // others may still ask what holds the first path
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
+  if (g->lights.lighting->sampled_light_count > 0)
+    sample_medium_light(g, out, &scene, path, p, d, asymmetry, here, throughput, wavelengths,
+                        sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
+
+  float4 scatter = g->carried.path_scatter[path];
+  float pdf;
+  const float3 wi = phase_sample(d, asymmetry, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &pdf);
+  scatter.x = pdf;
+  scatter.z = as_float(CAPLET_NONE);
+  const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
+  if (depth >= 3 && survival < 1.0f) {
+    if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return;
+    throughput /= survival;
+  }
+  RayRecord next;
+  next.ox = p.x; next.oy = p.y; next.oz = p.z; next.t_min = 0.0f;
+  next.dx = wi.x; next.dy = wi.y; next.dz = wi.z; next.t_max = INFINITY;
+  g->rays.path_ray[path] = next;
+  g->carried.path_throughput[path] = throughput;
+  g->carried.path_scatter[path] = scatter;
+#ifdef CAPLET_LIGHT_TREE
+  g->carried.path_normal[path] = CAPLET_NONE;
+#endif
+  g->carried.path_flags[path] = (depth + 1) << PATH_DEPTH_SHIFT;
+  if (has_cones) {
+    const float2 cone = g->cones.path_cone[path];
+    g->cones.path_cone[path] = (float2)(fabs(cone.x + cone.y * t), cone.y);
+  }
+  media_goes_on(g, out, path, p, wi);
+}
+
+#include "stages/sending.cl"

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Media of pbrt's text, and what is wrong with them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "import_text.h"
+
+namespace caplet::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string fog = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"";
+
+std::vector<std::string> said(const std::string& text) { return complaints("WorldBegin\n" + text); }
+
+template <class Type>
+const Type& medium_of(const Scene& scene, std::size_t i = 0) {
+  return std::get<Type>(scene.media.at(i).model);
+}
+
+TEST(Media, Homogeneous) {
+  const Scene scene = scene_of(
+      "MediumInterface \"\" \"air\"\nCamera \"perspective\"\nWorldBegin\n"
+      "MakeNamedMedium \"unused\" \"string type\" \"homogeneous\"\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 2 3] \"spectrum sigma_s\" [400 1 700 2] "
+      "\"float scale\" 10 \"float g\" -0.5 "
+      "\"rgb Le\" [1 0 0] \"float Lescale\" 4\n"
+      "MakeNamedMedium \"air\" \"string type\" \"homogeneous\"\nMakeNamedMedium \"tea\" \"string type\" \"homogeneous\" \"string "
+      "preset\" \"Lemon Tea Powder\"\n"
+      "MediumInterface \"fog\" \"air\" Shape \"sphere\"\nMediumInterface \"tea\" Shape \"sphere\"\n");
+  ASSERT_EQ(scene.media.size(), 3u);
+  EXPECT_EQ(scene.media[*scene.camera.medium].name, "air");
+  const auto& m = medium_of<HomogeneousMedium>(scene, *scene.shapes[0].media.inside);
+  EXPECT_EQ(std::get<RgbSpectrum>(m.scattering.sigma_a).rgb, glm::dvec3(1, 2, 3));
+  EXPECT_TRUE(std::holds_alternative<SampledSpectrum>(m.scattering.sigma_s));
+  EXPECT_EQ(m.scattering.scale, 10);
+  EXPECT_EQ(m.scattering.g, -0.5);
+  EXPECT_EQ(m.radiance_scale, 4);
+  EXPECT_TRUE(m.radiance.has_value());
+  EXPECT_EQ(scene.media[*scene.shapes[0].media.outside].name, "air");
+  // One name is on both sides.
+  EXPECT_FALSE(scene.shapes[1].media.differ());
+  const auto& tea = medium_of<HomogeneousMedium>(scene, *scene.shapes[1].media.inside);
+  EXPECT_EQ(std::get<RgbSpectrum>(tea.scattering.sigma_a).rgb, glm::dvec3(2.4288, 4.5757, 7.2127));
+  EXPECT_EQ(std::get<RgbSpectrum>(tea.scattering.sigma_s).rgb, glm::dvec3(0.040224, 0.045264, 0.051081));
+  // pbrt-v4's own without parameters: milk.
+  const auto& air = medium_of<HomogeneousMedium>(scene, *scene.camera.medium);
+  EXPECT_EQ(std::get<RgbSpectrum>(air.scattering.sigma_s).rgb, glm::dvec3(2.55, 3.21, 3.77));
+  EXPECT_FALSE(air.radiance.has_value());
+}
+
+TEST(Media, AttributesOfThemAreTheirs) {
+  const Scene scene =
+      world_of("Attribute \"medium\" \"float g\" 0.25\n" + fog + "\nMediumInterface \"fog\" \"\" Shape \"sphere\"");
+  EXPECT_EQ(medium_of<HomogeneousMedium>(scene).scattering.g, 0.25);
+}
+
+TEST(Media, SurfacesThatPartThemStay) {
+  const Scene scene = world_of(fog +
+                               "\nAttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" "
+                               "AttributeEnd\nMaterial \"\" Shape \"sphere\" "
+                               "Material \"none\" Shape \"sphere\" \"float radius\" 3");
+  ASSERT_EQ(scene.shapes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<InterfaceMaterial>(scene.materials.at(scene.shapes[0].material).model));
+}
+
+TEST(Media, WhatIsWrongHasItsPlace) {
+  const auto medium = [](const std::string& rest) {
+    return said("MakeNamedMedium \"m\" " + rest + "\nMediumInterface \"m\" \"\"\nShape \"sphere\"");
+  };
+  EXPECT_THAT(said("MediumInterface \"fgo\" \"\"\n" + fog + "\nShape \"sphere\""),
+              ElementsAre("scene.pbrt:2:17: the medium \"fgo\" is not defined; the nearest known name is \"fog\""));
+  EXPECT_THAT(said(fog + "\n" + fog + "\nShape \"sphere\""),
+              ElementsAre(HasSubstr("scene.pbrt:3:1: the medium \"fog\" is defined twice (first at scene.pbrt:2:1)")));
+  EXPECT_THAT(medium(""), ElementsAre(HasSubstr("scene.pbrt:2:1: MakeNamedMedium \"m\": \"string type\" is missing")));
+  EXPECT_THAT(medium("\"string type\" \"homogenous\""),
+              ElementsAre(HasSubstr(
+                  "scene.pbrt:2:21: unknown MakeNamedMedium \"homogenous\"; the nearest known name is \"homogeneous\"")));
+  const std::string kind = "\"string type\" \"homogeneous\" ";
+  EXPECT_THAT(medium(kind + "\"float g\" 1"),
+              ElementsAre(HasSubstr("scene.pbrt:2:49: MakeNamedMedium \"m\": \"g\" must lie between -1 and 1, and be neither")));
+  EXPECT_THAT(medium(kind + "\"float g\" -1"), ElementsAre(HasSubstr("2:49")));
+  EXPECT_THAT(medium(kind + "\"rgb sigma_a\" [1 -1 1]"), ElementsAre(HasSubstr("scene.pbrt:2:49")));
+  EXPECT_THAT(medium(kind + "\"rgb sigma_s\" [-1 1 1]"), ElementsAre(HasSubstr("scene.pbrt:2:49")));
+  EXPECT_THAT(medium(kind + "\"float scale\" -1"), ElementsAre(HasSubstr("scene.pbrt:2:49")));
+  EXPECT_THAT(medium(kind + "\"float Lescale\" -1"), ElementsAre(HasSubstr("scene.pbrt:2:49")));
+  EXPECT_THAT(medium(kind + "\"string preset\" \"Skin3\""),
+              ElementsAre(HasSubstr(
+                  "scene.pbrt:2:49: MakeNamedMedium \"m\": \"preset\" is \"Skin3\"; the nearest known name is \"Skin1\"")));
+  EXPECT_THAT(medium(kind + "\"float sigma\" 1"), ElementsAre(HasSubstr("unknown parameter \"sigma\"")));
+}
+
+TEST(Media, Grids) {
+  const Scene scene = world_of(
+      "Translate 1 2 3 MakeNamedMedium \"u\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" [1 2] \"float "
+      "Lescale\" [3 4] \"point3 p0\" [1 1 1] "
+      "\"point3 p1\" [0 0 0] \"rgb Le\" [1 1 1] \"float scale\" 5\n"
+      "MakeNamedMedium \"r\" \"string type\" \"rgbgrid\" \"integer ny\" 2 \"rgb sigma_a\" [1 2 3 4 5 6] \"float g\" .5 \"float "
+      "Lescale\" 2\n"
+      "MakeNamedMedium \"c\" \"string type\" \"cloud\" \"float density\" 2 \"float wispiness\" 3 \"float frequency\" 4\n"
+      "MediumInterface \"u\" \"r\" Shape \"sphere\" MediumInterface \"c\" \"\" Shape \"sphere\"");
+  const auto& u = medium_of<UniformGridMedium>(scene, 0);
+  EXPECT_EQ(*u.density, (std::vector<float>{1, 2}));
+  EXPECT_EQ(*u.radiance_scale, (std::vector<float>{3, 4}));
+  EXPECT_EQ(u.bounds.p0, glm::dvec3(0));
+  EXPECT_EQ(u.bounds.p1, glm::dvec3(1));
+  EXPECT_EQ(u.bounds.world_from_medium[3], glm::dvec4(1, 2, 3, 1));
+  EXPECT_EQ(u.scattering.scale, 5);
+  EXPECT_EQ(std::get<ConstantSpectrum>(u.scattering.sigma_a).value, 1);
+  const auto& r = medium_of<RgbGridMedium>(scene, 1);
+  EXPECT_EQ(*r.sigma_a.rgb, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(r.radiance_scale, 2);
+  EXPECT_EQ(r.g, 0.5);
+  const auto& c = medium_of<CloudMedium>(scene, 2);
+  EXPECT_EQ(c.density, 2);
+  EXPECT_EQ(c.wispiness, 3);
+  EXPECT_EQ(c.frequency, 4);
+}
+
+TEST(Media, GridsOfTheWrongCountHaveTheirPlace) {
+  const auto grid = [](const std::string& rest) {
+    return said("MakeNamedMedium \"m\" \"string type\" " + rest + "\nMediumInterface \"m\" \"\"\nShape \"sphere\"");
+  };
+  EXPECT_THAT(
+      grid("\"uniformgrid\" \"integer nx\" 2 \"float density\" [1 2 3]"),
+      ElementsAre("scene.pbrt:2:64: MakeNamedMedium \"m\": \"density\" has 3 values, but a grid of 2 x 1 x 1 cells takes 2"));
+  EXPECT_THAT(grid("\"uniformgrid\" \"integer nx\" 2"),
+              ElementsAre(HasSubstr("scene.pbrt:2:1: MakeNamedMedium \"m\": \"float density\" is missing")));
+  EXPECT_THAT(grid("\"uniformgrid\" \"integer nx\" 0 \"float density\" 1"), ElementsAre(HasSubstr("\"nx\" must be at least 1")));
+  EXPECT_THAT(grid("\"uniformgrid\" \"float density\" -1"), ElementsAre(HasSubstr("negative or not finite")));
+  EXPECT_THAT(grid("\"uniformgrid\" \"float density\" 1 \"rgb Le\" [1 1 1] \"float temperature\" 300"),
+              ElementsAre(HasSubstr("\"temperature\" cannot be combined with \"Le\"")));
+  EXPECT_THAT(grid("\"uniformgrid\" \"float density\" 1 \"point3 p1\" [1 0 1]"),
+              ElementsAre(HasSubstr("makes the medium's box flat")));
+  EXPECT_THAT(grid("\"uniformgrid\" \"float density\" 1 \"float temperature\" [1 2]"),
+              ElementsAre(HasSubstr("\"temperature\" has 2 values")));
+  EXPECT_THAT(grid("\"rgbgrid\" \"rgb sigma_a\" [1 2 3 4 5 6]"),
+              ElementsAre(HasSubstr("\"sigma_a\" has 2 values, but a grid of 1 x 1 x 1 cells takes 1")));
+  EXPECT_THAT(grid("\"rgbgrid\" \"float g\" 0"), ElementsAre(HasSubstr("needs an \"rgb sigma_a\" or an \"rgb sigma_s\"")));
+  EXPECT_THAT(grid("\"rgbgrid\" \"rgb sigma_s\" [1 1 1] \"rgb Le\" [1 1 1]"),
+              ElementsAre(HasSubstr("\"Le\" needs a \"sigma_a\"")));
+  EXPECT_THAT(grid("\"cloud\" \"float density\" -1"), ElementsAre(HasSubstr("\"density\" must be")));
+  EXPECT_THAT(grid("\"nanovdb\""), ElementsAre(HasSubstr("\"string filename\" is missing")));
+}
+
+TEST(Media, AreHeldBySomethingClosed) {
+  const std::string in = fog + "\nMediumInterface \"fog\" \"\"\n";
+  EXPECT_THAT(said(in + "Shape \"disk\""),
+              ElementsAre("scene.pbrt:4:1: the medium fog is on an open surface: a disk does not enclose it"));
+  EXPECT_THAT(said(in + "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 2 1 3]"),
+              ElementsAre(HasSubstr("on an open surface")));
+  EXPECT_THAT(said(in + "Shape \"cylinder\""), ElementsAre(HasSubstr("on an open surface")));
+  EXPECT_THAT(said(in + "Shape \"sphere\" \"bool onesided\" true"),
+              ElementsAre(HasSubstr("scene.pbrt:4:1: a shape that is not seen from inside holds no medium")));
+  EXPECT_THAT(said(in + "Shape \"cylinder\" Shape \"disk\" \"float height\" 1 Shape \"disk\" \"float height\" -1"), IsEmpty());
+  EXPECT_THAT(said(in + "Shape \"sphere\""), IsEmpty());
+  // Around all is no place that a surface encloses.
+  EXPECT_THAT(said(fog + "\nMediumInterface \"\" \"fog\" Shape \"disk\""), IsEmpty());
+}
+
+TEST(Subsurface, IsAMediumBehindABoundary) {
+  const Scene scene = world_of(
+      "Material \"subsurface\" \"string name\" \"Skin1\" \"float scale\" 3 \"float roughness\" .25 \"bool remaproughness\" false "
+      "Shape \"sphere\" Shape \"sphere\"\n"
+      "Material \"subsurface\" \"rgb sigma_a\" [1 2 3] \"rgb sigma_s\" [4 5 6] \"float g\" .5 \"float eta\" 1.4 Shape "
+      "\"sphere\"\n"
+      "Material \"subsurface\" \"rgb reflectance\" [.5 .5 .5] \"rgb mfp\" [2 2 2] \"float scale\" .5 Shape \"sphere\" Material "
+      "\"subsurface\" Shape \"sphere\"");
+  ASSERT_EQ(scene.media.size(), 4u);
+  const auto at = [&](std::size_t shape) -> const ScatteringProperties& {
+    return std::get<HomogeneousMedium>(scene.media.at(*scene.shapes.at(shape).media.inside).model).scattering;
+  };
+  EXPECT_EQ(scene.shapes[0].media.inside, scene.shapes[1].media.inside);
+  EXPECT_EQ(std::get<RgbSpectrum>(at(0).sigma_s).rgb, glm::dvec3(0.74, 0.88, 1.01));
+  EXPECT_EQ(at(0).scale, 3);
+  const auto& boundary = std::get<DielectricMaterial>(scene.materials.at(scene.shapes[0].material).model);
+  EXPECT_EQ(std::get<ConstantSpectrum>(boundary.eta).value, 1.33);
+  EXPECT_EQ(boundary.alpha_u, 0.25);
+  EXPECT_EQ(std::get<RgbSpectrum>(at(2).sigma_a).rgb, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(at(2).g, 0.5);
+  // Absorption and scattering make up a mean free path of 2, halved by the scale.
+  const auto sum = std::get<RgbSpectrum>(at(3).sigma_a).rgb + std::get<RgbSpectrum>(at(3).sigma_s).rgb;
+  EXPECT_NEAR(at(3).scale * sum.x, 1, 1e-12);
+  EXPECT_EQ(std::get<RgbSpectrum>(at(4).sigma_s).rgb, glm::dvec3(2.55, 3.21, 3.77));
+}
+
+TEST(Subsurface, WhatIsWrongHasItsPlace) {
+  const auto wrong = [](const std::string& rest) { return said("Material \"subsurface\" " + rest + "\nShape \"sphere\""); };
+  EXPECT_THAT(wrong("\"rgb sigma_a\" [1 1 1]"),
+              ElementsAre(HasSubstr("scene.pbrt:2:23: Material \"subsurface\": \"sigma_a\" needs a \"sigma_s\"")));
+  EXPECT_THAT(wrong("\"string name\" \"Skin\""), ElementsAre(HasSubstr("the nearest known name is \"Skin1\"")));
+  EXPECT_THAT(wrong("\"float g\" 1"), ElementsAre(HasSubstr("\"g\" must lie between -1 and 1")));
+  EXPECT_THAT(wrong("\"float scale\" -1"), ElementsAre(HasSubstr("must not be negative")));
+  EXPECT_THAT(wrong("\"rgb mfp\" [1 1 1]"), ElementsAre(HasSubstr("\"mfp\" needs a \"reflectance\"")));
+  EXPECT_THAT(wrong("\"rgb reflectance\" [.5 .5 .5] \"string name\" \"Skin1\""), ElementsAre(HasSubstr("takes one of")));
+  EXPECT_THAT(said("Material \"subsurface\"\nShape \"disk\""),
+              ElementsAre(HasSubstr("scene.pbrt:3:1: the medium subsurface is on an open surface")));
+}
+
+}  // namespace
+}  // namespace caplet::test

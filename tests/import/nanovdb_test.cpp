@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// NanoVDB files, written here by their layout.
+#include "import/detail/nanovdb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "import_text.h"
+
+namespace caplet::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Bytes with numbers at given places.
+struct Memory {
+  std::vector<char> bytes;
+  template <class T>
+  void put(std::size_t at, T value) {
+    if (bytes.size() < at + sizeof value) bytes.resize(at + sizeof value);
+    std::memcpy(&bytes[at], &value, sizeof value);
+  }
+};
+
+constexpr std::uint64_t magic = 0x304244566f6e614e;
+constexpr std::size_t root = 736, upper = root + 64 + 32, lower = upper + 8256 + 262144, leaf = lower + 1088 + 32768,
+                      end = leaf + 2144;
+
+/// A grid of voxels of 0.5, moved by (10, 0, 0): a leaf at (-8, 0, 8) with values 1000 x + 100 y + z, and a constant tile of 8^3
+/// at (0, 0, 8).
+Memory grid() {
+  Memory m;
+  m.put<std::uint64_t>(0, magic);
+  const std::size_t map = 288;
+  for (int k = 0; k < 3; ++k) m.put<double>(map + 88 + 32 * static_cast<std::size_t>(k), 0.5);
+  m.put<double>(map + 88 + 144, 10);
+  const double box[] = {6, 0, 4, 14, 4, 8};
+  for (std::size_t k = 0; k < 6; ++k) m.put<double>(map + 264 + 8 * k, box[k]);
+  m.put<std::uint64_t>(672 + 24, root - 672);
+  m.put<std::uint32_t>(root + 24, 1);
+  // Of x = -8, whose 4096s are -1; and none of x = 0: the tile of that has nodes of its own.
+  const auto key = [](std::int32_t x) { return (std::uint64_t{static_cast<std::uint32_t>(x) >> 12} << 42); };
+  m.put<std::uint64_t>(root + 64, key(-8));
+  m.put<std::int64_t>(root + 72, upper - root);
+  // x = -8 is the last of 32 in x, the last of 16, the last of 16.
+  const auto child = [&](std::size_t node, std::size_t masks, std::size_t index, std::size_t table, std::int64_t offset) {
+    m.put<std::uint8_t>(node + 32 + masks + index / 8, static_cast<std::uint8_t>(1u << (index % 8)));
+    m.put<std::int64_t>(node + table + 8 * index, offset);
+  };
+  child(upper, 4096, 31 << 10, 8256, lower - upper);
+  child(lower, 512, (15 << 8) + 1, 1088, leaf - lower);
+  // A constant tile beside it, at y = 8.
+  const std::size_t tile = (15 << 8) + (1 << 4) + 1;
+  m.put<std::uint8_t>(lower + 32 + tile / 8, static_cast<std::uint8_t>(1u << (tile % 8)));
+  m.put<float>(lower + 1088 + 8 * tile, 7);
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z)
+        m.put<float>(leaf + 96 + 4 * static_cast<std::size_t>((x << 6) + (y << 3) + z),
+                     static_cast<float>(1000 * x + 100 * y + z));
+  m.bytes.resize(end);
+  return m;
+}
+
+std::string file_of(const std::string& name, const Memory& of, bool zipped, const std::string& grid_name = "density",
+                    std::uint32_t type = 1) {
+  Memory out;
+  std::vector<char> body = of.bytes;
+  if (zipped) {
+    uLongf length = compressBound(of.bytes.size());
+    std::vector<char> packed(length);
+    compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(of.bytes.data()), of.bytes.size());
+    packed.resize(length);
+    Memory sized;
+    sized.put<std::uint64_t>(0, length);
+    sized.bytes.insert(sized.bytes.end(), packed.begin(), packed.end());
+    body = sized.bytes;
+  }
+  out.put<std::uint64_t>(0, magic);
+  out.put<std::uint32_t>(8, 32u << 21);
+  out.put<std::uint16_t>(12, 1);
+  out.put<std::uint16_t>(14, zipped ? 1 : 0);
+  out.put<std::uint64_t>(16, of.bytes.size());
+  out.put<std::uint64_t>(24, body.size());
+  out.put<std::uint32_t>(16 + 32, type);
+  out.put<std::uint32_t>(16 + 136, static_cast<std::uint32_t>(grid_name.size() + 1));
+  out.bytes.resize(16 + 176);
+  out.bytes.insert(out.bytes.end(), grid_name.begin(), grid_name.end());
+  out.bytes.push_back(0);
+  out.bytes.insert(out.bytes.end(), body.begin(), body.end());
+  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  std::ofstream(path, std::ios::binary).write(out.bytes.data(), static_cast<std::streamsize>(out.bytes.size()));
+  return path;
+}
+
+TEST(Nanovdb, GridsAreRead) {
+  for (const bool zipped : {false, true}) {
+    const SparseGridPointer read = read_nanovdb(file_of("sound.nvdb", grid(), zipped), "density", {});
+    ASSERT_TRUE(read);
+    ASSERT_EQ(read->bricks.size(), 2u);
+    EXPECT_EQ(read->bricks[0], (std::array<std::int32_t, 3>{-1, 0, 1}));
+    EXPECT_EQ(read->bricks[1], (std::array<std::int32_t, 3>{-1, 1, 1}));
+    EXPECT_EQ(read->values[(3 * 8 + 2) * 8 + 5], 5203);  // z 3, y 2, x 5
+    EXPECT_EQ(read->values[512 + 77], 7);
+    EXPECT_EQ(read->medium_from_voxels * glm::dvec4(2, 4, 6, 1), glm::dvec4(11, 2, 3, 1));
+    EXPECT_EQ(read->box.min, glm::dvec3(6, 0, 4));
+    EXPECT_EQ(read->box.max, glm::dvec3(14, 4, 8));
+  }
+  EXPECT_FALSE(read_nanovdb(file_of("sound.nvdb", grid(), false), "temperature", {}));
+}
+
+TEST(Nanovdb, WhatIsBrokenIsSaid) {
+  const auto said = [](const std::string& file) { return complaint_of([&] { read_nanovdb(file, "density", {}); }); };
+  EXPECT_THAT(said("none.nvdb"), HasSubstr("cannot be read"));
+  Memory no_magic = grid();
+  no_magic.put<std::uint64_t>(0, 5);
+  EXPECT_THAT(said(file_of("a.nvdb", no_magic, false)), HasSubstr("is no NanoVDB grid"));
+  Memory negative = grid();
+  negative.put<float>(leaf + 96, -1);
+  EXPECT_THAT(said(file_of("b.nvdb", negative, false)), HasSubstr("negative"));
+  EXPECT_THAT(said(file_of("c.nvdb", grid(), false, "density", 2)), HasSubstr("not of 32-bit floats"));
+  // Shorter by anything, or with an offset to anywhere, it says so and does not read on.
+  for (const std::size_t length : {std::size_t{100}, std::size_t{700}, root + 70, upper + 100, lower + 5, leaf + 50, end - 1}) {
+    Memory cut = grid();
+    cut.bytes.resize(length);
+    EXPECT_THAT(said(file_of("d.nvdb", cut, false)), HasSubstr("ends in the middle of a grid")) << length;
+  }
+  for (const std::int64_t offset : {std::int64_t{-1} << 60, std::int64_t{1} << 62, std::int64_t{-100000000}}) {
+    Memory astray = grid();
+    astray.put<std::int64_t>(root + 72, offset);
+    EXPECT_THAT(said(file_of("e.nvdb", astray, false)), HasSubstr("ends in the middle of a grid"));
+  }
+}
+
+TEST(Nanovdb, IsAMediumOfAScene) {
+  const std::string file = file_of("medium.nvdb", grid(), true);
+  const Scene scene =
+      world_of("Translate 1 2 3 MakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string filename\" \"" + file +
+               "\" \"float LeScale\" 3 \"float temperaturecutoff\" 5\nMediumInterface \"v\" \"\" Shape \"sphere\"");
+  const auto& medium = std::get<NanovdbMedium>(scene.media.at(0).model);
+  EXPECT_EQ(medium.radiance_scale, 3);
+  EXPECT_EQ(medium.temperature_offset, 5);
+  EXPECT_EQ(medium.world_from_medium[3], glm::dvec4(1, 2, 3, 1));
+  EXPECT_FALSE(medium.temperature);
+  EXPECT_THAT(
+      complaints("WorldBegin\nMakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\nShape \"sphere\"")
+          .at(0),
+      HasSubstr("scene.pbrt:2:45: x.nvdb: cannot be read"));
+}
+
+}  // namespace
+}  // namespace caplet::test

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Scenes of a medium or two, and what is seen of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "render_scene.h"
+
+namespace caplet::test {
+
+/// Rays that are as good as parallel, along +z through the square of half side `half` around the axis.
+std::string parallel_view(double half = 1, int max_depth = 100);
+/// Light of 1 from everywhere, found by rays alone; the same from a sphere around all, which is sampled as well.
+std::string white_sky();
+std::string white_walls();
+
+/// Mean of the picture's green, and its standard error.
+Mean seen(const std::string& text, int samples, int size = 16);
+/// The same of a scene of that size.
+Mean seen(const Scene& scene, int samples);
+/// Of the three channels.
+std::array<Mean, 3> colors_seen(const std::string& text, int samples, int size = 16);
+
+/// Within four standard errors and a share of it.
+testing::AssertionResult agrees(const Mean& mean, double expected, double tolerance = 0.005);
+
+/// Mean of exp(-sigma l) over the chords l of a sphere that parallel rays meet.
+double sphere_transmittance(double sigma, double radius);
+
+}  // namespace caplet::test

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Which medium a point is in (docs/media.md): ways through absorbing solids have known lengths.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "media_scenes.h"
+
+namespace caplet::test {
+namespace {
+
+/// What the light along +z from the point of that height loses, as an optical length. `before`: statements before the camera's.
+double lost(double z, const std::string& shapes, const std::string& before = "", const std::string& lens = "") {
+  const auto medium = [](const std::string& name, const std::string& sigma) {
+    return "MakeNamedMedium \"" + name + "\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [" + sigma + " " + sigma + " " +
+           sigma + "] \"rgb sigma_s\" [0 0 0]\n";
+  };
+  const std::string text = medium("a", "0.3") + medium("b", "0.5") + medium("c", "0.9") + before +
+                           "Integrator \"volpath\" \"integer maxdepth\" 100\nTranslate 0 0 " + std::to_string(-z) +
+                           "\nCamera \"perspective\" \"float fov\" 0.01 " + lens + "\nWorldBegin\n" + white_sky() +
+                           "MediumInterface \"\" \"\"\nMaterial \"interface\"\n" + shapes;
+  // Over what is seen without the solids: white is 1 but for the noise of wavelengths.
+  const std::string empty =
+      text.substr(text.find("Integrator"), text.find("MediumInterface \"\" \"\"\n") - text.find("Integrator")) +
+      "Translate 0 0 -99 Shape \"sphere\" \"float radius\" 0.1\n";
+  return std::log(seen(empty, 4, 4).value / seen(text, 4, 4).value);
+}
+
+std::string sphere(double z, double r, const std::string& inside, const std::string& outside = "") {
+  return "AttributeBegin MediumInterface \"" + inside + "\" \"" + outside + "\" Translate 0 0 " + std::to_string(z) +
+         " Material \"interface\" Shape \"sphere\" \"float radius\" " + std::to_string(r) + " AttributeEnd\n";
+}
+std::string box(double z0, double z1, const std::string& inside) {
+  return "AttributeBegin MediumInterface \"" + inside + "\" \"\" Material \"interface\" Shape \"box\" \"point3 p0\" [-1 -1 " +
+         std::to_string(z0) + "] \"point3 p1\" [1 1 " + std::to_string(z1) + "] AttributeEnd\n";
+}
+
+constexpr double near = 2e-4;
+
+TEST(Nesting, InnerSolidsTakeThePlaceOfOuterOnesInAnyOrderOfTheFile) {
+  const std::string outer = sphere(0, 2, "a"), inner = sphere(0.5, 1, "b", "a");
+  EXPECT_NEAR(lost(-9, outer + inner), 2 * 0.3 + 2 * 0.5, near);
+  EXPECT_NEAR(lost(-9, inner + outer), 2 * 0.3 + 2 * 0.5, near);
+  // A solid without a medium of its own is no place of its own.
+  EXPECT_NEAR(lost(-9, outer + "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.5\n"), 4 * 0.3, near);
+  // One of nothing is.
+  EXPECT_NEAR(lost(-9, outer + sphere(0, 0.5, "", "a")), 3 * 0.3, near);
+}
+
+TEST(Nesting, TheCameraMayBeWithin) {
+  const std::string both = sphere(0, 2, "a") + sphere(0.5, 1, "b", "a");
+  EXPECT_NEAR(lost(0, both), 1.5 * 0.5 + 0.5 * 0.3, near);
+  EXPECT_NEAR(lost(-1, both), 0.5 * 0.3 + 2 * 0.5 + 0.5 * 0.3, near);
+  // Whatever it says of itself.
+  EXPECT_NEAR(lost(0, both, "MediumInterface \"\" \"c\"\n"), 1.5 * 0.5 + 0.5 * 0.3, near);
+  // Where nothing holds it that counts, until something does.
+  EXPECT_NEAR(lost(-5, both, "MediumInterface \"\" \"c\"\n"), 3 * 0.9 + 2 * 0.3 + 2 * 0.5, near);
+  // A lens has a place for each ray.
+  EXPECT_NEAR(lost(0, both, "", "\"float lensradius\" 0.001 \"float focaldistance\" 10"), 1.5 * 0.5 + 0.5 * 0.3, 1e-3);
+}
+
+TEST(Nesting, WhereSolidsOverlapTheSmallerOneCounts) {
+  const std::string both = sphere(-0.5, 1, "a") + sphere(0.5, 0.8, "c");
+  const double expected = 1.2 * 0.3 + 1.6 * 0.9;
+  EXPECT_NEAR(lost(-9, both), expected, near);
+  EXPECT_NEAR(lost(-9, sphere(0.5, 1, "a") + sphere(-0.5, 0.8, "c")), expected, near);
+}
+
+TEST(Nesting, SolidsThatTouch) { EXPECT_NEAR(lost(-9, box(-1, 0, "a") + box(0, 0.5, "c")), 0.3 + 0.45, near); }
+
+TEST(Nesting, CapsulesOfOneMediumAreOnePlace) {
+  const std::string chain =
+      "MediumInterface \"b\" \"\" Shape \"capsule\" \"point3 p0\" [0 0 -1] \"point3 p1\" [0 0 0] \"float radius\" 0.3\n"
+      "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 1.5] \"float radius\" 0.3\n"
+      "Shape \"capsule\" \"point3 p0\" [0 0 0.2] \"point3 p1\" [0 0 0.3] \"float radius\" 0.5\n";
+  EXPECT_NEAR(lost(-9, chain), 0.5 * 3.1, near);
+  EXPECT_NEAR(lost(0, chain), 0.5 * 1.8, near);
+}
+
+TEST(Nesting, MeshesHoldMediaByTheirNormals) {
+  const std::string points = "\"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1]";
+  const std::string mesh = "MediumInterface \"b\" \"\" Shape \"trianglemesh\" " + points +
+                           " \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]\n";
+  const std::string at = "Translate 0.1 0.2 0\n";
+  EXPECT_NEAR(lost(-9, at + mesh), 2 * 0.5, near);
+  EXPECT_NEAR(lost(0, at + mesh), 0.5, near);
+  EXPECT_NEAR(lost(-9, at + "ReverseOrientation MediumInterface \"\" \"b\" " + mesh.substr(mesh.find("Shape"))), 2 * 0.5, near);
+  // Several surfaces together.
+  const std::string sides = "MediumInterface \"b\" \"\"\nShape \"trianglemesh\" " + points +
+                            " \"integer indices\" [0 2 1 0 3 2]\nShape \"trianglemesh\" " + points +
+                            " \"integer indices\" [4 5 6 4 6 7]\nShape \"trianglemesh\" " + points +
+                            " \"integer indices\" [0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]\n";
+  EXPECT_NEAR(lost(-9, at + sides), 2 * 0.5, near);
+}
+
+TEST(Nesting, EveryClosedSolidHoldsAMedium) {
+  const std::string in = "MediumInterface \"b\" \"\" ";
+  EXPECT_NEAR(lost(-9, in + "Shape \"cylinder\" \"point3 p0\" [0 0 -1] \"point3 p1\" [0 0 1] \"float radius\" 1\n"), 1, near);
+  EXPECT_NEAR(lost(0, in + "Shape \"cone\" \"point3 p0\" [0 0 -1] \"point3 p1\" [0 0 1] \"float radius\" [1 0.5]\n"), 0.5, near);
+  EXPECT_NEAR(lost(-9, "MediumInterface \"\" \"b\" ReverseOrientation Shape \"sphere\"\n"), 1, near);
+  EXPECT_NEAR(
+      lost(-9, "ObjectBegin \"o\" " + in + "Shape \"sphere\" ObjectEnd\nTranslate 0 0 1 Scale 1 2 1.5 ObjectInstance \"o\"\n"),
+      1.5, near);
+  const std::string csg =
+      "ObjectBegin \"s\" Shape \"sphere\" ObjectEnd ObjectBegin \"t\" Translate 0 0 0.5 Shape \"sphere\" \"float radius\" 0.25 "
+      "ObjectEnd\n";
+  EXPECT_NEAR(lost(-9, csg + in + "Shape \"csg\" \"string operands\" [\"s\" \"t\"] \"string operation\" \"difference\"\n"), 0.75,
+              near);
+}
+
+}  // namespace
+}  // namespace caplet::test
