@@ -29,7 +29,7 @@ const std::vector<TypeRow>& type_rows() {
       {"string", "string", 1, false},     {"point2", "point2", 2, false}, {"vector2", "vector2", 2, false},
       {"point3", "point3", 3, false},     {"point", "point3", 3, false},  {"vector3", "vector3", 3, false},
       {"vector", "vector3", 3, false},    {"normal", "normal", 3, false}, {"normal3", "normal", 3, false},
-      {"spectrum", "spectrum", 1, false}, {"rgb", "rgb", 3, true},        {"blackbody", "blackbody", 1, true},
+      {"spectrum", "spectrum", 1, false}, {"rgb", "rgb", 3, false},       {"blackbody", "blackbody", 1, true},
       {"texture", "texture", 1, true}};
   return rows;
 }
@@ -345,6 +345,7 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
     return found->spectrum;
   }
   if (parameter.type == "rgb") {
+    if (parameter.numbers.size() != 3) return wrong("takes 3 values, not " + std::to_string(parameter.numbers.size()));
     const RgbSpectrum rgb{{parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]}, parameter.space};
     if (std::min({rgb.rgb.x, rgb.rgb.y, rgb.rgb.z}) < 0) return wrong("has a negative component");
     if (use == SpectrumUse::albedo && std::max({rgb.rgb.x, rgb.rgb.y, rgb.rgb.z}) > 1)

@@ -81,8 +81,9 @@ static inline void held_cross(const Tree* tree, const Surfaces* surfaces, const 
 }
 
 // What holds a ray on its way to a hit. Solids that touch are crossed in one point, of which a ray meets one alone: that it is within the other
-// shows as it leaves that.
-static inline Held held_before(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, Held held) {
+// shows as it leaves that. endless: of a ray that goes on for ever where it hits nothing.
+static inline Held held_before(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, int endless, Held held) {
+  if (hit->slot == CAPLET_NONE && !endless) return held;
   if (hit->slot == CAPLET_NONE) {
     // Nothing closed holds what goes on for ever: the surfaces by which the ray left it were met together with others.
     uint all[CAPLET_HELD_BY];

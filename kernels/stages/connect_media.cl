@@ -43,7 +43,7 @@ static void stage_item(const Stage* g, uint item) {
     const int met = hit.slot != CAPLET_NONE;
     const int crosses = met && alpha_stops(&scene, &ray, &hit);
     if (crosses && !surface_passes(g, &hit)) return;
-    const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, held);
+    const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), held);
     const uint medium = held_medium(&g->media, &here);
     if (medium != CAPLET_NONE && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, ray.t_min, met ? hit.t : ray.t_max, &numbers, &weights))
       return;

@@ -50,7 +50,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     weights.scattering = g->immersion.path_ratio[path];
     weights.light = g->immersion.path_light_ratio[path];
   }
-  const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, held);
+  const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, 1, held);
   const uint medium = held_medium(&g->media, &here);
   if (medium == CAPLET_NONE) return;
 
