@@ -77,7 +77,8 @@ class BoundaryLowering {
         one.record.flags = CAPLET_BOUNDARY_CLOSED;
         if (shape.reverse_orientation) std::swap(one.record.inside, one.record.outside);
       } else {
-        one.record.flags = CAPLET_BOUNDARY_SHEET | (open_edges(shape) == 0 ? CAPLET_BOUNDARY_CLOSED : 0u);
+        one.record.flags =
+            CAPLET_BOUNDARY_SHEET | (!shape.reverse_orientation && open_edges(shape) == 0 ? CAPLET_BOUNDARY_CLOSED : 0u);
       }
       one.size = std::numeric_limits<double>::infinity();
       for (const glm::dmat4& m : placed)

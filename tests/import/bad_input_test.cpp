@@ -54,7 +54,7 @@ const Bad bad_scenes[] = {
     {"WrongCount", "WorldBegin\nShape \"sphere\" \"float radius\" [1 2]",
      "scene.pbrt:2:16: Shape \"sphere\": \"radius\" takes 1 value, not 2"},
     {"WrongRgbCount", "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2]\nShape \"sphere\"",
-     "scene.pbrt:2:20: \"rgb reflectance\" takes 3 values, not 2"},
+     "scene.pbrt:2:20: \"rgb reflectance\" takes a multiple of 3 values, not 2"},
     {"WrongPointCount", "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1]",
      "scene.pbrt:2:22: \"point3 P\" takes a multiple of 3 values, not 4"},
     {"Nan", "WorldBegin\nShape \"sphere\" \"float radius\" [nan]",
@@ -128,11 +128,10 @@ const Bad bad_scenes[] = {
      "scene.pbrt: the image of 100000 x 100000 pixels is larger than 2^28 pixels"},
     {"BadCrop", "Film \"rgb\" \"float cropwindow\" [0 1 .5 .5]\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:12: Film \"rgb\": \"cropwindow\" must be x min, x max, y min, y max within 0 and 1"},
-    {"RefusedMaterial", "WorldBegin\nMaterial \"subsurface\" \"float roughness\" 0\nShape \"sphere\"",
-     "scene.pbrt:2:1: Material \"subsurface\" is not rendered yet"},
-    {"RefusedMedium",
-     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\nMediumInterface \"fog\" \"\"\nShape \"sphere\"",
-     "scene.pbrt:3:17: the medium \"fog\" is a MakeNamedMedium \"homogeneous\" (scene.pbrt:1:1), which is not rendered yet"},
+    {"RefusedMaterial", "WorldBegin\nMaterial \"measured\" \"float roughness\" 0\nShape \"sphere\"",
+     "scene.pbrt:2:1: Material \"measured\" is not rendered yet"},
+    {"WrongRgbs", "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2 .3 .4 .5 .6]\nShape \"sphere\"",
+     "scene.pbrt:2:20: Material \"diffuse\": \"reflectance\" takes 3 values, not 6"},
     {"UnknownMedium", "MakeNamedMedium \"fog\" \"string type\" \"homogenous\"\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:23: unknown MakeNamedMedium \"homogenous\"; the nearest known name is \"homogeneous\""},
     {"RefusedMotion", "ActiveTransform EndTime\nWorldBegin\nShape \"sphere\"",
@@ -146,8 +145,8 @@ const Bad bad_scenes[] = {
 INSTANTIATE_TEST_SUITE_P(Import, BadScene, testing::ValuesIn(bad_scenes), [](const auto& row) { return row.param.name; });
 
 TEST(BadInput, ErrorsAreCollectedUpToTheLimit) {
-  EXPECT_EQ(
-      complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"subsurface\"\nShape \"sphere\"").size(), 3u);
+  EXPECT_EQ(complaints("WorldBegin\nBad1\nShape \"sphere\" \"float radius\" -1\nMaterial \"measured\"\nShape \"sphere\"").size(),
+            3u);
   std::string many = "WorldBegin\n";
   for (int i = 0; i < 50; ++i) many += "Shape \"sphere\" \"float radius\" -1\n";
   EXPECT_EQ(complaints(many).size(), 21u);

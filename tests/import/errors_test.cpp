@@ -51,13 +51,13 @@ TEST(Errors, OfOneKindAreOneLineWithTheirNumber) {
 TEST(Errors, OfFeaturesOfManyStatementsAreGrouped) {
   std::string text = "WorldBegin\n";
   for (int i = 0; i < 10'000; ++i)
-    text += "Material \"subsurface\"\nShape \"sphere\"\nShape \"loopsubdiv\"\nMakeNamedMaterial \"" + std::to_string(i) +
+    text += "Material \"measured\"\nShape \"sphere\"\nShape \"loopsubdiv\"\nMakeNamedMaterial \"" + std::to_string(i) +
             "\" \"string type\" \"diffuse\" \"string normalmap\" \"n.png\"\nNamedMaterial \"" + std::to_string(i) +
             "\"\nShape \"disk\"\n";
   EXPECT_THAT(
       complaints(text),
       ElementsAre("scene.pbrt:4:1: Shape \"loopsubdiv\" is not rendered yet (and 9999 more of this kind)",
-                  "scene.pbrt:2:1: Material \"subsurface\" is not rendered yet (and 9999 more of this kind)",
+                  "scene.pbrt:2:1: Material \"measured\" is not rendered yet (and 9999 more of this kind)",
                   "scene.pbrt:5:47: MakeNamedMaterial \"0\": \"normalmap\" no such file \"n.png\" (and 9999 more of this kind)"));
 }
 
@@ -91,7 +91,7 @@ TEST(Errors, OfManyNamesThatDoNotExistAmongManyThatDo) {
 
 TEST(Unused, MaterialsMediaAndTexturesDoNotBlockAScene) {
   const Scene scene = world_of(
-      "Material \"subsurface\"\nMakeNamedMaterial \"a\" \"string type\" \"measured\"\n"
+      "Material \"measured\"\nMakeNamedMaterial \"a\" \"string type\" \"measured\"\n"
       "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"string normalmap\" \"n.png\"\n"
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"\"\n"
       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\n"
@@ -106,15 +106,11 @@ TEST(Unused, MaterialsMediaAndTexturesDoNotBlockAScene) {
 
 TEST(Unused, AreErrorsWhereTheyAreUsed) {
   const std::string world = "WorldBegin\n";
-  EXPECT_THAT(complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nNamedMaterial \"a\"\nShape \"sphere\""),
-              ElementsAre("scene.pbrt:2:23: Material \"subsurface\" is not rendered yet"));
+  EXPECT_THAT(complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"measured\"\nNamedMaterial \"a\"\nShape \"sphere\""),
+              ElementsAre("scene.pbrt:2:23: Material \"measured\" is not rendered yet"));
   EXPECT_THAT(
-      complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nShape \"sphere\" \"string materials\" \"a\""),
-      ElementsAre("scene.pbrt:2:23: Material \"subsurface\" is not rendered yet"));
-  EXPECT_THAT(
-      complaints(world + "MakeNamedMedium \"fog\" \"string type\" \"cloud\"\nMediumInterface \"\" \"fog\"\nShape \"sphere\""),
-      ElementsAre("scene.pbrt:3:20: the medium \"fog\" is a MakeNamedMedium \"cloud\" (scene.pbrt:2:1), which is not "
-                  "rendered yet"));
+      complaints(world + "MakeNamedMaterial \"a\" \"string type\" \"measured\"\nShape \"sphere\" \"string materials\" \"a\""),
+      ElementsAre("scene.pbrt:2:23: Material \"measured\" is not rendered yet"));
   // What is unknown is an error in any case.
   EXPECT_THAT(complaints(world + "Material \"hare\"\nMaterial \"diffuse\"\nShape \"sphere\""),
               ElementsAre("scene.pbrt:2:1: unknown Material \"hare\"; the nearest known name is \"hair\""));

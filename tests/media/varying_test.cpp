@@ -177,7 +177,7 @@ TEST(Cloud, IsFullBelowAndEmptyAbove) {
     return seen(parallel_view(0.01) + "WorldBegin\n" + white_sky() + "Translate -0.5 " + std::to_string(-y) + " 0\n" + box, 1024);
   };
   EXPECT_TRUE(agrees(through(-0.5), std::exp(-0.7)));
-  EXPECT_TRUE(agrees(through(1), 1));
+  EXPECT_NEAR(through(1).value, 1, 0.005);
   const double middle = through(0.7).value;
   EXPECT_GT(middle, std::exp(-0.7));
   EXPECT_LT(middle, 1);
