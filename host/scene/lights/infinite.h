@@ -22,7 +22,7 @@ using LightPortal = std::array<glm::dvec3, 4>;
 struct InfiniteLight {
   Spectrum radiance = ConstantSpectrum{1};  // without an image
   std::shared_ptr<const EnvironmentImage> image;
-  glm::dmat3 world_from_light{1};     // rotation, possibly mirroring
+  glm::dmat3 world_from_light{1};       // rotation, possibly mirroring
   std::optional<LightPortal> portal{};  // through which alone it is seen
 
   static constexpr LightUnit unit = LightUnit::illuminance;
