@@ -40,7 +40,7 @@ PRINCIPLED = {
     "white": dict(base_color=(1.0, 1.0, 1.0), roughness=1.0),
     "coat": dict(base_color=(0.5, 0.2, 0.2), roughness=0.6, coat=1.0, coat_roughness=0.2),
 }
-OWN_SHADOW = ("a fibre of Mitsuba shadows itself, so that light through it meets it again; here it has left. The model's values agree to 0.6 % "
+OWN_SHADOW = ("the pictures differ where the distant light comes through a fibre (Mitsuba's seems to shadow itself there; not shown). The model's values agree to 0.6 % "
               "(`bsdf_tests`), and a furnace to 0.1 %")
 DIFFERENT = {
     "half-glass": "the diffuse part is seen from inside as well; Mitsuba's is black there",
@@ -206,7 +206,7 @@ SCENES = {"cornell-box": (256, 256, 65), "veach-mis": (320, 180, 1), "coffee": (
 REMARKS = {
     "cornell-box": "RGB there: light between coloured walls",
     "veach-mis": "at depth 1, as its picture; highlights there have not the tails of the GGX that the text asks for, and blocks of the plates are black",
-    "coffee": "Tungsten's plastic is another model than pbrt's `coateddiffuse`, whose walk ends after 10 events",
+    "coffee": "Tungsten's plastic is another model than pbrt's `coateddiffuse`, whose walk ends after 10 events; which of the two it is was not shown",
 }
 
 
