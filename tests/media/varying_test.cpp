@@ -186,7 +186,8 @@ TEST(Cloud, IsFullBelowAndEmptyAbove) {
 // Two bricks of voxels, one behind the other, in the cube.
 TEST(Nanovdb, LetsThroughWhatItsVoxelsDo) {
   const auto voxel = [](int x, int y, int z) {
-    return x < 0 || y < 0 || z < 0 || x > 7 || y > 7 || z > 15 ? 0.0 : (x < 4 ? 0.1 : 1.0) * ((x * 7 + y * 3 + z * 5) % 11) / 10.0;
+    return x < 0 || y < 0 || z < 0 || x > 7 || y > 7 || z > 15 ? 0.0
+                                                               : (x < 4 ? 0.1 : 1.0) * ((x * 7 + y * 3 + z * 5) % 11) / 10.0;
   };
   auto grid_of = std::make_shared<SparseGrid>();
   grid_of->bricks = {{0, 0, 0}, {0, 0, 1}};
