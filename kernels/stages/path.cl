@@ -75,4 +75,23 @@ static inline PathSample path_sample(__global const BatchRecord* batch, uint see
   return s;
 }
 
+// The ray of a path that goes on from a point.
+static inline RayRecord path_onward(float3 origin, float3 direction) {
+  RayRecord ray;
+  ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
+  ray.dx = direction.x; ray.dy = direction.y; ray.dz = direction.z; ray.t_max = INFINITY;
+  return ray;
+}
+
+// Russian roulette: whether a path goes on, and with what throughput. The square root keeps paths longer than their throughput alone would, and the
+// first three scatterings always go on: variance falls faster than time grows (docs/performance.md). eta_scale takes the squared indices of
+// refractions out of the throughput.
+static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
+  const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));
+  if (depth < 3 || survival >= 1.0f) return 1;
+  if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return 0;
+  *throughput /= survival;
+  return 1;
+}
+
 #endif

@@ -224,13 +224,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   scatter.y *= sample.eta_scale;
   scatter.z = as_float(sample.transmitted ? s.primitive_light : CAPLET_NONE);
 
-  // The square root keeps paths longer than their throughput alone would, and the first three scatterings always go on: variance falls
-  // faster than time grows (docs/performance.md).
-  const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
-  if (depth >= 3 && survival < 1.0f) {
-    if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return;
-    throughput /= survival;
-  }
+  if (!path_survives(at, depth, scatter.y, &throughput)) return;
   if (!(max4(fabs(throughput)) > 0.0f)) return;
 
   if (has_cones) {
@@ -244,10 +238,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     g->cones.path_cone[path] = cone;
   }
   const float3 origin = offset_origin(s.p, s.ng, s.error, wi);
-  RayRecord next;
-  next.ox = origin.x; next.oy = origin.y; next.oz = origin.z; next.t_min = 0.0f;
-  next.dx = wi.x; next.dy = wi.y; next.dz = wi.z; next.t_max = INFINITY;
-  g->rays.path_ray[path] = next;
+  g->rays.path_ray[path] = path_onward(origin, wi);
   g->carried.path_throughput[path] = throughput;
   g->carried.path_scatter[path] = scatter;
 #ifdef CAPLET_LIGHT_TREE

@@ -90,15 +90,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float3 wi = phase_sample(d, asymmetry, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &pdf);
   scatter.x = pdf;
   scatter.z = as_float(CAPLET_NONE);
-  const float survival = fmin(1.0f, sqrt(max4(fabs(throughput)) * scatter.y));
-  if (depth >= 3 && survival < 1.0f) {
-    if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return;
-    throughput /= survival;
-  }
-  RayRecord next;
-  next.ox = p.x; next.oy = p.y; next.oz = p.z; next.t_min = 0.0f;
-  next.dx = wi.x; next.dy = wi.y; next.dz = wi.z; next.t_max = INFINITY;
-  g->rays.path_ray[path] = next;
+  if (!path_survives(at, depth, scatter.y, &throughput)) return;
+  g->rays.path_ray[path] = path_onward(p, wi);
   g->carried.path_throughput[path] = throughput;
   g->carried.path_scatter[path] = scatter;
 #ifdef CAPLET_LIGHT_TREE
