@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--size", options.size, "camera rays a side")->check(CLI::Range(1, 8192));
   app.add_option("--width", options.width, "8: eight primitives at a time, 1: one; default by device")
       ->check(CLI::IsMember({1, 8}));
+  app.add_option("--builders", options.builders, "instead of rays: trees by 1 to so many threads")->check(CLI::Range(1, 64));
   app.add_flag("--alone", options.alone, "without Embree");
   app.add_flag("--sorted", options.sorted, "also bounce rays sorted by origin and octant, for ours alone");
   caplet::log::set_quiet(false);

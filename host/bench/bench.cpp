@@ -3,10 +3,13 @@
 #include "bench/bench.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
 
 #include "base/clock.h"
 #include "bench/detail/walks.h"
@@ -123,9 +126,42 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   bench.run(kind + " any", tracers.others, scattered, scattered, Question::any);
 }
 
+/// Seconds of `work` on so many threads, which may be more than there are cores.
+template <class Work>
+double seconds_on(int threads, const Work& work) {
+  const tbb::global_control most(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute(work);
+}
+
+/// Trees by 1 to options.builders threads, Embree's after ours each time: medians.
+void run_builders(std::span<const FlatPrimitive> primitives, int kind_bits, const Options& options, const Say& line) {
+  constexpr int repetitions = 7;
+  const bool beside = Peer::is_there() && !options.alone;
+  for (int threads = 1; threads <= options.builders; ++threads) {
+    std::vector<double> ours, theirs;
+    for (int i = 0; i < repetitions; ++i) {
+      ours.push_back(seconds_on(threads, [&] {
+        std::vector<float> nodes, leaves;
+        const Clock::time_point start = Clock::now();
+        encode_tree(primitives, nodes, leaves, kind_bits);
+        return seconds_since(start);
+      }));
+      if (beside) theirs.push_back(seconds_on(threads, [&] { return Peer(primitives).build_seconds(); }));
+    }
+    say(line, fmt::format("{} build, {} thread{}", options.kind, threads, threads == 1 ? "" : "s"), median(ours),
+        beside ? median(theirs) : 0, "s");
+  }
+}
+
 void run_walks(const Device& device, const Options& options, const Say& line) {
   const std::string& kind = options.kind;
   const auto primitives = kind == "triangles" ? walk_triangles(options.count) : walk_capsules(options.count);
+  if (options.builders > 0) {
+    std::uint64_t shapes = 0;
+    for (const FlatPrimitive& p : primitives) shapes |= shape_bit(p.shape);
+    return run_builders(primitives, leaf_kind_bits(shapes), options, line);
+  }
   std::vector<float> nodes, leaves;
   const Clock::time_point start = Clock::now();
   std::uint64_t shapes = 0;

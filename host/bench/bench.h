@@ -20,6 +20,7 @@ struct Options {
   int size = 1024;              // camera rays a side
   int width = 0;                // 8: eight primitives at a time, 1: one; 0: by device
   bool alone = false;           // without Embree, which takes more memory than ours
+  int builders = 0;             // instead of rays: trees of capsules or triangles by 1 to so many threads
   bool sorted = false;          // also bounce rays sorted by origin and octant, for ours alone
 };
 
