@@ -37,10 +37,10 @@ constexpr Quirk quirks[] = {
     // host/device/program.cpp
     {"Portable Computing Language", "", "", "",
      "keeps compiled kernels itself; Caplet's cache holds only what the self-test said"},
-    // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl
+    // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl. Single: `shade` of scenes/neuron.swc
     {"Portable Computing Language", "", "6.0", "6.1",
      "has a compiler that may abort the process (\"Instruction Combining did not reach a fixpoint\"); Caplet's kernels are "
-     "written so that it does not"},
+     "written so that it does not in the wide encoding, which is its own; in the single one it does for some scenes"},
     // Seen with 2025.0.4 (which calls itself 2024.18.12) and later, not with 2024.2.1 (2024.18.7); kernels/stages/kernel.cl
     {"Intel(R) OpenCL", "Intel(R)", "2024.18.8", "",
      "may put several work-items into one vector, which is slow, and wrong where functions are called; Caplet's kernels ask it "
