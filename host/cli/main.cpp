@@ -103,6 +103,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);
+  caplet::cli::add_view(app);
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
