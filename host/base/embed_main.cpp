@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Build tool: embed_files OUTPUT FUNCTION ROOT FILE... writes a C++ function that returns a table of the files' texts by their paths from
-// ROOT (embedded_file.h).
+// Build tool: embed_files OUTPUT FUNCTION ROOT FILE... writes a C++ function that returns a table of the files' texts by their
+// paths from ROOT (embedded_file.h).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -40,8 +40,8 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path root = argv[3];
   std::ofstream out(argv[1]);
-  out << "#include <span>\n#include \"base/embedded_file.h\"\nnamespace caplet {\nstd::span<const EmbeddedFile> "
-      << argv[2] << "();\nnamespace {\nusing namespace std::string_view_literals;\n"
+  out << "#include <span>\n#include \"base/embedded_file.h\"\nnamespace caplet {\nstd::span<const EmbeddedFile> " << argv[2]
+      << "();\nnamespace {\nusing namespace std::string_view_literals;\n"
          "constexpr EmbeddedFile files[] = {\n";
   for (int i = 4; i < argc; ++i) {
     std::ifstream in(argv[i], std::ios::binary);

@@ -48,7 +48,8 @@ glm::dmat4 matrix(const json& object, const char* name) {
   const json& rows = field(object, name);
   if (!rows.is_array() || rows.size() != 16) refuse(name, "is not a list of sixteen numbers");
   glm::dmat4 out;
-  for (int i = 0; i < 16; ++i) out[i % 4][i / 4] = number(rows[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e12, 1e12);
+  for (int i = 0; i < 16; ++i)
+    out[i % 4][i / 4] = number(rows[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e12, 1e12);
   return out;
 }
 

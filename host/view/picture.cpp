@@ -31,9 +31,7 @@ Tile tile_of(const Picture& picture, int number) {
   return {x, y, std::min(x + tile_size, picture.width), std::min(y + tile_size, picture.height)};
 }
 
-int tiles_of(const Picture& picture) {
-  return ((picture.width - 1) / tile_size + 1) * ((picture.height - 1) / tile_size + 1);
-}
+int tiles_of(const Picture& picture) { return ((picture.width - 1) / tile_size + 1) * ((picture.height - 1) / tile_size + 1); }
 
 bool differ(const Picture& a, const Picture& b, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -47,7 +45,8 @@ bool differ(const Picture& a, const Picture& b, const Tile& tile) {
 std::string deflated(const std::string& data) {
   uLongf size = ::compressBound(data.size());
   std::string out(size, '\0');
-  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size(), 1) != Z_OK)
+  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size(), 1) !=
+      Z_OK)
     throw RunError("a picture could not be packed");
   out.resize(size);
   return out;
@@ -91,7 +90,9 @@ std::string packed(const Picture& now, const Picture* before) {
       const Tile tile = tile_of(now, static_cast<int>(number));
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x)
-          color.push_back(now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) + static_cast<std::size_t>(x)) + c]);
+          color.push_back(
+              now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) + static_cast<std::size_t>(x)) +
+                        c]);
     }
   std::string data;
   for (const std::uint32_t number : tiles) put(data, number);

@@ -34,7 +34,7 @@ using std::chrono::steady_clock;
 namespace {
 
 constexpr std::size_t most_header_bytes = 8192;
-constexpr std::chrono::seconds request_patience{15}, idle_patience{40};
+constexpr std::chrono::seconds request_patience{15}, handshake_patience{5};
 
 using Request = http::request<http::empty_body>;
 using Parser = http::request_parser<http::empty_body>;
@@ -100,7 +100,8 @@ class Server::State {
 
   std::uint16_t port() const { return port_; }
   std::string address() const {
-    return fmt::format("http://{}/{}/", authority_of(is_wildcard(options_.host) ? "127.0.0.1" : options_.host, port_), options_.token);
+    return fmt::format("http://{}/{}/", authority_of(is_wildcard(options_.host) ? "127.0.0.1" : options_.host, port_),
+                       options_.token);
   }
 
   asio::io_context& context() { return context_; }
@@ -156,7 +157,8 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
   }
 
   void run(const Request& request) {
-    socket_.set_option(websocket::stream_base::timeout{request_patience, idle_patience, true});
+    socket_.set_option(websocket::stream_base::timeout{
+        handshake_patience, std::chrono::milliseconds(static_cast<int>(1e3 * server_.options().silence_seconds)), true});
     socket_.read_message_max(server_.options().most_message_bytes);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
@@ -171,7 +173,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
   void send(std::shared_ptr<const std::string> message, bool binary) {
     waiting_bytes_ += message->size();
-    if (waiting_bytes_ > server_.options().most_waiting_bytes) return end(websocket::close_code::try_again_later);
+    if (waiting_bytes_ > server_.options().most_waiting_bytes) return drop();  // it takes nothing, a reason neither
     waiting_.push_back({std::move(message), binary});
     go_on();
   }
@@ -270,7 +272,8 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     std::string_view path = view_of(request.target());
     path = path.substr(0, path.find('?'));
     const std::size_t slash = path.find('/', 1);
-    const std::string_view token = path.substr(std::min<std::size_t>(1, path.size()), slash == std::string_view::npos ? slash : slash - 1);
+    const std::string_view token =
+        path.substr(std::min<std::size_t>(1, path.size()), slash == std::string_view::npos ? slash : slash - 1);
     if (!path.starts_with('/') || slash == std::string_view::npos || !equal_in_constant_time(token, server_.options().token))
       return answer(http::status::forbidden, {}, keep);
     path.remove_prefix(slash + 1);
@@ -278,14 +281,16 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
       return answer(http::status::method_not_allowed, {}, keep);
     if (websocket::is_upgrade(request)) return upgrade(path, host);
     const std::optional<PageFile> file = server_.events().file(path);
-    answer(file ? http::status::ok : http::status::not_found, file.value_or(PageFile{}), keep, request.method() == http::verb::head);
+    answer(file ? http::status::ok : http::status::not_found, file.value_or(PageFile{}), keep,
+           request.method() == http::verb::head);
   }
 
   void upgrade(std::string_view path, std::string_view host) {
     const Request& request = parser_->get();
     if (path != "socket") return answer(http::status::not_found, {}, false);
     // Pages of others can open sockets here; browsers tell whose page it is.
-    if (view_of(request[http::field::origin]) != fmt::format("http://{}", host)) return answer(http::status::forbidden, {}, false);
+    if (view_of(request[http::field::origin]) != fmt::format("http://{}", host))
+      return answer(http::status::forbidden, {}, false);
     const auto joined = static_cast<std::size_t>(
         std::ranges::count_if(server_.clients(), [](const auto& client) { return !client.second.expired(); }));
     if (joined >= server_.options().most_clients) return answer(http::status::service_unavailable, {}, false);
@@ -306,9 +311,11 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     response_->set("Referrer-Policy", "no-referrer");
     response_->set("Cross-Origin-Resource-Policy", "same-origin");
     response_->set("Content-Security-Policy",
-                   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; "
+                   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+                   "base-uri 'none'; "
                    "form-action 'none'; frame-ancestors 'none'");
-    response_->body() = status == http::status::ok ? std::string(file.text) : std::string(view_of(http::obsolete_reason(status))) + "\n";
+    response_->body() =
+        status == http::status::ok ? std::string(file.text) : std::string(view_of(http::obsolete_reason(status))) + "\n";
     response_->prepare_payload();
     if (head) response_->body().clear();
     stream_.expires_after(request_patience);
@@ -374,7 +381,8 @@ void Server::picture_changed() {
 
 std::string random_token() {
   unsigned char bytes[16];
-  if (::getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes)) throw RunError("the system has no random numbers");
+  if (::getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+    throw RunError("the system has no random numbers");
   std::string out;
   for (const unsigned char byte : bytes) out += fmt::format("{:02x}", byte);
   return out;

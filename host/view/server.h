@@ -22,8 +22,9 @@ struct ServerOptions {
   std::uint16_t port = 0;          // 0: any that is free
   std::string token;               // first part of every path; whoever does not know it is refused
   std::size_t most_clients = 16, most_connections = 64;
+  double silence_seconds = 8;  // after which a client that answers no ping is gone
   std::size_t most_message_bytes = std::size_t{1} << 16;
-  double messages_a_second = 300, burst = 600;            // of a client
+  double messages_a_second = 300, burst = 600;             // of a client
   std::size_t most_waiting_bytes = std::size_t{32} << 20;  // of messages that a client has not taken
 };
 
@@ -37,14 +38,14 @@ struct ServerEvents {
   std::function<std::optional<PageFile>(std::string_view path)> file;  // below the token; "" is the page itself
   std::function<void(ClientId)> joined, left;
   std::function<void(ClientId, std::string)> message;
-  /// The next picture for a client that has taken all that was sent to it, or null: `shown` is what it was given last (0: none), and
-  /// becomes what it is given.
+  /// The next picture for a client that has taken all that was sent to it, or null: `shown` is what it was given last (0: none),
+  /// and becomes what it is given.
   std::function<std::shared_ptr<const std::string>(ClientId, std::uint64_t& shown)> picture;
 };
 
-/// Serves on a thread of its own from its making to its end. What is not asked for by the page's own address is refused: another token,
-/// another Host than this machine's, another Origin than the page's. Messages, rates, connections and waiting bytes have limits; a client
-/// beyond them is closed, and one that is slow gets fewer pictures.
+/// Serves on a thread of its own from its making to its end. What is not asked for by the page's own address is refused: another
+/// token, another Host than this machine's, another Origin than the page's. Messages, rates, connections and waiting bytes have
+/// limits; a client beyond them is closed, and one that is slow gets fewer pictures.
 class Server {
  public:
   /// Throws RunError when it cannot listen there.

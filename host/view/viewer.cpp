@@ -96,8 +96,8 @@ class Viewer::State {
   };
 
   static Look look_of(const Scene& scene) {
-    return {scene.film.width,  scene.film.height, scene.camera.world_from_camera, scene.camera.fov, scene.camera.lens_radius,
-            scene.camera.focal_distance};
+    return {scene.film.width, scene.film.height,        scene.camera.world_from_camera,
+            scene.camera.fov, scene.camera.lens_radius, scene.camera.focal_distance};
   }
 
   SessionOptions session_options() const {
@@ -196,7 +196,8 @@ class Viewer::State {
     return std::ranges::any_of(clients_, [](const auto& client) { return client.second.seen; });
   }
   bool asked() const {
-    return std::ranges::any_of(clients_, [](const auto& client) { return !client.second.asked.empty() || client.second.wants_snapshot; });
+    return std::ranges::any_of(clients_,
+                               [](const auto& client) { return !client.second.asked.empty() || client.second.wants_snapshot; });
   }
   bool is_seen_now() {
     const std::lock_guard lock(mutex_);
@@ -257,8 +258,9 @@ class Viewer::State {
     if (scale_ == 0 || (scale_ > 1 && samples_ > 0)) set_film(full_, 1);
     const double pixels = static_cast<double>(live_.scene().film.width) * live_.scene().film.height;
     const double affordable = options_.step_seconds * paths_a_second_ / pixels;
-    const std::uint32_t count =
-        scale_ > 1 ? 1 : std::clamp(static_cast<std::uint32_t>(affordable), 1u, std::max(1u, std::min(samples_, target() - samples_)));
+    const std::uint32_t count = scale_ > 1 ? 1
+                                           : std::clamp(static_cast<std::uint32_t>(affordable), 1u,
+                                                        std::max(1u, std::min(samples_, target() - samples_)));
     const bool is_coarse = scale_ > 1;
     const Clock::time_point start = Clock::now();
     session_->render(count, [&](const SessionProgress&) {
@@ -335,7 +337,8 @@ class Viewer::State {
 
   RayRecord ray_at(int x, int y, int scale) {
     if (scale == 1) return ray_of_pixel(live_.scene(), std::min(x, full_.width - 1), std::min(y, full_.height - 1));
-    return ray_of_pixel(live_.scene(), std::min(x / scale, live_.scene().film.width - 1), std::min(y / scale, live_.scene().film.height - 1));
+    return ray_of_pixel(live_.scene(), std::min(x / scale, live_.scene().film.width - 1),
+                        std::min(y / scale, live_.scene().film.height - 1));
   }
 
   Text snapshot() {

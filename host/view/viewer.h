@@ -15,14 +15,14 @@ namespace caplet::view {
 
 struct ViewerOptions {
   ServerOptions server;
-  int samples = 0;                 // of every pixel, at which the picture is done; 0: the scene's own
-  double coarse_seconds = 0.08;    // of the first picture of a view, about
-  double step_seconds = 0.5;       // between two pictures, about
+  int samples = 0;                                 // of every pixel, at which the picture is done; 0: the scene's own
+  double coarse_seconds = 0.08;                    // of the first picture of a view, about
+  double step_seconds = 0.5;                       // between two pictures, about
   std::size_t batch_paths = std::size_t{1} << 15;  // questions are answered between batches
 };
 
-/// Renders on a thread of its own: the view that was asked for last, coarsely at first, then in full, then sample by sample until it is
-/// done or nobody sees it. What pixels show is answered between batches of paths. A new view ends the picture under way.
+/// Renders on a thread of its own: the view that was asked for last, coarsely at first, then in full, then sample by sample until
+/// it is done or nobody sees it. What pixels show is answered between batches of paths. A new view ends the picture under way.
 class Viewer {
  public:
   /// Throws RunError when the device or the address is of no use.

@@ -14,8 +14,8 @@ namespace caplet::view {
 /// Most shapes and instances that are named one by one.
 inline constexpr std::size_t most_named = 5000;
 
-/// Its name, camera, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at which a
-/// picture is done.
+/// Its name, camera, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at
+/// which a picture is done.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
 
 }  // namespace caplet::view
