@@ -17,19 +17,17 @@ Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
+Json camera_text(const Look& look) {
+  Json rows = Json::array();
+  for (int i = 0; i < 16; ++i) rows.push_back(look.world_from_camera[i % 4][i / 4]);
+  return {{"world_from_camera", rows}, {"fov", look.fov}, {"lens_radius", look.lens_radius}, {"focal_distance", look.focal_distance}};
+}
+
 Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples) {
   Json out{{"type", "scene"}};
   out["name"] = std::filesystem::path(scene.source).filename().string();
   out["device"] = device;
   out["samples"] = samples;
-  Json rows = Json::array();
-  for (int i = 0; i < 16; ++i) rows.push_back(scene.camera.world_from_camera[i % 4][i / 4]);
-  out["camera"] = {{"world_from_camera", rows},
-                   {"fov", scene.camera.fov},
-                   {"lens_radius", scene.camera.lens_radius},
-                   {"focal_distance", scene.camera.focal_distance},
-                   {"width", scene.film.width},
-                   {"height", scene.film.height}};
   const Bounds bounds = bounds_of(scene);
   out["bounds"] = {to_json(bounds.min), to_json(bounds.max)};
   // By the numbers of the layer object.id (lower/identity.h).

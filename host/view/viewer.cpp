@@ -65,6 +65,8 @@ class Viewer::State {
     events.left = [this](ClientId id) { left(id); };
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
+    hello_ = scene_text(live_.scene(), device_.info().name, target());
+    hello_["home"] = camera_text(full_);
     server_.emplace(options.server, std::move(events));
     thread_ = std::thread([this] { run(); });
   }
@@ -118,10 +120,11 @@ class Viewer::State {
     {
       const std::lock_guard lock(mutex_);
       clients_[id];
-      hello = hello_;
+      hello_["camera"] = camera_text(wanted_);
+      hello = text_of(hello_);
     }
     changed_.notify_all();
-    if (hello) server_->send(id, hello);
+    server_->send(id, hello);
   }
 
   void left(ClientId id) {
@@ -131,12 +134,15 @@ class Viewer::State {
 
   void said(ClientId id, const std::string& text) try {
     const Message message = parse_message(text);
+    std::vector<ClientId> others;
     {
       const std::lock_guard lock(mutex_);
       Client& client = clients_[id];
       if (const Look* look = std::get_if<Look>(&message)) {
         wanted_ = *look;
         ++wanted_number_;
+        for (const auto& [other, of] : clients_)
+          if (other != id) others.push_back(other);
       } else if (const Seen* seen = std::get_if<Seen>(&message)) {
         client.seen = seen->seen;
       } else if (const Ask* ask = std::get_if<Ask>(&message)) {
@@ -148,6 +154,10 @@ class Viewer::State {
       }
     }
     changed_.notify_all();
+    if (others.empty()) return;
+    nlohmann::ordered_json looked = camera_text(std::get<Look>(message));
+    looked["type"] = "looked";
+    for (const ClientId other : others) server_->send(other, text_of(looked));
   } catch (const InputError& error) {
     server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
   }
@@ -168,7 +178,6 @@ class Viewer::State {
   // --- On the renderer's thread ---
 
   void run() try {
-    greet();
     for (;;) {
       {
         std::unique_lock lock(mutex_);
@@ -204,17 +213,6 @@ class Viewer::State {
     return is_seen();
   }
   bool has_more() const { return scale_ != 1 || samples_ < target(); }
-
-  void greet() {
-    const Text hello = text_of(scene_text(live_.scene(), device_.info().name, target()));
-    std::vector<ClientId> ids;
-    {
-      const std::lock_guard lock(mutex_);
-      hello_ = hello;
-      for (const auto& [id, client] : clients_) ids.push_back(id);
-    }
-    for (const ClientId id : ids) server_->send(id, hello);
-  }
 
   std::optional<Look> take_wanted() {
     const std::lock_guard lock(mutex_);
@@ -365,7 +363,7 @@ class Viewer::State {
   std::uint64_t wanted_number_ = 1;
   std::map<ClientId, Client> clients_;
   std::shared_ptr<const Picture> picture_;
-  Text hello_;
+  nlohmann::ordered_json hello_;
   bool ended_ = false;
   std::exception_ptr failure_;
 

@@ -8,13 +8,17 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "view/messages.h"
 
 namespace caplet::view {
 
 /// Most shapes and instances that are named one by one.
 inline constexpr std::size_t most_named = 5000;
 
-/// Its name, camera, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at
+/// How the page says it, too (messages.h).
+nlohmann::ordered_json camera_text(const Look& look);
+
+/// Its name, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at
 /// which a picture is done.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
 

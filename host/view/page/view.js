@@ -51,6 +51,7 @@ function connect() {
 
 function told(message) {
   if (message.type === "scene") return begin(message);
+  if (message.type === "looked") return void (camera && camera_of(message));
   if (message.type === "error") return void ($("state").textContent = message.text);
   const done = waiting.get(message.number);
   waiting.delete(message.number);
@@ -76,7 +77,9 @@ function begin(message) {
   const [low, high] = scene.bounds;
   center = mul(add(low, high), 0.5);
   radius = length(sub(high, low)) / 2 || 1;
-  if (!again) {
+  if (again && camera) {
+    camera_of(scene.camera);
+  } else {
     camera = new Camera(scene.camera);
     // What turns least in the picture when one orbits: the axis of the world that is nearest to the picture's up.
     const up = unit(camera.up), axis = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
@@ -88,9 +91,24 @@ function begin(message) {
   }
   fill_tree();
   look();
+  draw();
 }
 
 // --- The camera ---
+
+// As another page has it.
+function camera_of(message) {
+  const now = new Camera(message);
+  now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
+  camera = now;
+  show_lens();
+}
+
+function show_lens() {
+  $("fov").value = (camera.fov * 180 / Math.PI).toFixed(1);
+  $("radius").value = +camera.lens_radius.toPrecision(6);
+  $("focus").value = +camera.focal_distance.toPrecision(6);
+}
 
 let looked = "";
 function look() {
@@ -99,9 +117,7 @@ function look() {
   const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale)));
   const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance };
   const text = JSON.stringify(message);
-  $("fov").value = (camera.fov * 180 / Math.PI).toFixed(1);
-  $("radius").value = +camera.lens_radius.toPrecision(6);
-  $("focus").value = +camera.focal_distance.toPrecision(6);
+  show_lens();
   $("undo").disabled = !past.length;
   $("redo").disabled = !future.length;
   if (text === looked && socket) return;
@@ -113,7 +129,7 @@ function look() {
 function remember() { past.push(camera.copy()); future = []; if (past.length > 1000) past.shift(); }
 function change(what) { remember(); what(); look(); }
 function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
-const home = () => change(() => { const target = camera.target; camera = new Camera(scene.camera); camera.target = target; });
+const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); camera.target = target; });
 const fit = () => change(() => camera.fit(center, radius));
 function along(name) {
   if (!name) return;
@@ -127,6 +143,7 @@ function along(name) {
 
 function draw() {
   const { width, height } = picture;
+  if (!scene || !width) return;
   picture_canvas.width = width;
   picture_canvas.height = height;
   picture_canvas.getContext("2d").putImageData(new ImageData(picture.shown(+$("exposure").value, $("curve").value), width, height), 0, 0);
@@ -178,7 +195,10 @@ function click(event) {
     if (event.altKey && hit) return change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
     choose(hit ? hit.object_id : null, event.shiftKey);
   });
-  ask(pixel, true, true, (told_of) => inspect(told_of, $("asked"), $("intervals"), $("table")));
+  ask(pixel, true, true, (told_of) => {
+    inspect(told_of, $("asked"), $("intervals"), $("table"));
+    $("table").dataset.pixel = pixel.join();
+  });
 }
 
 // --- The scene's tree ---
@@ -282,8 +302,8 @@ $("undo").onclick = () => undo(past, future);
 $("redo").onclick = () => undo(future, past);
 $("axis").onchange = (event) => { along(event.target.value); event.target.value = ""; };
 $("help").onclick = () => $("keys").showModal();
-$("exposure").oninput = () => { $("stops").value = $("exposure").value; if (picture.width) draw(); };
-$("curve").onchange = () => { if (picture.width) draw(); };
+$("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
+$("curve").onchange = draw;
 $("exr").onclick = () => say({ type: "snapshot" });
 $("png").onclick = () => picture_canvas.toBlob((blob) => save(blob, `${scene.name}.png`));
 const fill_kept = () => $("kept").replaceChildren(new Option(texts.kept, ""), ...kept.map((_, i) => new Option(String(i + 1), String(i))));
