@@ -34,7 +34,7 @@ struct Options {
   std::string scene, device, size, host = "127.0.0.1";
   std::uint16_t port = 0;
   int samples = 0;
-  bool no_browser = false, quiet = false;
+  bool no_browser = false, read_only = false, quiet = false;
 };
 
 /// Where there is a desktop, its browser. What comes of it is the desktop's to tell.
@@ -67,6 +67,7 @@ void run_view(const Options& options) {
   viewer_options.server.host = options.host;
   viewer_options.server.port = options.port;
   viewer_options.server.token = view::random_token();
+  viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
   view::Viewer viewer(std::move(live), device, viewer_options);
   SecondTry::driver_works();
@@ -88,6 +89,7 @@ void add_view(CLI::App& app) {
       ->type_name("ADDRESS");
   command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");
   command->add_flag("--no-browser", o->no_browser, "Print the address, and open no browser");
+  command->add_flag("--read-only", o->read_only, "Let nobody change the scene");
   command->add_option("--spp", o->samples, "Samples per pixel at which the picture is done (default: the scene's own)")
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");

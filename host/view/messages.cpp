@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -74,6 +75,55 @@ Ask ask(const json& of) {
   return out;
 }
 
+constexpr double most_id = 4294967294.0;
+
+std::uint32_t id(const json& value, const std::string& name) {
+  const double out = number(value, name, 0, most_id);
+  if (out != std::floor(out)) refuse(name, fmt::format("is {}, and no whole number", out));
+  return static_cast<std::uint32_t>(out);
+}
+
+std::uint32_t id(const json& object, const char* name) { return id(field(object, name), std::string(name)); }
+
+std::vector<std::uint32_t> ids(const json& object) {
+  const json& list = field(object, "ids");
+  if (!list.is_array() || list.empty() || list.size() > most_chosen)
+    refuse("ids", fmt::format("is not a list of 1 to {} numbers", most_chosen));
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < list.size(); ++i) out.push_back(id(list[i], fmt::format("ids[{}]", i)));
+  std::ranges::sort(out);
+  if (const auto twice = std::ranges::adjacent_find(out); twice != out.end())
+    refuse("ids", fmt::format("names {} twice", *twice));
+  return out;
+}
+
+glm::dvec3 point(const json& object, const char* name) {
+  const json& list = field(object, name);
+  if (!list.is_array() || list.size() != 3) refuse(name, "is not a list of three numbers");
+  glm::dvec3 out;
+  for (int i = 0; i < 3; ++i) out[i] = number(list[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e30, 1e30);
+  return out;
+}
+
+Change change(const json& of) {
+  const json& what = field(of, "what");
+  if (what == "move") return Move{ids(of), matrix(of, "matrix")};
+  if (what == "reshape")
+    return Reshape{id(of, "id"),
+                   id(of, "capsule"),
+                   point(of, "p0"),
+                   point(of, "p1"),
+                   number(field(of, "radius0"), "radius0", 0, 1e30),
+                   number(field(of, "radius1"), "radius1", 0, 1e30)};
+  if (what == "paint") {
+    const bool all = field(of, "surface").is_null();
+    return Paint{ids(of), all ? std::nullopt : std::optional(id(of, "surface")), id(of, "material")};
+  }
+  if (what == "duplicate") return Duplicate{ids(of), point(of, "by")};
+  if (what == "delete") return Delete{ids(of)};
+  refuse("what", "is none of move, reshape, paint, duplicate and delete");
+}
+
 }  // namespace
 
 Message parse_message(std::string_view text) {
@@ -95,7 +145,11 @@ Message parse_message(std::string_view text) {
   if (type == "seen") return Seen{truth(message, "seen")};
   if (type == "ask") return ask(message);
   if (type == "snapshot") return Snapshot{};
-  refuse("type", "is none of look, seen, ask and snapshot");
+  if (type == "describe")
+    return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"), id(message, "primitive")};
+  if (type == "edit") return Edit{change(message), truth(message, "goes_on")};
+  if (type == "undo") return Undo{truth(message, "again")};
+  refuse("type", "is none of look, seen, ask, snapshot, describe, edit and undo");
 }
 
 }  // namespace caplet::view

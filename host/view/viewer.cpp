@@ -27,6 +27,7 @@
 #include "report/pick_report.h"
 #include "view/detail/scene_text.h"
 #include "view/detail/snapshot.h"
+#include "view/editor.h"
 #include "view/messages.h"
 #include "view/page.h"
 #include "view/picture.h"
@@ -38,6 +39,7 @@ namespace {
 constexpr int coarsest_scale = 16;
 constexpr double first_guess_paths_a_second = 5e5;
 constexpr std::size_t most_crossings = 4096;
+constexpr std::size_t most_questions = 8, most_edits = 1000;  // that wait
 
 using Text = std::shared_ptr<const std::string>;
 
@@ -53,7 +55,12 @@ std::string error_text(const std::string& what) { return nlohmann::ordered_json{
 class Viewer::State {
  public:
   State(LiveScene scene, const Device& device, const ViewerOptions& options)
-      : options_(options), live_(std::move(scene)), device_(device), full_(look_of(live_.scene())), wanted_(full_) {
+      : options_(options),
+        live_(std::move(scene)),
+        editor_(live_),
+        device_(device),
+        full_(look_of(live_.scene())),
+        wanted_(full_) {
     session_.emplace(live_.flat(), live_.view(), std::vector<Device>{device}, session_options());
     (void)live_.take_changes();
     query_.emplace(*session_->scene_on(0));
@@ -67,6 +74,8 @@ class Viewer::State {
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
     hello_ = scene_text(live_.scene(), device_.info().name, target());
     hello_["home"] = camera_text(full_);
+    hello_["read_only"] = options.read_only;
+    hello_["can_undo"] = hello_["can_redo"] = false;
     server_.emplace(options.server, std::move(events));
     thread_ = std::thread([this] { run(); });
   }
@@ -90,10 +99,11 @@ class Viewer::State {
   }
 
  private:
+  using Question = std::variant<Ask, Describe>;
   struct Client {
     bool seen = true;
     std::shared_ptr<const Picture> shown;
-    std::deque<Ask> asked;
+    std::deque<Question> asked;
     bool wants_snapshot = false;
   };
 
@@ -147,10 +157,21 @@ class Viewer::State {
         client.seen = seen->seen;
       } else if (const Ask* ask = std::get_if<Ask>(&message)) {
         // Of several questions for what is under the cursor the last one counts.
-        if (!ask->all) std::erase_if(client.asked, [](const Ask& other) { return !other.all; });
-        if (client.asked.size() < 8) client.asked.push_back(*ask);
-      } else {
+        if (!ask->all)
+          std::erase_if(client.asked,
+                        [](const Question& other) { return std::holds_alternative<Ask>(other) && !std::get<Ask>(other).all; });
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*ask);
+      } else if (const Describe* describe = std::get_if<Describe>(&message)) {
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*describe);
+      } else if (std::holds_alternative<Snapshot>(message)) {
         client.wants_snapshot = true;
+      } else {
+        if (options_.read_only) throw InputError("this scene is shown read-only");
+        if (edits_.size() >= most_edits) throw InputError("too many changes at once");
+        if (const Edit* edit = std::get_if<Edit>(&message))
+          edits_.emplace_back(id, *edit);
+        else
+          edits_.emplace_back(id, std::get<Undo>(message));
       }
     }
     changed_.notify_all();
@@ -181,12 +202,16 @@ class Viewer::State {
     for (;;) {
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return ended_ || wanted_number_ != number_ || asked() || (is_seen() && has_more()); });
+        changed_.wait(lock, [this] {
+          return ended_ || wanted_number_ != number_ || !edits_.empty() || asked() || (is_seen() && has_more());
+        });
         if (ended_) return;
       }
       answer_all();
       try {
-        if (const std::optional<Look> look = take_wanted()) begin(*look);
+        const bool edited = edit_all();
+        const std::optional<Look> look = take_wanted();
+        if (edited || look) begin(look.value_or(full_));
         if (is_seen_now() && has_more()) step();
       } catch (const Superseded&) {
         scale_ = 0;
@@ -221,9 +246,45 @@ class Viewer::State {
     return wanted_;
   }
 
+  /// Makes the changes that wait; whether the scene is another one now.
+  bool edit_all() {
+    std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits;
+    {
+      const std::lock_guard lock(mutex_);
+      edits.swap(edits_);
+    }
+    if (edits.empty()) return false;
+    const std::uint64_t before = editor_.rearrangements(), numbers = editor_.renumberings();
+    bool edited = false;
+    for (const auto& [id, what] : edits) try {
+        if (const Edit* edit = std::get_if<Edit>(&what)) {
+          editor_.make(edit->change, edit->goes_on);
+          edited = true;
+        } else {
+          edited = (std::get<Undo>(what).again ? editor_.redo() : editor_.undo()) || edited;
+        }
+      } catch (const InputError& error) {
+        server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
+      }
+    nlohmann::ordered_json told{{"type", "edited"},
+                                {"can_undo", editor_.can_undo()},
+                                {"can_redo", editor_.can_redo()},
+                                {"renumbered", editor_.renumberings() != numbers}};
+    if (editor_.rearrangements() != before) told["scene"] = scene_text(live_.scene(), device_.info().name, target());
+    {
+      const std::lock_guard lock(mutex_);
+      hello_["can_undo"] = editor_.can_undo();
+      hello_["can_redo"] = editor_.can_redo();
+      if (told.contains("scene"))
+        for (const auto& [name, value] : told["scene"].items()) hello_[name] = value;
+    }
+    server_->send_to_all(text_of(told));
+    return edited;
+  }
+
   bool is_superseded() {
     const std::lock_guard lock(mutex_);
-    return ended_ || wanted_number_ != number_;
+    return ended_ || wanted_number_ != number_ || !edits_.empty();
   }
 
   /// The film for `look`, a pixel for each square of `scale` pixels.
@@ -290,7 +351,7 @@ class Viewer::State {
   void answer_all() {
     for (;;) {
       ClientId id = 0;
-      std::optional<Ask> ask;
+      std::optional<Question> question;
       {
         const std::lock_guard lock(mutex_);
         const auto found = std::ranges::find_if(
@@ -298,15 +359,15 @@ class Viewer::State {
         if (found == clients_.end()) return;
         id = found->first;
         if (!found->second.asked.empty()) {
-          ask = found->second.asked.front();
+          question = found->second.asked.front();
           found->second.asked.pop_front();
         } else {
           if (scale_ != 1 || samples_ == 0) return;  // as soon as there is a picture
           found->second.wants_snapshot = false;
         }
       }
-      if (ask)
-        server_->send(id, answer(*ask));
+      if (question)
+        server_->send(id, std::visit([this](const auto& it) { return answer(it); }, *question));
       else
         server_->send(id, snapshot(), true);
     }
@@ -333,6 +394,12 @@ class Viewer::State {
     return text_of(out);
   }
 
+  Text answer(const Describe& describe) {
+    nlohmann::ordered_json out{{"type", "answer"}, {"number", describe.number}};
+    out["thing"] = thing_text(live_.scene(), describe.id, describe.primitive);
+    return text_of(out);
+  }
+
   RayRecord ray_at(int x, int y, int scale) {
     if (scale == 1) return ray_of_pixel(live_.scene(), std::min(x, full_.width - 1), std::min(y, full_.height - 1));
     return ray_of_pixel(live_.scene(), std::min(x / scale, live_.scene().film.width - 1),
@@ -345,6 +412,7 @@ class Viewer::State {
 
   ViewerOptions options_;
   LiveScene live_;
+  Editor editor_;
   Device device_;
   std::optional<Session> session_;
   std::optional<Query> query_;
@@ -361,6 +429,7 @@ class Viewer::State {
   std::condition_variable changed_, failed_;
   Look wanted_;
   std::uint64_t wanted_number_ = 1;
+  std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits_;
   std::map<ClientId, Client> clients_;
   std::shared_ptr<const Picture> picture_;
   nlohmann::ordered_json hello_;

@@ -15,6 +15,7 @@ namespace caplet::view {
 
 struct ViewerOptions {
   ServerOptions server;
+  bool read_only = false;                          // changes are refused
   int samples = 0;                                 // of every pixel, at which the picture is done; 0: the scene's own
   double coarse_seconds = 0.08;                    // of the first picture of a view, about
   double step_seconds = 0.5;                       // between two pictures, about

@@ -92,6 +92,12 @@ class Page:
         return self.driver.execute_script(
             "const c = document.getElementById('picture'); return [c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
 
+    def apart(self, other, count):
+        """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
+        samples, *now = self.driver.execute_script(
+            "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+        return mean_difference(other, now) if samples >= count else -1
+
     def script(self, text, *arguments):
         return self.driver.execute_script(text, *arguments)
 
@@ -160,17 +166,17 @@ def camera(program, scenes, out):
         shown.until_samples(2)
         first = shown.pixels()
         shown.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
-        shown.until("another picture", lambda: shown.samples() >= 2 and mean_difference(first, shown.pixels()) > 5)
+        shown.until("another picture", lambda: shown.apart(first, 2) > 5)
         turned = shown.pixels()
         shown.find("stage").send_keys("+", "+", Keys.ARROW_LEFT)
-        shown.until("a third", lambda: shown.samples() >= 2 and mean_difference(turned, shown.pixels()) > 3)
+        shown.until("a third", lambda: shown.apart(turned, 2) > 3)
         assert shown.find("undo").is_enabled()
         while shown.find("undo").is_enabled():
             shown.find("undo").click()
-        shown.until("the first again", lambda: shown.samples() >= 2 and mean_difference(first, shown.pixels()) == 0)
+        shown.until("the first again", lambda: shown.apart(first, 2) == 0)
         while shown.find("redo").is_enabled():
             shown.find("redo").click()
-        shown.until("the third again", lambda: shown.samples() >= 2 and mean_difference(turned, shown.pixels()) > 3)
+        shown.until("the third again", lambda: shown.apart(turned, 2) > 3)
         for key in "12356":
             shown.find("stage").send_keys(key)
             shown.until(f"the view along axis {key}", lambda: shown.samples() >= 1)
@@ -245,6 +251,86 @@ def comes_back(program, scenes, out):
         shown.driver.get_log("browser")  # that it could not connect
 
 
+def edits(program, scenes, out):
+    """Select, move, paint, paint a surface, duplicate, delete, each seen; all taken back, the first picture is there to the bit."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as shown:
+        shown.until_samples(2)
+        first = before = shown.pixels()
+        count = 0
+
+        def changed(what):
+            nonlocal before, count
+            count += 1
+            shown.until(f"{what}: the program's word", lambda: int(shown.find("stage").get_attribute("data-edits") or 0) >= count)
+            shown.until(f"{what}: another picture", lambda: shown.apart(before, 2) > 0)
+            before = shown.pixels()
+
+        def choose(name):
+            item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+            shown.script("arguments[0].scrollIntoView()", item)
+            item.click()
+            shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and len(shown.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
+
+        def typed(name, words):
+            field = shown.find(name)
+            field.clear()
+            field.send_keys(words, Keys.TAB)
+
+        choose("capsule 5")
+        typed("move", "0 -1 0.5")
+        changed("moved")
+        typed("scale", "1.5")
+        changed("scaled")
+        typed("turn", "0 1 0 40")
+        changed("turned")
+        typed("radius0", "0.6")
+        changed("a capsule's radius")
+        assert abs(float(shown.find("radius0").get_attribute("value")) - 0.6) < 1e-6
+        typed("move", "0 nonsense 0")
+        assert shown.find("move").get_attribute("aria-invalid")
+        shown.script("const s = document.getElementById('material'); s.selectedIndex = 3; s.dispatchEvent(new Event('change'))")
+        changed("painted")
+        handle = shown.driver.find_element(By.CSS_SELECTOR, "[data-handle=z]")
+        ActionChains(shown.driver, duration=20).click_and_hold(handle).move_by_offset(0, -20).move_by_offset(0, -20).release().perform()
+        shown.until("moved by a handle", lambda: shown.apart(before, 1) > 0)
+        shown.picture(out / "handles.png")
+        choose("cylinder")
+        shown.script("const s = document.getElementById('surface'); s.value = '0'; s.dispatchEvent(new Event('change'))")
+        before = shown.pixels()
+        shown.script("const s = document.getElementById('material'); s.selectedIndex = 2; s.dispatchEvent(new Event('change'))")
+        shown.until("a surface painted", lambda: shown.apart(before, 2) > 0)
+        things = int(shown.find("more").text.split(" of ")[1])
+        shown.find("duplicate").click()
+        shown.until("one more", lambda: shown.find("more").text.endswith(f" of {things + 1}"))
+        choose("cylinder")
+        shown.find("delete").click()
+        shown.until("one less", lambda: shown.find("more").text.endswith(f" of {things}"))
+        with page(served.address) as other:
+            other.until("the same things", lambda: other.find("more").text.endswith(f" of {things}"))
+            other.until_samples(2)
+        while shown.find("back").is_enabled():
+            edits_before = int(shown.find("stage").get_attribute("data-edits"))
+            shown.find("back").click()
+            shown.until("the program's word", lambda: int(shown.find("stage").get_attribute("data-edits")) > edits_before)
+        shown.until("the first picture again", lambda: shown.apart(first, 2) == 0)
+        assert shown.find("again").is_enabled()
+
+
+def read_only(program, scenes, out):
+    """Whoever may only look finds no tools, and changes nothing by messages of his own."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "1", "--read-only") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        first = shown.pixels()
+        shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")[2].click()
+        time.sleep(0.5)
+        assert not shown.find("edit").is_displayed()
+        shown.script("""const s = new WebSocket(location.href.replace(/^http/, 'ws') + 'socket'); window.told = [];
+            s.onmessage = (e) => { if (typeof e.data === 'string') window.told.push(e.data); };
+            s.onopen = () => s.send(JSON.stringify({type: 'edit', what: 'delete', goes_on: false, ids: [2]}))""")
+        shown.until("a refusal", lambda: any("read-only" in t for t in shown.script("return window.told")))
+        assert mean_difference(first, shown.pixels()) == 0
+
+
 def two_pages(program, scenes, out):
     """Two pages show one picture."""
     with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as one, page(served.address) as two:
@@ -252,12 +338,12 @@ def two_pages(program, scenes, out):
         two.until_samples(2)
         before = two.pixels()
         one.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
-        two.until("the other's camera", lambda: two.samples() >= 2 and mean_difference(before, two.pixels()) > 5)
+        two.until("the other's camera", lambda: two.apart(before, 2) > 5)
         one.until_samples(2)
         assert mean_difference(one.pixels(), two.pixels()) == 0
 
 
-CASES = [converges, camera, picks, keeps_strangers_out, comes_back, two_pages]
+CASES = [converges, camera, picks, edits, read_only, keeps_strangers_out, comes_back, two_pages]
 
 
 def main(arguments):

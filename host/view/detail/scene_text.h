@@ -22,4 +22,8 @@ nlohmann::ordered_json camera_text(const Look& look);
 /// which a picture is done.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
 
+/// A thing: its place in the world, bounds, surfaces with their materials, and a capsule of it where it has some, with its ends
+/// in the world. Null where there is none.
+nlohmann::ordered_json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive);
+
 }  // namespace caplet::view

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
+import { Edits } from "./edit.js";
 import { inspect } from "./inspector.js";
 import { Picture } from "./picture.js";
 import { texts } from "./texts.js";
@@ -33,6 +34,11 @@ function ask(pixel, all, reference, done) {
   say({ type: "ask", number, x: pixel[0], y: pixel[1], all, reference });
 }
 
+const edits = new Edits({
+  say, view: () => camera, stage, find: $,
+  describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
+});
+
 function connect() {
   const opened = new WebSocket(location.href.replace(/^http/, "ws").replace(/[^/]*$/, "") + "socket");
   opened.binaryType = "arraybuffer";
@@ -53,9 +59,10 @@ function told(message) {
   if (message.type === "scene") return begin(message);
   if (message.type === "looked") return void (camera && camera_of(message));
   if (message.type === "error") return void ($("state").textContent = message.text);
+  if (message.type === "edited") return edited(message);
   const done = waiting.get(message.number);
   waiting.delete(message.number);
-  if (done) done(message.pick);
+  if (done) done(message.pick ?? message.thing);
 }
 
 async function binary(data) {
@@ -67,6 +74,19 @@ function save(blob, name) {
   const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+function edited(message) {
+  $("back").disabled = !message.can_undo;
+  $("again").disabled = !message.can_redo;
+  if (message.scene) {
+    const { camera: _, ...now } = message.scene;
+    Object.assign(scene, now);
+    if (message.renumbered) choose(null, false);
+    fill_tree();
+  }
+  edits.refresh();
+  stage.dataset.edits = (+stage.dataset.edits || 0) + 1;
 }
 
 function begin(message) {
@@ -89,6 +109,10 @@ function begin(message) {
     camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
     past = []; future = []; chosen.clear();
   }
+  edits.read_only = scene.read_only;
+  $("material").replaceChildren(new Option(texts.mixed, ""), ...scene.materials.map((name, i) => new Option(name, String(i))));
+  $("back").disabled = !scene.can_undo;
+  $("again").disabled = !scene.can_redo;
   fill_tree();
   look();
   draw();
@@ -101,6 +125,7 @@ function camera_of(message) {
   const now = new Camera(message);
   now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
   camera = now;
+  edits.draw();
   show_lens();
 }
 
@@ -117,6 +142,7 @@ function look() {
   const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale)));
   const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance };
   const text = JSON.stringify(message);
+  edits.draw();
   show_lens();
   $("undo").disabled = !past.length;
   $("redo").disabled = !future.length;
@@ -181,10 +207,11 @@ function hover(pixel) {
   });
 }
 
-function choose(id, more) {
+function choose(id, more, primitive = 0) {
   if (!more) chosen.clear();
   if (id !== null) chosen.has(id) && more ? chosen.delete(id) : chosen.add(id);
   for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
+  edits.select([...chosen].sort((a, b) => a - b), primitive);
   mark();
 }
 
@@ -193,7 +220,7 @@ function click(event) {
   ask(pixel, false, false, (told_of) => {
     const hit = told_of.crossings[0];
     if (event.altKey && hit) return change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
-    choose(hit ? hit.object_id : null, event.shiftKey);
+    choose(hit ? hit.object_id : null, event.shiftKey, hit ? hit.primitive : 0);
   });
   ask(pixel, true, true, (told_of) => {
     inspect(told_of, $("asked"), $("intervals"), $("table"));
@@ -289,6 +316,10 @@ stage.addEventListener("keydown", (event) => {
   else if (event.key === "h") home();
   else if (event.key === "z") undo(past, future);
   else if (event.key === "y") undo(future, past);
+  else if (event.key === "u") $("back").click();
+  else if (event.key === "r") $("again").click();
+  else if (event.key === "d") $("duplicate").click();
+  else if (event.key === "Delete") $("delete").click();
   else if (event.key === "Escape") choose(null, false);
   else if (event.key === "?") $("keys").showModal();
   else if (axes[event.key]) along(axes[event.key]);
@@ -296,6 +327,8 @@ stage.addEventListener("keydown", (event) => {
   event.preventDefault();
 });
 
+$("back").onclick = () => say({ type: "undo", again: false });
+$("again").onclick = () => say({ type: "undo", again: true });
 $("fit").onclick = fit;
 $("home").onclick = home;
 $("undo").onclick = () => undo(past, future);
