@@ -343,6 +343,37 @@ def two_pages(program, scenes, out):
         assert mean_difference(one.pixels(), two.pixels()) == 0
 
 
+def figures(program, scenes, out):
+    """The pictures of docs/viewer.md."""
+    def shot(name):
+        shown.picture(out / f"{name}.png")
+
+    def choose(name):
+        item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+        shown.script("arguments[0].scrollIntoView({block: 'center'})", item)
+        item.click()
+        shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and shown.find("material").get_attribute("value"))
+
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
+        shown.driver.set_window_size(1280, 860)
+        choose("capsule 7")
+        shown.until("64 samples", lambda: shown.samples() >= 64, 300)
+        shown.script("document.querySelector('aside').scrollTo(0, 250)")
+        shot("viewer")
+        width, height, _ = shown.pixels()
+        shown.mouse(int(0.93 * width), int(0.8 * height)).click().perform()  # the glass chain
+        shown.until("the crossings", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#table tbody tr")) > 2)
+        shown.script("document.querySelector('#inspector').scrollIntoView()")
+        shot("viewer-inspector")
+        shown.find("help").click()
+        shot("viewer-help")
+    with viewer(program, scenes / "neuron.swc", "--spp", "64") as served, page(served.address) as shown:
+        shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+        shown.driver.set_window_size(1280, 860)
+        shown.until("64 samples", lambda: shown.samples() >= 64 and shown.pixels()[0] > 700, 300)
+        shot("viewer-neuron")
+
+
 CASES = [converges, camera, picks, edits, read_only, keeps_strangers_out, comes_back, two_pages]
 
 
@@ -356,9 +387,7 @@ def main(arguments):
         return SKIPPED
     out.mkdir(parents=True, exist_ok=True)
     failed = []
-    for case in CASES:
-        if len(arguments) > 3 and case.__name__ not in arguments[3:]:
-            continue
+    for case in CASES if len(arguments) == 3 else [case for case in [*CASES, figures] if case.__name__ in arguments[3:]]:
         start = time.monotonic()
         try:
             case(program, scenes, out)
