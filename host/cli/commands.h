@@ -24,6 +24,7 @@ void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_verify(CLI::App& app);
+void add_view(CLI::App& app);        // where it is built (CAPLET_WITH_VIEW)
 void add_try_device(CLI::App& app);  // hidden: see trial.h
 
 }  // namespace caplet::cli

@@ -103,6 +103,9 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);
+#ifdef CAPLET_WITH_VIEW
+  caplet::cli::add_view(app);
+#endif
   caplet::cli::add_info(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);

@@ -78,6 +78,11 @@ StageSeconds& add(StageSeconds& to, const StageSeconds& more) {
 
 bool any_thread_given_up() { return Crew::any_given_up(); }
 
+namespace {
+/// Ends a pass after the batch under way.
+struct PassGivenUp {};
+}  // namespace
+
 /// One undertaking of all workers, which those that hang keep alive.
 struct Session::Run {
   Run(Workers of, Shares of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
@@ -278,12 +283,16 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
       }
       const Clock::time_point start = Clock::now();
       const bool there = crew_of->attempt(i, lock, [&] {
-        worker.renderer.pass(part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
-          const Crew::Lock telling(crew_of->mutex());
-          if (!crew_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
-        });
+        try {
+          worker.renderer.pass(part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
+            const Crew::Lock telling(crew_of->mutex());
+            if (!crew_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
+            if (run->fatal) throw PassGivenUp();
+          });
+        } catch (const PassGivenUp&) {  // the film is cleared below
+        }
       });
-      if (!there) break;
+      if (!there || run->fatal) break;
       run->shares.done(i, seconds_since(start));
       worker.speed = run->shares.speed(i);
       add_part(worker.had, *part);

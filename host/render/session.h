@@ -69,7 +69,8 @@ class Session {
   /// Adds the next `sample_count` samples of every pixel, on a thread a device (a device alone: on this one), and returns how
   /// many of them were finished: fewer when it is cancelled, or its time limit (seconds) is over, which some are always begun
   /// before. Samples that are begun are finished for every pixel. `progress`, when there is one, is called from these threads,
-  /// one at a time, after each batch. Throws RunError when the last device fails; the film is then empty.
+  /// one at a time, after each batch; what it throws ends the render after the batches under way, and is thrown. Throws RunError
+  /// when the last device fails. After either the film is empty.
   std::uint32_t render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress = {},
                        std::optional<double> time_limit = {});
 

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The kernel files as they were at build; the table itself is generated (embed_main.cpp).
+// The kernel files as they were at build; the table itself is generated.
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "base/embedded_file.h"
 
 namespace caplet {
 
-struct EmbeddedFile {
-  std::string_view path;  // from kernels/, as #include names it
-  std::string_view text;
-};
-
+/// Their paths are from kernels/, as #include names them.
 std::span<const EmbeddedFile> embedded_kernels();
 
 }  // namespace caplet

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Build tool: embed_kernels OUTPUT ROOT FILE... writes a C++ table of the files' texts by their paths from ROOT.
+// Build tool: embed_files OUTPUT FUNCTION ROOT FILE... writes a C++ function that returns a table of the files' texts by their
+// paths from ROOT (embedded_file.h).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -33,15 +34,16 @@ std::string literal(const std::string& line) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "usage: embed_kernels OUTPUT ROOT FILE...\n";
+  if (argc < 4) {
+    std::cerr << "usage: embed_files OUTPUT FUNCTION ROOT FILE...\n";
     return 2;
   }
-  const std::filesystem::path root = argv[2];
+  const std::filesystem::path root = argv[3];
   std::ofstream out(argv[1]);
-  out << "#include \"device/detail/embedded.h\"\nnamespace caplet {\nnamespace {\nusing namespace std::string_view_literals;\n"
+  out << "#include <span>\n#include \"base/embedded_file.h\"\nnamespace caplet {\nstd::span<const EmbeddedFile> " << argv[2]
+      << "();\nnamespace {\nusing namespace std::string_view_literals;\n"
          "constexpr EmbeddedFile files[] = {\n";
-  for (int i = 3; i < argc; ++i) {
+  for (int i = 4; i < argc; ++i) {
     std::ifstream in(argv[i], std::ios::binary);
     if (!in) {
       std::cerr << argv[i] << ": cannot be read\n";
@@ -56,7 +58,7 @@ int main(int argc, char** argv) {
     }
     out << "\"\"sv},\n";
   }
-  out << "};\n}\nstd::span<const EmbeddedFile> embedded_kernels() { return files; }\n}\n";
+  out << "};\n}\nstd::span<const EmbeddedFile> " << argv[2] << "() { return files; }\n}\n";
   out.close();
   if (out) return 0;
   std::cerr << argv[1] << ": cannot be written\n";

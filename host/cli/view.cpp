@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet view`: the scene live in a browser.
+#include "view/viewer.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/trial.h"
+#include "device/second_try.h"
+#include "film/image.h"
+#include "import/import.h"
+#include "lower/live_scene.h"
+
+namespace caplet::cli {
+
+namespace {
+
+struct Options {
+  Encoding encoding = Encoding::automatic;
+  std::string scene, device, size, host = "127.0.0.1";
+  std::uint16_t port = 0;
+  int samples = 0;
+  bool no_browser = false, read_only = false, quiet = false;
+};
+
+/// Where there is a desktop, its browser. What comes of it is the desktop's to tell.
+void open_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  posix_spawn_file_actions_t silent;
+  posix_spawn_file_actions_init(&silent);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&silent, stream, "/dev/null", O_RDWR, 0);
+  std::string program = "xdg-open", argument = address;
+  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  if (::posix_spawnp(&child, program.c_str(), &silent, nullptr, arguments, environ) == 0)
+    std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
+  posix_spawn_file_actions_destroy(&silent);
+}
+
+void run_view(const Options& options) {
+  log::set_quiet(options.quiet);
+  Overrides overrides;
+  if (!options.size.empty()) overrides.size = parse_size(options.size);
+  install_interrupt_handlers();
+  const Device device = choose_device(options.device, options.encoding);
+  Scene scene = import_scene(options.scene, FileImageReader());
+  apply(overrides, scene);
+  LiveScene live(std::move(scene));
+  try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true});
+  SecondTry::guard(device);
+  view::ViewerOptions viewer_options;
+  viewer_options.server.host = options.host;
+  viewer_options.server.port = options.port;
+  viewer_options.server.token = view::random_token();
+  viewer_options.read_only = options.read_only;
+  viewer_options.samples = options.samples;
+  view::Viewer viewer(std::move(live), device, viewer_options);
+  SecondTry::driver_works();
+  fmt::print("{}\n", viewer.address());
+  std::fflush(stdout);
+  log::info("{} is at the address above, on {}; Ctrl-C ends it", options.scene, device.info().name);
+  if (!options.no_browser) open_browser(viewer.address());
+  while (!interrupt_requested()) viewer.wait(0.1);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
+  command->add_option("SCENE", o->scene, "Scene file")->required();
+  command->add_option("--host", o->host, "Address to listen at; others than this machine's own are open to its network")
+      ->capture_default_str()
+      ->type_name("ADDRESS");
+  command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");
+  command->add_flag("--no-browser", o->no_browser, "Print the address, and open no browser");
+  command->add_flag("--read-only", o->read_only, "Let nobody change the scene");
+  command->add_option("--spp", o->samples, "Samples per pixel at which the picture is done (default: the scene's own)")
+      ->check(CLI::Range(1, 1 << 24))
+      ->type_name("N");
+  command->add_option("--size", o->size, "Size in pixels of the first picture; the page asks for its own")->type_name("WxH");
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+      ->type_name("D");
+  add_encoding(*command, o->encoding);
+  command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  command->footer("Whoever knows the address sees the scene; its first part is drawn anew at each start.");
+  command->callback([o] { run_view(*o); });
+}
+
+}  // namespace caplet::cli

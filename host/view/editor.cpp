@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/editor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include "base/error.h"
+
+namespace caplet::view {
+
+namespace {
+
+/// Throws InputError when there is no such thing.
+void check_thing(const Scene& scene, std::uint32_t id) {
+  const std::size_t count = scene.shapes.size() + scene.instances.size();
+  if (id >= count) throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
+}
+
+/// What the edit takes the place of.
+SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
+  if (const auto* capsule = std::get_if<CapsuleEdit>(&edit))
+    return CapsuleEdit{capsule->at, capsule->capsule, capsule_at(scene, capsule->at, capsule->capsule)};
+  if (const auto* transform = std::get_if<TransformEdit>(&edit))
+    return TransformEdit{transform->at, shape_at(scene, transform->at).world_from_object};
+  const auto& instance = std::get<InstanceEdit>(edit);
+  return InstanceEdit{instance.instance, scene.instances.at(instance.instance).world_from_object};
+}
+
+/// Two edits of the same take the same place.
+std::tuple<std::size_t, std::uint32_t, std::size_t> place_of(const SceneEdit& edit) {
+  if (const auto* capsule = std::get_if<CapsuleEdit>(&edit)) return {edit.index(), capsule->at.shape, capsule->capsule};
+  if (const auto* transform = std::get_if<TransformEdit>(&edit)) return {edit.index(), transform->at.shape, 0};
+  return {edit.index(), std::get<InstanceEdit>(edit).instance, 0};
+}
+
+SceneEdit moved(const Scene& scene, std::uint32_t id, const glm::dmat4& world_from_world) {
+  check_thing(scene, id);
+  if (id < scene.shapes.size()) return TransformEdit{{std::nullopt, id}, world_from_world * scene.shapes[id].world_from_object};
+  const auto instance = static_cast<std::uint32_t>(id - scene.shapes.size());
+  return InstanceEdit{instance, world_from_world * scene.instances[instance].world_from_object};
+}
+
+/// Things, with the places among their kind that they have or are to have, in ascending order.
+struct Things {
+  std::vector<std::pair<std::size_t, Shape>> shapes;
+  std::vector<std::pair<std::size_t, Instance>> instances;
+};
+
+template <class T>
+void put(std::vector<T>& into, std::vector<std::pair<std::size_t, T>>& from) {
+  std::vector<T> out;
+  out.reserve(into.size() + from.size());
+  auto next = from.begin();
+  for (T& each : into) {
+    while (next != from.end() && next->first == out.size()) out.push_back(std::move((next++)->second));
+    out.push_back(std::move(each));
+  }
+  while (next != from.end()) out.push_back(std::move((next++)->second));
+  into = std::move(out);
+}
+
+template <class T>
+void take_out(std::vector<T>& of, const std::vector<std::size_t>& places, std::vector<std::pair<std::size_t, T>>& to) {
+  std::vector<T> rest;
+  rest.reserve(of.size() - places.size());
+  auto next = places.begin();
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    if (next != places.end() && *next == i) {
+      to.emplace_back(i, std::move(of[i]));
+      ++next;
+    } else {
+      rest.push_back(std::move(of[i]));
+    }
+  }
+  of = std::move(rest);
+}
+
+}  // namespace
+
+std::uint32_t world_shape(const Scene& scene, std::uint32_t id) {
+  check_thing(scene, id);
+  if (id >= scene.shapes.size()) throw InputError(fmt::format("thing {} is an instance: its shapes are those of its object", id));
+  return id;
+}
+
+namespace {
+
+// Rearrangements, each of which gives the one that takes it back.
+template <class Rearrange>
+Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances);
+
+template <class Rearrange>
+Rearrange addition(std::shared_ptr<const Things> things) {
+  return {[things](Scene& scene) {
+    Things copy = *things;
+    std::vector<std::size_t> shapes, instances;
+    for (const auto& [place, shape] : copy.shapes) shapes.push_back(place);
+    for (const auto& [place, instance] : copy.instances) instances.push_back(place);
+    put(scene.shapes, copy.shapes);
+    put(scene.instances, copy.instances);
+    return removal<Rearrange>(std::move(shapes), std::move(instances));
+  }};
+}
+
+template <class Rearrange>
+Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances) {
+  return {[shapes = std::move(shapes), instances = std::move(instances)](Scene& scene) {
+    auto things = std::make_shared<Things>();
+    take_out(scene.shapes, shapes, things->shapes);
+    take_out(scene.instances, instances, things->instances);
+    return addition<Rearrange>(std::move(things));
+  }};
+}
+
+using Materials = std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::vector<std::uint32_t>>>>;
+
+/// Shapes' `material` and `materials`.
+template <class Rearrange>
+Rearrange painting(Materials materials) {
+  return {[materials = std::move(materials)](Scene& scene) {
+    Materials before;
+    for (const auto& [id, of] : materials) {
+      Shape& shape = scene.shapes[id];
+      before.emplace_back(id, std::pair(shape.material, shape.materials));
+      std::tie(shape.material, shape.materials) = of;
+    }
+    return painting<Rearrange>(std::move(before));
+  }};
+}
+
+}  // namespace
+
+Editor::Step Editor::step_of(const Change& change) const {
+  const Scene& scene = live_.scene();
+  if (const auto* move = std::get_if<Move>(&change)) {
+    InPlace out;
+    for (const std::uint32_t id : move->ids) out.push_back(moved(scene, id, move->world_from_world));
+    return out;
+  }
+  if (const auto* reshape = std::get_if<Reshape>(&change)) {
+    const ShapeAt at{std::nullopt, world_shape(scene, reshape->id)};
+    (void)capsule_at(scene, at, reshape->capsule);
+    const glm::dmat4 object_from_world = glm::inverse(scene.shapes[reshape->id].world_from_object);
+    const auto place = [&](const glm::dvec3& p) { return glm::vec3(object_from_world * glm::dvec4(p, 1)); };
+    return InPlace{CapsuleEdit{
+        at,
+        reshape->capsule,
+        {place(reshape->p0), place(reshape->p1), static_cast<float>(reshape->radius0), static_cast<float>(reshape->radius1)}}};
+  }
+  if (const auto* paint = std::get_if<Paint>(&change)) {
+    if (paint->material >= scene.materials.size())
+      throw InputError(SourceLocation{"material"}, fmt::format("there are {} materials", scene.materials.size()));
+    Materials out;
+    for (const std::uint32_t id : paint->ids) {
+      const Shape& shape = scene.shapes[world_shape(scene, id)];
+      const std::size_t surfaces = surface_count(shape);
+      if (!paint->surface) {
+        out.emplace_back(id, std::pair(paint->material, std::vector<std::uint32_t>()));
+        continue;
+      }
+      if (*paint->surface >= surfaces)
+        throw InputError(SourceLocation{"surface"}, fmt::format("thing {} has {} surfaces", id, surfaces));
+      std::vector<std::uint32_t> each = shape.materials.empty() ? std::vector(surfaces, shape.material) : shape.materials;
+      each[*paint->surface] = paint->material;
+      out.emplace_back(id, std::pair(shape.material, std::move(each)));
+    }
+    return painting<Rearrange>(std::move(out));
+  }
+  std::vector<std::size_t> shapes, instances;
+  const auto sort_out = [&](const std::vector<std::uint32_t>& ids) {
+    for (const std::uint32_t id : ids) {
+      check_thing(scene, id);
+      if (id < scene.shapes.size())
+        shapes.push_back(id);
+      else
+        instances.push_back(id - scene.shapes.size());
+    }
+  };
+  if (const auto* copy = std::get_if<Duplicate>(&change)) {
+    sort_out(copy->ids);
+    const glm::dmat4 by = glm::translate(glm::dmat4(1), copy->by);
+    auto things = std::make_shared<Things>();
+    for (const std::size_t i : shapes) {
+      things->shapes.emplace_back(scene.shapes.size() + things->shapes.size(), scene.shapes[i]);
+      Shape& shape = things->shapes.back().second;
+      shape.world_from_object = by * shape.world_from_object;
+      if (!shape.name.empty()) shape.name += " copy";
+    }
+    for (const std::size_t i : instances) {
+      things->instances.emplace_back(scene.instances.size() + things->instances.size(), scene.instances[i]);
+      Instance& instance = things->instances.back().second;
+      instance.world_from_object = by * instance.world_from_object;
+    }
+    return addition<Rearrange>(std::move(things));
+  }
+  sort_out(std::get<Delete>(change).ids);
+  return removal<Rearrange>(std::move(shapes), std::move(instances));
+}
+
+/// Does it, and returns what takes it back. Throws InputError, and then nothing has changed.
+Editor::Step Editor::take(const Step& step) {
+  if (const auto* rearrange = std::get_if<Rearrange>(&step)) {
+    Scene scene = live_.scene();
+    Rearrange back = rearrange->work(scene);
+    Diagnostics diagnostics;
+    validate(scene, diagnostics);
+    diagnostics.finish();
+    const Scene& before = live_.scene();
+    if (before.shapes.size() != scene.shapes.size() || before.instances.size() != scene.instances.size()) ++renumberings_;
+    ++rearrangements_;
+    live_.replace(std::move(scene));
+    return back;
+  }
+  const InPlace& edits = std::get<InPlace>(step);
+  InPlace back;
+  try {
+    for (const SceneEdit& edit : edits) {
+      check_edit(live_.scene(), edit);
+      SceneEdit before = as_it_is(live_.scene(), edit);
+      live_.edit(edit);
+      back.insert(back.begin(), std::move(before));
+    }
+  } catch (const InputError&) {
+    for (const SceneEdit& before : back) live_.edit(before);
+    throw;
+  }
+  return back;
+}
+
+void Editor::make(const Change& change, bool goes_on) {
+  Step back = take(step_of(change));
+  undone_.clear();
+  if (goes_on && !done_.empty() && have_same_places(done_.back(), back)) return;  // what is there takes back both
+  done_.push_back(std::move(back));
+}
+
+bool Editor::have_same_places(const Step& a, const Step& b) {
+  const InPlace* of_a = std::get_if<InPlace>(&a);
+  const InPlace* of_b = std::get_if<InPlace>(&b);
+  return of_a && of_b &&
+         std::ranges::equal(*of_a, *of_b, [](const SceneEdit& x, const SceneEdit& y) { return place_of(x) == place_of(y); });
+}
+
+bool Editor::go(std::vector<Step>& from, std::vector<Step>& to) {
+  if (from.empty()) return false;
+  Step back = take(from.back());
+  from.pop_back();
+  to.push_back(std::move(back));
+  return true;
+}
+
+}  // namespace caplet::view

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Changes of a live scene that can be taken back.
+#pragma once
+
+#include <functional>
+#include <variant>
+#include <vector>
+
+#include "lower/live_scene.h"
+#include "view/messages.h"
+
+namespace caplet::view {
+
+/// Makes changes of a scene, each as a whole or not at all, and keeps what takes them back, without a limit. The camera is no
+/// change.
+class Editor {
+ public:
+  /// `live` must outlive this, and be changed (but for its view) by this alone.
+  explicit Editor(LiveScene& live) : live_(live) {}
+
+  /// Throws InputError when there is no such thing, or when validate() would refuse what is to stand there.
+  /// `goes_on`: with the change before, as one, where that is of the same places.
+  void make(const Change& change, bool goes_on = false);
+  /// False when there is nothing to take back, or to make again.
+  bool undo() { return go(done_, undone_); }
+  bool redo() { return go(undone_, done_); }
+  bool can_undo() const { return !done_.empty(); }
+  bool can_redo() const { return !undone_.empty(); }
+
+  /// Changes so far, those taken back included, of what is told of the scene (rearrangements), and of those such that give things
+  /// other numbers (renumberings).
+  std::uint64_t rearrangements() const { return rearrangements_; }
+  std::uint64_t renumberings() const { return renumberings_; }
+
+ private:
+  /// In place, or of the scene as a whole. Doing it gives what takes it back.
+  using InPlace = std::vector<SceneEdit>;
+  struct Rearrange {
+    std::function<Rearrange(Scene&)> work;
+  };
+  using Step = std::variant<InPlace, Rearrange>;
+
+  Step step_of(const Change& change) const;
+  Step take(const Step& step);
+  static bool have_same_places(const Step& a, const Step& b);
+  bool go(std::vector<Step>& from, std::vector<Step>& to);
+
+  LiveScene& live_;
+  std::vector<Step> done_, undone_;  // what takes back, and what makes again
+  std::uint64_t rearrangements_ = 0, renumberings_ = 0;
+};
+
+/// A shape of the world by its number. Throws InputError when it is none, or an instance.
+std::uint32_t world_shape(const Scene& scene, std::uint32_t id);
+
+}  // namespace caplet::view

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+// Changes of what is selected: by handles in the picture, by numbers beside it. The program checks and makes them; the page only asks.
+import { add, cross, dot, length, mul, sub, unit } from "./camera.js";
+import { texts } from "./texts.js";
+
+const NS = "http://www.w3.org/2000/svg", COLORS = ["#ff5a4d", "#5fd35f", "#5a9bff"], AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const make = (name, attributes) => {
+  const out = document.createElementNS(NS, name);
+  for (const [key, value] of Object.entries(attributes)) out.setAttribute(key, value);
+  return out;
+};
+// Row-major matrix of x -> center + scale * R (x - center), R by an angle about an axis.
+function about(center, axis, angle, scale) {
+  const u = unit(axis), c = Math.cos(angle), s = Math.sin(angle), m = [];
+  for (let i = 0; i < 3; ++i)
+    for (let j = 0; j < 3; ++j) {
+      const k = 3 - i - j, sign = i === j ? 0 : (j - i + 3) % 3 === 1 ? -1 : 1;
+      m.push(scale * ((i === j ? c : 0) + (1 - c) * u[i] * u[j] + (sign ? sign * s * u[k] : 0)));
+    }
+  const moved = [0, 1, 2].map((i) => center[i] - (m[3 * i] * center[0] + m[3 * i + 1] * center[1] + m[3 * i + 2] * center[2]));
+  return [...m.slice(0, 3), moved[0], ...m.slice(3, 6), moved[1], ...m.slice(6, 9), moved[2], 0, 0, 0, 1];
+}
+const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; return m; };
+
+export class Edits {
+  // `say` sends a message, `ask` one that is answered, `view` gives the camera, `stage` is what the picture fills.
+  constructor({ say, describe, view, stage, find }) {
+    Object.assign(this, { say, describe, view, stage, find });
+    this.ids = [];
+    this.primitive = 0;
+    this.thing = null;
+    this.busy = false;
+    this.handles = stage.appendChild(make("svg", { id: "handles" }));
+    const numbers = (id) => find(id).value.trim().split(/[\s,]+/).map(Number);
+    const apply = (id, count, work) => {
+      find(id).addEventListener("change", () => {
+        const values = numbers(id);
+        if (values.length !== count || values.some((v) => !Number.isFinite(v))) { find(id).setAttribute("aria-invalid", "true"); return; }
+        find(id).removeAttribute("aria-invalid");
+        work(values);
+      });
+    };
+    apply("move", 3, (by) => { this.change({ what: "move", ids: this.ids, matrix: shift(by) }); find("move").value = ""; });
+    apply("turn", 4, ([x, y, z, degrees]) => { if (length([x, y, z])) this.change({ what: "move", ids: this.ids, matrix: about(this.center(), [x, y, z], degrees * Math.PI / 180, 1) }); find("turn").value = ""; });
+    apply("scale", 1, ([factor]) => { if (factor > 0) this.change({ what: "move", ids: this.ids, matrix: about(this.center(), [0, 0, 1], 0, factor) }); find("scale").value = ""; });
+    for (const [name, count] of [["p0", 3], ["p1", 3], ["radius0", 1], ["radius1", 1]])
+      apply(name, count, (values) => this.reshape({ [name]: count === 1 ? values[0] : values }, false));
+    find("duplicate").onclick = () => this.change({ what: "duplicate", ids: this.ids, by: mul(unit(this.view().right), this.size() * 1.1) });
+    find("delete").onclick = () => this.change({ what: "delete", ids: this.ids });
+    find("material").onchange = (event) => {
+      if (event.target.value === "") return;
+      const surface = find("surface").value;
+      this.change({ what: "paint", ids: this.ids, surface: surface === "" ? null : +surface, material: +event.target.value });
+    };
+    find("surface").onchange = () => this.fill();
+  }
+
+  change(what, goes_on = false) { if (this.ids.length) this.say({ type: "edit", goes_on, ...what }); }
+  reshape(what, goes_on) {
+    const { number, ...capsule } = this.thing.capsule;
+    this.change({ what: "reshape", id: this.ids[0], capsule: number, ...capsule, ...what }, goes_on);
+  }
+
+  // What is selected, and the primitive that was met.
+  select(ids, primitive) {
+    this.ids = ids;
+    this.primitive = primitive;
+    this.thing = null;
+    this.refresh();
+  }
+  // Asks what it is now.
+  refresh() {
+    this.find("edit").hidden = !this.ids.length || this.read_only;
+    if (!this.ids.length) { this.draw(); return; }
+    if (this.busy) { this.again = true; return; }
+    this.busy = true;
+    this.describe(this.ids[this.ids.length - 1], this.primitive, (thing) => {
+      this.busy = false;
+      this.thing = thing;
+      this.fill();
+      this.draw();
+      if (this.again) { this.again = false; this.refresh(); }
+    });
+  }
+  center() { const [low, high] = this.thing.bounds; return mul(add(low, high), 0.5); }
+  size() { const [low, high] = this.thing.bounds; return length(sub(high, low)) / 2 || 1; }
+
+  fill() {
+    const { thing, find } = this, capsule = thing?.capsule;
+    const surface = find("surface").value, materials = thing?.materials ?? [];
+    find("surface").replaceChildren(new Option(texts.all_surfaces, ""), ...materials.map((_, i) => new Option(texts.surface_number(i), String(i))));
+    find("surface").value = +surface < materials.length ? surface : "";
+    const now = surface === "" ? (new Set(materials).size === 1 ? materials[0] : "") : materials[+surface] ?? "";
+    find("material").value = String(now);
+    find("material").disabled = !materials.length;
+    find("capsule").hidden = !capsule || this.ids.length !== 1;
+    for (const name of ["p0", "p1", "radius0", "radius1"])
+      if (capsule && document.activeElement !== find(name)) find(name).value = [capsule[name]].flat().map((v) => +v.toPrecision(7)).join(" ");
+  }
+
+  // --- Handles ---
+
+  // A point of the world in the stage, in CSS pixels; null behind the camera.
+  project(p) {
+    const camera = this.view(), d = sub(p, camera.eye), z = dot(d, unit(camera.forward)) / length(camera.forward);
+    if (z <= 0) return null;
+    const { clientWidth: w, clientHeight: h } = this.stage, scale = Math.min(w, h) / 2 / Math.tan(camera.fov / 2) / z;
+    return [w / 2 + scale * dot(d, unit(camera.right)), h / 2 - scale * dot(d, unit(camera.up)), z];
+  }
+  draw() {
+    this.handles.replaceChildren();
+    if (!this.thing || !this.ids.length || this.read_only) return;
+    const center = this.center(), at = this.project(center);
+    if (!at) return;
+    const camera = this.view(), reach = 70 * at[2] * 2 * Math.tan(camera.fov / 2) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
+    AXES.forEach((axis, i) => {
+      const end = this.project(add(center, mul(axis, reach)));
+      if (!end) return;
+      this.handles.append(make("line", { x1: at[0], y1: at[1], x2: end[0], y2: end[1], stroke: COLORS[i], "stroke-width": 3 }));
+      this.handle("rect", { x: end[0] - 6, y: end[1] - 6, width: 12, height: 12, fill: COLORS[i], "data-handle": "xyz"[i] }, (start, move) => this.along(center, axis, start, move));
+    });
+    this.handle("circle", { cx: at[0], cy: at[1], r: 7, fill: "#fff", stroke: "#333", "data-handle": "plane" }, (start, move) => this.in_plane(center, start, move));
+    const capsule = this.thing.capsule;
+    if (!capsule || this.ids.length !== 1) return;
+    for (const name of ["p0", "p1"]) {
+      const end = this.project(capsule[name]);
+      if (end) this.handle("circle", { cx: end[0], cy: end[1], r: 6, fill: "#ffd24d", stroke: "#333", "data-handle": name }, (start, move) => this.in_plane(capsule[name], start, move), (by) => this.reshape({ [name]: add(this.held[name], by) }, this.moved++ > 0));
+    }
+  }
+  // The way of the pointer along an axis of the world, as far as it goes.
+  along(center, axis, start, move) {
+    const a = this.project(center), b = this.project(add(center, mul(axis, this.size() * 0.1)));
+    const way = [b[0] - a[0], b[1] - a[1]], square = way[0] ** 2 + way[1] ** 2 || 1;
+    return mul(axis, this.size() * 0.1 * ((move.clientX - start.clientX) * way[0] + (move.clientY - start.clientY) * way[1]) / square);
+  }
+  in_plane(center, start, move) {
+    const camera = this.view(), one = this.project(center)[2] * 2 * Math.tan(camera.fov / 2) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
+    return add(mul(unit(camera.right), (move.clientX - start.clientX) * one), mul(unit(camera.up), -(move.clientY - start.clientY) * one));
+  }
+  handle(shape, attributes, way, put = (by) => this.change({ what: "move", ids: this.ids, matrix: shift(sub(by, this.gone)) }, this.moved++ > 0)) {
+    const node = this.handles.appendChild(make(shape, { ...attributes, tabindex: -1 }));
+    node.addEventListener("pointerdown", (start) => {
+      start.stopPropagation();
+      node.setPointerCapture(start.pointerId);
+      this.moved = 0;
+      this.gone = [0, 0, 0];
+      this.held = this.thing.capsule && { ...this.thing.capsule };
+      const step = 10 ** Math.floor(Math.log10(this.size()) - 0.5);
+      const go = (move) => {
+        let by = way(start, move);
+        if (move.shiftKey) by = by.map((v) => step * Math.round(v / step));
+        if (length(sub(by, this.gone)) === 0) return;
+        put(by);
+        this.gone = by;
+      };
+      const end = () => { node.removeEventListener("pointermove", go); this.refresh(); };
+      node.addEventListener("pointermove", go);
+      node.addEventListener("pointerup", end, { once: true });
+      node.addEventListener("pointercancel", end, { once: true });
+    });
+  }
+}

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
+import { Edits } from "./edit.js";
+import { inspect } from "./inspector.js";
+import { Picture } from "./picture.js";
+import { texts } from "./texts.js";
+
+const $ = (id) => document.getElementById(id);
+const stage = $("stage"), picture_canvas = $("picture"), marks = $("marks");
+const picture = new Picture(), chosen = new Set(), waiting = new Map();
+let scene = null, camera = null, world_up = [0, 0, 1], center = [0, 0, 0], radius = 1;
+let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null;
+
+// --- Words ---
+
+for (const node of document.querySelectorAll("[data-text]")) node.textContent = texts[node.dataset.text];
+stage.setAttribute("aria-label", texts.picture);
+$("search").placeholder = texts.search;
+$("search").setAttribute("aria-label", texts.search);
+$("axis").setAttribute("aria-label", texts.axis);
+$("kept").setAttribute("aria-label", texts.kept);
+$("tree").setAttribute("aria-label", texts.things);
+for (const [value, text] of Object.entries(texts.axes)) $("axis").add(new Option(text, value));
+for (const [value, text] of Object.entries(texts.curves)) $("curve").add(new Option(text, value));
+for (const [key, what] of texts.list) $("list").append(Object.assign(document.createElement("dt"), { textContent: key }), Object.assign(document.createElement("dd"), { textContent: what }));
+
+// --- The program ---
+
+const say = (message) => { if (socket?.readyState === 1) socket.send(JSON.stringify(message)); };
+
+function ask(pixel, all, reference, done) {
+  waiting.set(++number, done);
+  say({ type: "ask", number, x: pixel[0], y: pixel[1], all, reference });
+}
+
+const edits = new Edits({
+  say, view: () => camera, stage, find: $,
+  describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
+});
+
+function connect() {
+  const opened = new WebSocket(location.href.replace(/^http/, "ws").replace(/[^/]*$/, "") + "socket");
+  opened.binaryType = "arraybuffer";
+  let turn = Promise.resolve(), came = false;
+  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; waiting.clear(); under_asked = false; say({ type: "seen", seen: !document.hidden }); };
+  opened.onmessage = ({ data }) => {
+    turn = turn.then(() => typeof data === "string" ? told(JSON.parse(data)) : binary(data)).catch((error) => console.error(error));
+  };
+  opened.onclose = () => {
+    socket = null;
+    $("lost").textContent = came ? texts.lost : texts.closed;
+    $("lost").hidden = false;
+    setTimeout(connect, 1000);
+  };
+}
+
+function told(message) {
+  if (message.type === "scene") return begin(message);
+  if (message.type === "looked") return void (camera && camera_of(message));
+  if (message.type === "error") return void ($("state").textContent = message.text);
+  if (message.type === "edited") return edited(message);
+  const done = waiting.get(message.number);
+  waiting.delete(message.number);
+  if (done) done(message.pick ?? message.thing);
+}
+
+async function binary(data) {
+  if (await picture.take(data)) return draw();
+  save(new Blob([data], { type: "image/x-exr" }), `${scene.name}.exr`);
+}
+
+function save(blob, name) {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+function edited(message) {
+  $("back").disabled = !message.can_undo;
+  $("again").disabled = !message.can_redo;
+  if (message.scene) {
+    const { camera: _, ...now } = message.scene;
+    Object.assign(scene, now);
+    if (message.renumbered) choose(null, false);
+    fill_tree();
+  }
+  edits.refresh();
+  stage.dataset.edits = (+stage.dataset.edits || 0) + 1;
+}
+
+function begin(message) {
+  const again = scene?.name === message.name;
+  scene = message;
+  document.title = `${scene.name} - Caplet`;
+  $("name").textContent = scene.name;
+  const [low, high] = scene.bounds;
+  center = mul(add(low, high), 0.5);
+  radius = length(sub(high, low)) / 2 || 1;
+  if (again && camera) {
+    camera_of(scene.camera);
+  } else {
+    camera = new Camera(scene.camera);
+    // What turns least in the picture when one orbits: the axis of the world that is nearest to the picture's up.
+    const up = unit(camera.up), axis = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
+    world_up = [0, 0, 0];
+    world_up[axis] = Math.sign(up[axis]);
+    const along = dot(sub(center, camera.eye), unit(camera.forward));
+    camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
+    past = []; future = []; chosen.clear();
+  }
+  edits.read_only = scene.read_only;
+  $("material").replaceChildren(new Option(texts.mixed, ""), ...scene.materials.map((name, i) => new Option(name, String(i))));
+  $("back").disabled = !scene.can_undo;
+  $("again").disabled = !scene.can_redo;
+  fill_tree();
+  look();
+  draw();
+}
+
+// --- The camera ---
+
+// As another page has it.
+function camera_of(message) {
+  const now = new Camera(message);
+  now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
+  camera = now;
+  edits.draw();
+  show_lens();
+}
+
+function show_lens() {
+  $("fov").value = (camera.fov * 180 / Math.PI).toFixed(1);
+  $("radius").value = +camera.lens_radius.toPrecision(6);
+  $("focus").value = +camera.focal_distance.toPrecision(6);
+}
+
+let looked = "";
+function look() {
+  if (!camera) return;
+  const scale = window.devicePixelRatio || 1, most = 4096;
+  const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale)));
+  const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance };
+  const text = JSON.stringify(message);
+  edits.draw();
+  show_lens();
+  $("undo").disabled = !past.length;
+  $("redo").disabled = !future.length;
+  if (text === looked && socket) return;
+  looked = text;
+  say(message);
+}
+
+// Before a change, so that it can be undone; changes of one gesture count as one.
+function remember() { past.push(camera.copy()); future = []; if (past.length > 1000) past.shift(); }
+function change(what) { remember(); what(); look(); }
+function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
+const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); camera.target = target; });
+const fit = () => change(() => camera.fit(center, radius));
+function along(name) {
+  if (!name) return;
+  const axis = "xyz".indexOf(name[1]), from = [0, 0, 0];
+  from[axis] = name[0] === "+" ? -1 : 1;
+  const up = Math.abs(dot(from, world_up)) > 0.5 ? [0, 1, 0, 0].slice(axis === 1 ? 1 : 0).slice(0, 3) : world_up;
+  change(() => camera.look(from, up, center, radius));
+}
+
+// --- The picture ---
+
+function draw() {
+  const { width, height } = picture;
+  if (!scene || !width) return;
+  picture_canvas.width = width;
+  picture_canvas.height = height;
+  picture_canvas.getContext("2d").putImageData(new ImageData(picture.shown(+$("exposure").value, $("curve").value), width, height), 0, 0);
+  mark();
+  $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.device);
+  stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
+}
+
+function mark() {
+  if (picture.scale !== 1 && picture.width) { marks.getContext("2d").clearRect(0, 0, marks.width, marks.height); return; }
+  if (!picture.width) return;
+  marks.width = picture.width;
+  marks.height = picture.height;
+  if (chosen.size && picture.objects) marks.getContext("2d").putImageData(new ImageData(picture.outline(chosen), picture.width, picture.height), 0, 0);
+}
+
+// --- What is under the cursor ---
+
+function pixel_at(event) {
+  const box = stage.getBoundingClientRect(), scale = window.devicePixelRatio || 1;
+  return [Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale)].map((v) => Math.max(0, v));
+}
+
+// One question at a time: the next is asked when the last is answered.
+function hover(pixel) {
+  under_next = pixel;
+  if (under_asked || !under_next) return;
+  under_asked = true;
+  under_next = null;
+  ask(pixel, false, false, (told_of) => {
+    under_asked = false;
+    const hit = told_of.crossings[0];
+    $("under").textContent = hit ? texts.under(hit) : texts.nothing;
+    if (under_next) hover(under_next);
+  });
+}
+
+function choose(id, more, primitive = 0) {
+  if (!more) chosen.clear();
+  if (id !== null) chosen.has(id) && more ? chosen.delete(id) : chosen.add(id);
+  for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
+  edits.select([...chosen].sort((a, b) => a - b), primitive);
+  mark();
+}
+
+function click(event) {
+  const pixel = pixel_at(event);
+  ask(pixel, false, false, (told_of) => {
+    const hit = told_of.crossings[0];
+    if (event.altKey && hit) return change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
+    choose(hit ? hit.object_id : null, event.shiftKey, hit ? hit.primitive : 0);
+  });
+  ask(pixel, true, true, (told_of) => {
+    inspect(told_of, $("asked"), $("intervals"), $("table"));
+    $("table").dataset.pixel = pixel.join();
+  });
+}
+
+// --- The scene's tree ---
+
+function fill_tree() {
+  const words = $("search").value.toLowerCase(), rows = [];
+  let found = 0;
+  scene.things.forEach((thing, id) => {
+    if (!thing.name.toLowerCase().includes(words) || ++found > 500) return;
+    const item = document.createElement("li"), small = document.createElement("small");
+    item.role = "option";
+    item.id = `thing${id}`;
+    item.dataset.id = id;
+    item.setAttribute("aria-selected", chosen.has(id));
+    small.textContent = thing.material ? ` ${thing.material}${thing.primitives > 1 ? `, ${thing.primitives}` : ""}` : "";
+    item.append(thing.name, small);
+    rows.push(item);
+  });
+  $("tree").replaceChildren(...rows);
+  $("more").textContent = texts.more(rows.length, scene.thing_count);
+}
+
+// --- Mouse, touch and keys ---
+
+const pointers = new Map();
+let moved = 0, spread = 0;
+const pixel_length = () => 2 * camera.distance() * Math.tan(camera.fov / 2) / Math.min(stage.clientWidth, stage.clientHeight);
+
+stage.addEventListener("pointerdown", (event) => {
+  if (!camera) return;
+  stage.setPointerCapture(event.pointerId);
+  pointers.set(event.pointerId, event);
+  if (pointers.size === 1) { moved = 0; remember(); }
+  spread = 0;
+});
+stage.addEventListener("pointermove", (event) => {
+  if (!camera) return;
+  const before = pointers.get(event.pointerId);
+  if (!before) return hover(pixel_at(event));
+  pointers.set(event.pointerId, event);
+  const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
+  moved += Math.hypot(dx, dy);
+  if (moved < 4) return;
+  if (pointers.size === 2) {
+    const [a, b] = [...pointers.values()], now = Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+    if (spread) camera.dolly(spread / Math.max(1, now));
+    spread = now;
+    camera.pan(-dx / 2 * pixel_length(), dy / 2 * pixel_length());
+  } else if (event.buttons & 6 || event.shiftKey) {
+    camera.pan(-dx * pixel_length(), dy * pixel_length());
+  } else {
+    camera.orbit(-dx * 0.006, -dy * 0.006, world_up);
+  }
+  look();
+});
+const ended = (event) => {
+  if (!pointers.delete(event.pointerId) || pointers.size) return;
+  if (moved < 4) { past.pop(); if (event.type === "pointerup" && event.button === 0) click(event); }
+  look();
+};
+stage.addEventListener("pointerup", ended);
+stage.addEventListener("pointercancel", ended);
+stage.addEventListener("contextmenu", (event) => event.preventDefault());
+stage.addEventListener("dblclick", (event) => ask(pixel_at(event), false, false, (told_of) => {
+  const hit = told_of.crossings[0];
+  if (hit) change(() => { const by = sub(hit.point, camera.target); camera.target = hit.point; camera.eye = add(camera.eye, by); });
+}));
+let wheel_at = 0;
+stage.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  if (!camera) return;
+  if (event.timeStamp - wheel_at > 500) remember();
+  wheel_at = event.timeStamp;
+  const factor = Math.exp(Math.max(-0.5, Math.min(0.5, event.deltaY * (event.deltaMode ? 0.05 : 0.0015))));
+  if (event.ctrlKey) camera.fov = Math.min(2.9, Math.max(0.02, camera.fov * factor));
+  else camera.dolly(factor);
+  look();
+}, { passive: false });
+
+const axes = { 1: "+x", 2: "-x", 3: "+y", 4: "-y", 5: "+z", 6: "-z" };
+stage.addEventListener("keydown", (event) => {
+  if (!camera || event.ctrlKey || event.metaKey) return;
+  const step = 0.08, way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  if (way) change(() => event.shiftKey ? camera.pan(...mul(way, -40 * pixel_length())) : camera.orbit(way[0] * step, way[1] * step, world_up));
+  else if (event.key === "+" || event.key === "=") change(() => camera.dolly(0.9));
+  else if (event.key === "-") change(() => camera.dolly(1 / 0.9));
+  else if (event.key === "f") fit();
+  else if (event.key === "h") home();
+  else if (event.key === "z") undo(past, future);
+  else if (event.key === "y") undo(future, past);
+  else if (event.key === "u") $("back").click();
+  else if (event.key === "r") $("again").click();
+  else if (event.key === "d") $("duplicate").click();
+  else if (event.key === "Delete") $("delete").click();
+  else if (event.key === "Escape") choose(null, false);
+  else if (event.key === "?") $("keys").showModal();
+  else if (axes[event.key]) along(axes[event.key]);
+  else return;
+  event.preventDefault();
+});
+
+$("back").onclick = () => say({ type: "undo", again: false });
+$("again").onclick = () => say({ type: "undo", again: true });
+$("fit").onclick = fit;
+$("home").onclick = home;
+$("undo").onclick = () => undo(past, future);
+$("redo").onclick = () => undo(future, past);
+$("axis").onchange = (event) => { along(event.target.value); event.target.value = ""; };
+$("help").onclick = () => $("keys").showModal();
+$("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
+$("curve").onchange = draw;
+$("exr").onclick = () => say({ type: "snapshot" });
+$("png").onclick = () => picture_canvas.toBlob((blob) => save(blob, `${scene.name}.png`));
+const fill_kept = () => $("kept").replaceChildren(new Option(texts.kept, ""), ...kept.map((_, i) => new Option(String(i + 1), String(i))));
+$("keep").onclick = () => { if (camera) { kept.push(camera.copy()); fill_kept(); } };
+$("kept").onchange = (event) => { const view = kept[+event.target.value]; if (event.target.value !== "" && view) change(() => { camera = view.copy(); }); event.target.value = ""; };
+fill_kept();
+const bounded = (id, least, most, set) => { $(id).onchange = (event) => { const value = +event.target.value; if (camera && value >= least && value <= most) change(() => set(value)); else look(); }; };
+bounded("fov", 1, 170, (value) => { camera.fov = value * Math.PI / 180; });
+bounded("radius", 0, 1e9, (value) => { camera.lens_radius = value; });
+bounded("focus", 1e-6, 1e12, (value) => { camera.focal_distance = value; });
+$("search").oninput = () => { if (scene) fill_tree(); };
+$("tree").onclick = (event) => { const item = event.target.closest("li"); if (item) choose(+item.dataset.id, event.shiftKey || event.ctrlKey); };
+$("tree").onkeydown = (event) => {
+  if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
+  const items = [...$("tree").children], at = items.findIndex((item) => item.getAttribute("aria-selected") === "true");
+  const next = items[Math.max(0, Math.min(items.length - 1, at + (event.key === "ArrowDown" ? 1 : -1)))];
+  if (next) { choose(+next.dataset.id, false); next.scrollIntoView({ block: "nearest" }); $("tree").setAttribute("aria-activedescendant", next.id); }
+  event.preventDefault();
+};
+document.addEventListener("visibilitychange", () => say({ type: "seen", seen: !document.hidden }));
+new ResizeObserver(look).observe(stage);
+connect();

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/picture.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace caplet::view {
+
+namespace {
+
+constexpr std::uint32_t magic = 0x464c5043;  // "CPLF"
+constexpr std::uint32_t flag_whole = 1, flag_ids = 2;
+
+void put(std::string& out, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xffu));
+}
+
+struct Tile {
+  int x0, y0, x1, y1;
+};
+
+Tile tile_of(const Picture& picture, int number) {
+  const int across = (picture.width - 1) / tile_size + 1;
+  const int x = number % across * tile_size, y = number / across * tile_size;
+  return {x, y, std::min(x + tile_size, picture.width), std::min(y + tile_size, picture.height)};
+}
+
+int tiles_of(const Picture& picture) { return ((picture.width - 1) / tile_size + 1) * ((picture.height - 1) / tile_size + 1); }
+
+bool differ(const Picture& a, const Picture& b, const Tile& tile) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(tile.x0));
+    const auto count = static_cast<std::size_t>(3 * (tile.x1 - tile.x0));
+    if (std::memcmp(&a.color[first], &b.color[first], count * sizeof a.color[0]) != 0) return true;
+  }
+  return false;
+}
+
+std::string deflated(const std::string& data) {
+  uLongf size = ::compressBound(data.size());
+  std::string out(size, '\0');
+  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size(), 1) !=
+      Z_OK)
+    throw RunError("a picture could not be packed");
+  out.resize(size);
+  return out;
+}
+
+/// Bytes of `count` words of `width` bytes, the most significant of all first: each word as its difference to the one before.
+template <class Word>
+void add_planes(std::string& out, const std::vector<Word>& words) {
+  const std::size_t first = out.size(), count = words.size();
+  out.resize(first + count * sizeof(Word));
+  Word before = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto step = static_cast<Word>(words[i] - before);
+    before = words[i];
+    for (std::size_t plane = 0; plane < sizeof(Word); ++plane)
+      out[first + plane * count + i] = static_cast<char>(step >> (8 * (sizeof(Word) - 1 - plane)) & 0xff);
+  }
+}
+
+}  // namespace
+
+std::uint16_t to_half(float value) {
+  if (!(value > 0)) return 0;  // nothing that is shown is below black
+  constexpr std::uint32_t bias = (127 - 15) << 10;
+  const auto bits = std::bit_cast<std::uint32_t>(std::min(value, 65000.0f));
+  const std::uint32_t rounded = bits + (1u << 15);  // to 16 of 32 bits: 7 of the fraction
+  const std::uint32_t half = rounded >> 13 & ~7u;
+  if (half < bias + (1u << 10)) return 0;  // below the least normal number
+  return static_cast<std::uint16_t>(half - bias);
+}
+
+std::string packed(const Picture& now, const Picture* before) {
+  const bool same_size = before && before->width == now.width && before->height == now.height && before->scale == now.scale;
+  const bool ids = !now.objects.empty() && (!before || before->view != now.view || before->scale != 1);
+  std::vector<std::uint32_t> tiles;
+  for (int i = 0; i < tiles_of(now); ++i)
+    if (!same_size || differ(now, *before, tile_of(now, i))) tiles.push_back(static_cast<std::uint32_t>(i));
+  std::vector<std::uint16_t> color;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (const std::uint32_t number : tiles) {
+      const Tile tile = tile_of(now, static_cast<int>(number));
+      for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x)
+          color.push_back(
+              now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) + static_cast<std::size_t>(x)) +
+                        c]);
+    }
+  std::string data;
+  for (const std::uint32_t number : tiles) put(data, number);
+  add_planes(data, color);
+  if (ids) {
+    add_planes(data, now.objects);
+    add_planes(data, now.primitives);
+  }
+  std::string out;
+  put(out, magic);
+  put(out, now.view);
+  put(out, static_cast<std::uint32_t>(now.width));
+  put(out, static_cast<std::uint32_t>(now.height));
+  put(out, static_cast<std::uint32_t>(now.scale));
+  put(out, now.samples);
+  put(out, std::bit_cast<std::uint32_t>(now.noise));
+  put(out, (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u));
+  put(out, static_cast<std::uint32_t>(tiles.size()));
+  put(out, static_cast<std::uint32_t>(data.size()));
+  return out + deflated(data);
+}
+
+}  // namespace caplet::view

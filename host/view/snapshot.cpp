@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/detail/snapshot.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.h"
+#include "film/chromaticities.h"
+
+namespace caplet::view {
+
+namespace fs = std::filesystem;
+
+Picture shown_of(const LayeredImage& image, bool ids) {
+  Picture out;
+  out.width = image.data_width;
+  out.height = image.data_height;
+  const std::vector<float>&r = image.find("R")->floats, &g = image.find("G")->floats, &b = image.find("B")->floats;
+  std::array<double, 9> m{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (image.space != ColorSpace::srgb)
+    m = product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))), xyz_from_rgb(chromaticities_of(image.space)));
+  out.color.resize(3 * r.size());
+  for (std::size_t i = 0; i < r.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      out.color[3 * i + c] = to_half(static_cast<float>(m[3 * c] * r[i] + m[3 * c + 1] * g[i] + m[3 * c + 2] * b[i]));
+  if (ids) {
+    out.objects = image.find("object.id")->uints;
+    out.primitives = image.find("primitive.id")->uints;
+  }
+  const Channel* variance = image.find("variance.G");
+  double sum = 0, square = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    sum += g[i];
+    if (variance) square += variance->floats[i];
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(1, g.size()));
+  out.noise = sum > 0 ? static_cast<float>(std::sqrt(square / count) / (sum / count)) : 0.0f;
+  return out;
+}
+
+std::string exr_bytes(const LayeredImage& image) {
+  std::string folder = (fs::temp_directory_path() / "caplet-view-XXXXXX").string();
+  if (!::mkdtemp(folder.data())) throw RunError("no folder for temporary files: " + folder);
+  const fs::path file = fs::path(folder) / "snapshot.exr";
+  std::string out;
+  try {
+    write_exr(file, image);
+    std::ifstream in(file, std::ios::binary);
+    out.assign(std::istreambuf_iterator<char>(in), {});
+  } catch (...) {
+    fs::remove_all(folder);
+    throw;
+  }
+  fs::remove_all(folder);
+  return out;
+}
+
+}  // namespace caplet::view

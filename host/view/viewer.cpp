@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/viewer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "film/develop.h"
+#include "lower/camera.h"
+#include "lower/identity.h"
+#include "render/query.h"
+#include "render/session.h"
+#include "report/pick_report.h"
+#include "view/detail/scene_text.h"
+#include "view/detail/snapshot.h"
+#include "view/editor.h"
+#include "view/messages.h"
+#include "view/page.h"
+#include "view/picture.h"
+
+namespace caplet::view {
+
+namespace {
+
+constexpr int coarsest_scale = 16;
+constexpr double first_guess_paths_a_second = 5e5;
+constexpr std::size_t most_crossings = 4096;
+constexpr std::size_t most_questions = 8, most_edits = 1000;  // that wait
+
+using Text = std::shared_ptr<const std::string>;
+
+Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<const std::string>(message.dump()); }
+
+/// A new view is wanted: the picture under way is of no more use.
+struct Superseded {};
+
+std::string error_text(const std::string& what) { return nlohmann::ordered_json{{"type", "error"}, {"text", what}}.dump(); }
+
+}  // namespace
+
+class Viewer::State {
+ public:
+  State(LiveScene scene, const Device& device, const ViewerOptions& options)
+      : options_(options),
+        live_(std::move(scene)),
+        editor_(live_),
+        device_(device),
+        full_(look_of(live_.scene())),
+        wanted_(full_) {
+    session_.emplace(live_.flat(), live_.view(), std::vector<Device>{device}, session_options());
+    (void)live_.take_changes();
+    query_.emplace(*session_->scene_on(0));
+    const RayRecord any{0, 0, 0, 0, 0, 0, 1, INFINITY};
+    (void)query_->closest(std::span(&any, 1));  // compiles its kernel
+    ServerEvents events;
+    events.file = page_file;
+    events.joined = [this](ClientId id) { joined(id); };
+    events.left = [this](ClientId id) { left(id); };
+    events.message = [this](ClientId id, const std::string& text) { said(id, text); };
+    events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
+    hello_ = scene_text(live_.scene(), device_.info().name, target());
+    hello_["home"] = camera_text(full_);
+    hello_["read_only"] = options.read_only;
+    hello_["can_undo"] = hello_["can_redo"] = false;
+    server_.emplace(options.server, std::move(events));
+    thread_ = std::thread([this] { run(); });
+  }
+
+  ~State() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+    server_.reset();
+  }
+
+  std::string address() const { return server_->address(); }
+
+  void wait(double seconds) {
+    std::unique_lock lock(mutex_);
+    failed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return failure_ != nullptr; });
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  using Question = std::variant<Ask, Describe>;
+  struct Client {
+    bool seen = true;
+    std::shared_ptr<const Picture> shown;
+    std::deque<Question> asked;
+    bool wants_snapshot = false;
+  };
+
+  static Look look_of(const Scene& scene) {
+    return {scene.film.width, scene.film.height,        scene.camera.world_from_camera,
+            scene.camera.fov, scene.camera.lens_radius, scene.camera.focal_distance};
+  }
+
+  SessionOptions session_options() const {
+    SessionOptions out;
+    out.layers = Layers::none().with(Layer::object).with(Layer::primitive).with(Layer::variance);
+    out.batch_paths = options_.batch_paths;
+    return out;
+  }
+
+  std::uint32_t target() const {
+    return static_cast<std::uint32_t>(options_.samples > 0 ? options_.samples : live_.scene().sampler.samples_per_pixel);
+  }
+
+  // --- On the server's thread ---
+
+  void joined(ClientId id) {
+    Text hello;
+    {
+      const std::lock_guard lock(mutex_);
+      clients_[id];
+      hello_["camera"] = camera_text(wanted_);
+      hello = text_of(hello_);
+    }
+    changed_.notify_all();
+    server_->send(id, hello);
+  }
+
+  void left(ClientId id) {
+    const std::lock_guard lock(mutex_);
+    clients_.erase(id);
+  }
+
+  void said(ClientId id, const std::string& text) try {
+    const Message message = parse_message(text);
+    std::vector<ClientId> others;
+    {
+      const std::lock_guard lock(mutex_);
+      Client& client = clients_[id];
+      if (const Look* look = std::get_if<Look>(&message)) {
+        wanted_ = *look;
+        ++wanted_number_;
+        for (const auto& [other, of] : clients_)
+          if (other != id) others.push_back(other);
+      } else if (const Seen* seen = std::get_if<Seen>(&message)) {
+        client.seen = seen->seen;
+      } else if (const Ask* ask = std::get_if<Ask>(&message)) {
+        // Of several questions for what is under the cursor the last one counts.
+        if (!ask->all)
+          std::erase_if(client.asked,
+                        [](const Question& other) { return std::holds_alternative<Ask>(other) && !std::get<Ask>(other).all; });
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*ask);
+      } else if (const Describe* describe = std::get_if<Describe>(&message)) {
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*describe);
+      } else if (std::holds_alternative<Snapshot>(message)) {
+        client.wants_snapshot = true;
+      } else {
+        if (options_.read_only) throw InputError("this scene is shown read-only");
+        if (edits_.size() >= most_edits) throw InputError("too many changes at once");
+        if (const Edit* edit = std::get_if<Edit>(&message))
+          edits_.emplace_back(id, *edit);
+        else
+          edits_.emplace_back(id, std::get<Undo>(message));
+      }
+    }
+    changed_.notify_all();
+    if (others.empty()) return;
+    nlohmann::ordered_json looked = camera_text(std::get<Look>(message));
+    looked["type"] = "looked";
+    for (const ClientId other : others) server_->send(other, text_of(looked));
+  } catch (const InputError& error) {
+    server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
+  }
+
+  Text picture_for(ClientId id, std::uint64_t& shown) {
+    std::shared_ptr<const Picture> now, before;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto client = clients_.find(id);
+      if (client == clients_.end() || !picture_ || picture_->version == shown || !client->second.seen) return {};
+      now = picture_;
+      before = std::exchange(client->second.shown, now);
+    }
+    shown = now->version;
+    return std::make_shared<const std::string>(packed(*now, before.get()));
+  }
+
+  // --- On the renderer's thread ---
+
+  void run() try {
+    for (;;) {
+      {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] {
+          return ended_ || wanted_number_ != number_ || !edits_.empty() || asked() || (is_seen() && has_more());
+        });
+        if (ended_) return;
+      }
+      answer_all();
+      try {
+        const bool edited = edit_all();
+        const std::optional<Look> look = take_wanted();
+        if (edited || look) begin(look.value_or(full_));
+        if (is_seen_now() && has_more()) step();
+      } catch (const Superseded&) {
+        scale_ = 0;
+      } catch (const InputError& error) {  // a view that the scene cannot have
+        server_->send_to_all(std::make_shared<const std::string>(error_text(error.what())));
+      }
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+    failed_.notify_all();
+  }
+
+  // With the mutex:
+  bool is_seen() const {
+    return std::ranges::any_of(clients_, [](const auto& client) { return client.second.seen; });
+  }
+  bool asked() const {
+    return std::ranges::any_of(clients_,
+                               [](const auto& client) { return !client.second.asked.empty() || client.second.wants_snapshot; });
+  }
+  bool is_seen_now() {
+    const std::lock_guard lock(mutex_);
+    return is_seen();
+  }
+  bool has_more() const { return scale_ != 1 || samples_ < target(); }
+
+  std::optional<Look> take_wanted() {
+    const std::lock_guard lock(mutex_);
+    if (wanted_number_ == number_) return {};
+    number_ = wanted_number_;
+    return wanted_;
+  }
+
+  /// Makes the changes that wait; whether the scene is another one now.
+  bool edit_all() {
+    std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits;
+    {
+      const std::lock_guard lock(mutex_);
+      edits.swap(edits_);
+    }
+    if (edits.empty()) return false;
+    const std::uint64_t before = editor_.rearrangements(), numbers = editor_.renumberings();
+    bool edited = false;
+    for (const auto& [id, what] : edits) try {
+        if (const Edit* edit = std::get_if<Edit>(&what)) {
+          editor_.make(edit->change, edit->goes_on);
+          edited = true;
+        } else {
+          edited = (std::get<Undo>(what).again ? editor_.redo() : editor_.undo()) || edited;
+        }
+      } catch (const InputError& error) {
+        server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
+      }
+    nlohmann::ordered_json told{{"type", "edited"},
+                                {"can_undo", editor_.can_undo()},
+                                {"can_redo", editor_.can_redo()},
+                                {"renumbered", editor_.renumberings() != numbers}};
+    if (editor_.rearrangements() != before) told["scene"] = scene_text(live_.scene(), device_.info().name, target());
+    {
+      const std::lock_guard lock(mutex_);
+      hello_["can_undo"] = editor_.can_undo();
+      hello_["can_redo"] = editor_.can_redo();
+      if (told.contains("scene"))
+        for (const auto& [name, value] : told["scene"].items()) hello_[name] = value;
+    }
+    server_->send_to_all(text_of(told));
+    return edited;
+  }
+
+  bool is_superseded() {
+    const std::lock_guard lock(mutex_);
+    return ended_ || wanted_number_ != number_ || !edits_.empty();
+  }
+
+  /// The film for `look`, a pixel for each square of `scale` pixels.
+  void set_film(const Look& look, int scale) {
+    ViewEdit view = view_of(live_.scene());
+    view.camera.world_from_camera = look.world_from_camera;
+    view.camera.fov = look.fov;
+    view.camera.lens_radius = look.lens_radius;
+    view.camera.focal_distance = look.focal_distance;
+    view.film.crop.reset();
+    view.film.width = (look.width - 1) / scale + 1;
+    view.film.height = (look.height - 1) / scale + 1;
+    live_.edit(view);
+    session_->update(live_.flat(), live_.take_changes(), live_.view());
+    scale_ = scale;
+    samples_ = 0;
+  }
+
+  void begin(const Look& look) {
+    scale_ = 0;
+    const double pixels = static_cast<double>(look.width) * look.height;
+    int scale = 1;
+    while (scale < coarsest_scale && pixels > options_.coarse_seconds * paths_a_second_ * scale * scale) scale *= 2;
+    set_film(look, scale);
+    full_ = look;
+    ++view_;
+  }
+
+  void step() {
+    if (scale_ == 0 || (scale_ > 1 && samples_ > 0)) set_film(full_, 1);
+    const double pixels = static_cast<double>(live_.scene().film.width) * live_.scene().film.height;
+    const double affordable = options_.step_seconds * paths_a_second_ / pixels;
+    const std::uint32_t count = scale_ > 1 ? 1
+                                           : std::clamp(static_cast<std::uint32_t>(affordable), 1u,
+                                                        std::max(1u, std::min(samples_, target() - samples_)));
+    const bool is_coarse = scale_ > 1;
+    const Clock::time_point start = Clock::now();
+    session_->render(count, [&](const SessionProgress&) {
+      answer_all();
+      // A coarse picture is shown in any case: while the camera moves there is nothing else to see.
+      if (!is_coarse && is_superseded()) throw Superseded();
+    });
+    const double seconds = std::max(1e-4, seconds_since(start));
+    paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
+    samples_ += count;
+    publish();
+  }
+
+  void publish() {
+    NotFinite not_finite;
+    const LayeredImage image = develop(session_->film(), live_.scene(), session_options().layers, not_finite);
+    auto picture = std::make_shared<Picture>(shown_of(image, scale_ == 1));
+    picture->version = ++version_;
+    picture->view = view_;
+    picture->scale = scale_;
+    picture->samples = samples_;
+    {
+      const std::lock_guard lock(mutex_);
+      picture_ = std::move(picture);
+    }
+    server_->picture_changed();
+  }
+
+  void answer_all() {
+    for (;;) {
+      ClientId id = 0;
+      std::optional<Question> question;
+      {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::ranges::find_if(
+            clients_, [](const auto& client) { return !client.second.asked.empty() || client.second.wants_snapshot; });
+        if (found == clients_.end()) return;
+        id = found->first;
+        if (!found->second.asked.empty()) {
+          question = found->second.asked.front();
+          found->second.asked.pop_front();
+        } else {
+          if (scale_ != 1 || samples_ == 0) return;  // as soon as there is a picture
+          found->second.wants_snapshot = false;
+        }
+      }
+      if (question)
+        server_->send(id, std::visit([this](const auto& it) { return answer(it); }, *question));
+      else
+        server_->send(id, snapshot(), true);
+    }
+  }
+
+  Text answer(const Ask& ask) {
+    nlohmann::ordered_json out{{"type", "answer"}, {"number", ask.number}};
+    const Scene& scene = live_.scene();
+    const int scale = std::max(1, scale_);
+    // The ray of the full picture's pixel, whatever is rendered now.
+    const RayRecord ray = ray_at(ask.x, ask.y, scale);
+    report::PickReport told;
+    told.pixel = {ask.x, ask.y};
+    told.ray = ray;
+    told.device = device_.info().name;
+    told.all = true;  // a list, be it of the nearest alone
+    if (ask.all) {
+      told.crossings = query_->all(std::span(&ray, 1), most_crossings).crossings;
+    } else if (const PickRecord pick = query_->closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
+      told.crossings = {pick};
+    }
+    if (ask.reference) told.reference = report::reference_crossings(scene, ray, ask.all);
+    out["pick"] = nlohmann::ordered_json::parse(report::json_text(told, scene));
+    return text_of(out);
+  }
+
+  Text answer(const Describe& describe) {
+    nlohmann::ordered_json out{{"type", "answer"}, {"number", describe.number}};
+    out["thing"] = thing_text(live_.scene(), describe.id, describe.primitive);
+    return text_of(out);
+  }
+
+  RayRecord ray_at(int x, int y, int scale) {
+    if (scale == 1) return ray_of_pixel(live_.scene(), std::min(x, full_.width - 1), std::min(y, full_.height - 1));
+    return ray_of_pixel(live_.scene(), std::min(x / scale, live_.scene().film.width - 1),
+                        std::min(y / scale, live_.scene().film.height - 1));
+  }
+
+  Text snapshot() {
+    return std::make_shared<const std::string>(exr_bytes(develop(session_->film(), live_.scene(), session_options().layers)));
+  }
+
+  ViewerOptions options_;
+  LiveScene live_;
+  Editor editor_;
+  Device device_;
+  std::optional<Session> session_;
+  std::optional<Query> query_;
+  std::optional<Server> server_;
+
+  // Of the renderer's thread.
+  Look full_;
+  std::uint64_t number_ = 0, version_ = 0;
+  std::uint32_t view_ = 1, samples_ = 0;
+  int scale_ = 0;  // of the film; 0: it has nothing
+  double paths_a_second_ = first_guess_paths_a_second;
+
+  std::mutex mutex_;  // of all that follows
+  std::condition_variable changed_, failed_;
+  Look wanted_;
+  std::uint64_t wanted_number_ = 1;
+  std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits_;
+  std::map<ClientId, Client> clients_;
+  std::shared_ptr<const Picture> picture_;
+  nlohmann::ordered_json hello_;
+  bool ended_ = false;
+  std::exception_ptr failure_;
+
+  std::thread thread_;
+};
+
+Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& options)
+    : state_(std::make_unique<State>(std::move(scene), device, options)) {}
+Viewer::~Viewer() = default;
+std::string Viewer::address() const { return state_->address(); }
+void Viewer::wait(double seconds) { state_->wait(seconds); }
+
+}  // namespace caplet::view

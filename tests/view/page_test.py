@@ -1,0 +1,402 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""The page of `caplet view` in a real browser: headless Chromium, as a user would use it.
+
+usage: page_test.py PROGRAM SCENES FOLDER [NAME...]   pictures of the page go to FOLDER. Exit status 77: no browser here.
+"""
+import contextlib
+import http.client
+import json
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import traceback
+import urllib.parse
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    print("SKIPPED: no Selenium for Python (python3-selenium)")
+    sys.exit(77)
+
+SKIPPED = 77
+PATIENCE = 60  # seconds, for what takes one
+
+
+class Viewer:
+    """The program, and where it serves."""
+
+    def __init__(self, program, scene, *options):
+        self.process = subprocess.Popen([program, "view", scene, "--no-browser", "-q", *options], stdout=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://127.0.0.1:"), self.address
+
+    def port(self):
+        return int(re.match(r"http://127.0.0.1:(\d+)/", self.address).group(1))
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(PATIENCE)
+
+
+@contextlib.contextmanager
+def viewer(program, scene, *options):
+    out = Viewer(program, scene, *options)
+    try:
+        yield out
+    finally:
+        if out.process.poll() is None:
+            out.process.kill()
+            out.process.wait()
+
+
+class Page:
+    def __init__(self, address):
+        options = Options()
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1000,640"):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        self.driver.get(address)
+
+    def find(self, name):
+        return self.driver.find_element(By.ID, name)
+
+    def until(self, what, holds, patience=PATIENCE):
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            value = holds()
+            if value:
+                return value
+            time.sleep(0.02)
+        raise AssertionError(f"not within {patience} s: {what}; the page says: {self.find('state').text}")
+
+    def samples(self):
+        return int(self.find("stage").get_attribute("data-samples") or -1)
+
+    def until_samples(self, count):
+        self.until(f"{count} samples", lambda: self.samples() >= count)
+
+    def pixels(self):
+        """(width, height, RGBA) of what is shown."""
+        return self.driver.execute_script(
+            "const c = document.getElementById('picture'); return [c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+
+    def apart(self, other, count):
+        """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
+        samples, *now = self.driver.execute_script(
+            "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+        return mean_difference(other, now) if samples >= count else -1
+
+    def script(self, text, *arguments):
+        return self.driver.execute_script(text, *arguments)
+
+    def mouse(self, x, y):
+        """To a pixel of the picture, from the top left."""
+        box = self.find("stage").rect
+        return ActionChains(self.driver, duration=20).move_to_element_with_offset(self.find("stage"), x - box["width"] / 2, y - box["height"] / 2)
+
+    def errors(self):
+        return [line for line in self.driver.get_log("browser") if line["level"] == "SEVERE"]
+
+    def picture(self, path):
+        self.driver.save_screenshot(str(path))
+
+
+@contextlib.contextmanager
+def page(address):
+    out = Page(address)
+    try:
+        yield out
+        errors = out.errors()
+        assert not errors, errors
+    finally:
+        out.driver.quit()
+
+
+def status_of(address, **headers):
+    parts = urllib.parse.urlsplit(address)
+    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=PATIENCE)
+    connection.request("GET", parts.path, headers=headers)
+    return connection.getresponse().status
+
+
+def mean_difference(a, b):
+    assert a[:2] == b[:2], (a[:2], b[:2])
+    return sum(abs(x - y) for x, y in zip(a[2], b[2])) / len(a[2])
+
+
+# --- Cases: of the program, the folder of scenes and that of pictures ---
+
+def converges(program, scenes, out):
+    """The first picture is coarse; then there are samples of every pixel, and the noise falls."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "8") as served, page(served.address) as shown:
+        shown.until("a picture", lambda: shown.pixels()[0] > 300)
+        shown.until_samples(2)
+        first = shown.pixels()
+        noise = float(re.search(r"noise ([\d.e+]+) %", shown.find("state").text).group(1))
+        shown.until_samples(8)
+        assert re.search("8 of 8 samples", shown.find("state").text)
+        assert float(re.search(r"noise ([\d.e+]+) %", shown.find("state").text).group(1)) < noise
+        width, height, pixels = shown.pixels()
+        stage = shown.find("stage").rect
+        assert (width, height) == (round(stage["width"]), round(stage["height"])), (width, height, stage)
+        assert 0.1 < mean_difference(first, shown.pixels()) < 40
+        assert 60 < sum(pixels) / len(pixels) < 220
+        shown.picture(out / "converged.png")
+        # Brighter without a new sample.
+        shown.script("const e = document.getElementById('exposure'); e.value = 2; e.dispatchEvent(new Event('input'))")
+        brighter = shown.pixels()
+        assert sum(brighter[2]) > 1.2 * sum(pixels) and shown.samples() == 8
+
+
+def camera(program, scenes, out):
+    """Orbit, dolly, undo all: the first picture comes back to the bit."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as shown:
+        shown.until_samples(2)
+        first = shown.pixels()
+        shown.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
+        shown.until("another picture", lambda: shown.apart(first, 2) > 5)
+        turned = shown.pixels()
+        shown.find("stage").send_keys("+", "+", Keys.ARROW_LEFT)
+        shown.until("a third", lambda: shown.apart(turned, 2) > 3)
+        assert shown.find("undo").is_enabled()
+        while shown.find("undo").is_enabled():
+            shown.find("undo").click()
+        shown.until("the first again", lambda: shown.apart(first, 2) == 0)
+        while shown.find("redo").is_enabled():
+            shown.find("redo").click()
+        shown.until("the third again", lambda: shown.apart(turned, 2) > 3)
+        for key in "12356":
+            shown.find("stage").send_keys(key)
+            shown.until(f"the view along axis {key}", lambda: shown.samples() >= 1)
+            _, _, pixels = shown.pixels()
+            assert len(set(pixels)) > 20, f"nothing is seen along axis {key}"
+        shown.find("fit").click()
+        shown.until_samples(1)
+        shown.picture(out / "along_z.png")
+
+
+def picks(program, scenes, out):
+    """What is under the cursor and along a ray is what `caplet pick` says of the same pixels."""
+    scene = scenes / "gallery.pbrt"
+    with viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
+        shown.until_samples(2)
+        width, height, _ = shown.pixels()
+        named = 0
+        for k in range(12):
+            x, y = int((0.06 + 0.08 * k) * width), int((0.35 + 0.05 * (k % 6)) * height)
+            before = shown.find("table").get_attribute("data-pixel")
+            shown.mouse(x, y).click().perform()
+            shown.until("the crossings", lambda: shown.find("table").get_attribute("data-pixel") != before, 20)
+            pixel = shown.find("table").get_attribute("data-pixel")  # the stage may begin between two pixels
+            assert all(abs(int(a) - b) <= 1 for a, b in zip(pixel.split(","), (x, y))), (pixel, x, y)
+            rows = shown.script("return [...document.querySelectorAll('#table tbody tr')].map((r) => [...r.cells].map((c) => c.textContent))")
+            said = subprocess.run([program, "pick", scene, "--pixel", pixel, "--size", f"{width}x{height}", "--all", "--json"],
+                                  check=True, capture_output=True, text=True).stdout
+            theirs = json.loads(said)["crossings"]
+            wanted = theirs[0]["object"] if theirs else "nothing"
+            shown.until(f"the name at {pixel}: {wanted}", lambda: shown.find("under").text.split(" · ")[0] == str(wanted), 10)
+            assert len(rows) == len(theirs), (rows, theirs)
+            for row, crossing in zip(rows, theirs):
+                assert abs(float(row[0]) - crossing["t"]) <= 1e-6 * crossing["t"], (row, crossing)
+                assert row[1] == ("enters" if crossing["entering"] else "leaves"), (row, crossing)
+                assert [row[2], row[3], row[4]] == [str(crossing["object"]), str(crossing["surface"]), str(crossing["material"])], (row, crossing)
+                assert abs(float(row[5].split()[0]) - crossing["t"]) <= 1e-5 * crossing["t"], (row, crossing)
+            if theirs:
+                chosen = shown.script("return [...document.querySelectorAll('#tree [aria-selected=true]')].map((i) => i.firstChild.textContent)")
+                assert chosen == [str(wanted)], (chosen, wanted)
+                named += wanted != "floor"
+        assert named >= 4, "too few of these pixels show more than the floor"
+        marked = shown.script("const c = document.getElementById('marks'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v)")
+        assert marked, "what is selected has no outline"
+        shown.picture(out / "picked.png")
+        shown.find("search").send_keys("capsule 7")
+        shown.until("one row", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")) == 1)
+
+
+def keeps_strangers_out(program, scenes, out):
+    """Without the token, or from another site, nothing is told."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "1") as served:
+        root = f"http://127.0.0.1:{served.port()}/"
+        assert status_of(served.address) == 200
+        assert status_of(root) == 403
+        assert status_of(root + 32 * "0" + "/") == 403
+        assert status_of(served.address, Host="evil.example") == 403
+        assert status_of(served.address + "view.js") == 200
+        assert status_of(served.address + "other.js") == 404
+        upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="}
+        assert status_of(served.address + "socket", Origin="http://evil.example", **upgrade) == 403
+        assert status_of(root + 32 * "0" + "/socket", Origin=root[:-1], **upgrade) == 403
+        assert served.end() == 0
+
+
+def comes_back(program, scenes, out):
+    """A page whose program is gone says so, and goes on with the next one at its address."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "1") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        served.process.kill()
+        shown.until("a word about it", lambda: shown.find("lost").is_displayed())
+        assert "lost" in shown.find("lost").text
+        shown.driver.get_log("browser")  # that it could not connect
+
+
+def edits(program, scenes, out):
+    """Select, move, paint, paint a surface, duplicate, delete, each seen; all taken back, the first picture is there to the bit."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as shown:
+        shown.until_samples(2)
+        first = before = shown.pixels()
+        count = 0
+
+        def changed(what):
+            nonlocal before, count
+            count += 1
+            shown.until(f"{what}: the program's word", lambda: int(shown.find("stage").get_attribute("data-edits") or 0) >= count)
+            shown.until(f"{what}: another picture", lambda: shown.apart(before, 2) > 0)
+            before = shown.pixels()
+
+        def choose(name):
+            item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+            shown.script("arguments[0].scrollIntoView()", item)
+            item.click()
+            shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and len(shown.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
+
+        def typed(name, words):
+            field = shown.find(name)
+            field.clear()
+            field.send_keys(words, Keys.TAB)
+
+        choose("capsule 5")
+        typed("move", "0 -1 0.5")
+        changed("moved")
+        typed("scale", "1.5")
+        changed("scaled")
+        typed("turn", "0 1 0 40")
+        changed("turned")
+        typed("radius0", "0.6")
+        changed("a capsule's radius")
+        assert abs(float(shown.find("radius0").get_attribute("value")) - 0.6) < 1e-6
+        typed("move", "0 nonsense 0")
+        assert shown.find("move").get_attribute("aria-invalid")
+        shown.script("const s = document.getElementById('material'); s.selectedIndex = 3; s.dispatchEvent(new Event('change'))")
+        changed("painted")
+        handle = shown.driver.find_element(By.CSS_SELECTOR, "[data-handle=z]")
+        ActionChains(shown.driver, duration=20).click_and_hold(handle).move_by_offset(0, -20).move_by_offset(0, -20).release().perform()
+        shown.until("moved by a handle", lambda: shown.apart(before, 1) > 0)
+        shown.picture(out / "handles.png")
+        choose("cylinder")
+        shown.script("const s = document.getElementById('surface'); s.value = '0'; s.dispatchEvent(new Event('change'))")
+        before = shown.pixels()
+        shown.script("const s = document.getElementById('material'); s.selectedIndex = 2; s.dispatchEvent(new Event('change'))")
+        shown.until("a surface painted", lambda: shown.apart(before, 2) > 0)
+        things = int(shown.find("more").text.split(" of ")[1])
+        shown.find("duplicate").click()
+        shown.until("one more", lambda: shown.find("more").text.endswith(f" of {things + 1}"))
+        choose("cylinder")
+        shown.find("delete").click()
+        shown.until("one less", lambda: shown.find("more").text.endswith(f" of {things}"))
+        with page(served.address) as other:
+            other.until("the same things", lambda: other.find("more").text.endswith(f" of {things}"))
+            other.until_samples(2)
+        while shown.find("back").is_enabled():
+            edits_before = int(shown.find("stage").get_attribute("data-edits"))
+            shown.find("back").click()
+            shown.until("the program's word", lambda: int(shown.find("stage").get_attribute("data-edits")) > edits_before)
+        shown.until("the first picture again", lambda: shown.apart(first, 2) == 0)
+        assert shown.find("again").is_enabled()
+
+
+def read_only(program, scenes, out):
+    """Whoever may only look finds no tools, and changes nothing by messages of his own."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "1", "--read-only") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        first = shown.pixels()
+        shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")[2].click()
+        time.sleep(0.5)
+        assert not shown.find("edit").is_displayed()
+        shown.script("""const s = new WebSocket(location.href.replace(/^http/, 'ws') + 'socket'); window.told = [];
+            s.onmessage = (e) => { if (typeof e.data === 'string') window.told.push(e.data); };
+            s.onopen = () => s.send(JSON.stringify({type: 'edit', what: 'delete', goes_on: false, ids: [2]}))""")
+        shown.until("a refusal", lambda: any("read-only" in t for t in shown.script("return window.told")))
+        assert mean_difference(first, shown.pixels()) == 0
+
+
+def two_pages(program, scenes, out):
+    """Two pages show one picture."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as one, page(served.address) as two:
+        one.until_samples(2)
+        two.until_samples(2)
+        before = two.pixels()
+        one.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
+        two.until("the other's camera", lambda: two.apart(before, 2) > 5)
+        one.until_samples(2)
+        assert mean_difference(one.pixels(), two.pixels()) == 0
+
+
+def figures(program, scenes, out):
+    """The pictures of docs/viewer.md."""
+    def shot(name):
+        shown.picture(out / f"{name}.png")
+
+    def choose(name):
+        item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+        shown.script("arguments[0].scrollIntoView({block: 'center'})", item)
+        item.click()
+        shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and shown.find("material").get_attribute("value"))
+
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
+        shown.driver.set_window_size(1280, 860)
+        choose("capsule 7")
+        shown.until("64 samples", lambda: shown.samples() >= 64, 300)
+        shown.script("document.querySelector('aside').scrollTo(0, 250)")
+        shot("viewer")
+        width, height, _ = shown.pixels()
+        shown.mouse(int(0.93 * width), int(0.8 * height)).click().perform()  # the glass chain
+        shown.until("the crossings", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#table tbody tr")) > 2)
+        shown.script("document.querySelector('#inspector').scrollIntoView()")
+        shot("viewer-inspector")
+        shown.find("help").click()
+        shot("viewer-help")
+    with viewer(program, scenes / "neuron.swc", "--spp", "64") as served, page(served.address) as shown:
+        shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+        shown.driver.set_window_size(1280, 860)
+        shown.until("64 samples", lambda: shown.samples() >= 64 and shown.pixels()[0] > 700, 300)
+        shot("viewer-neuron")
+
+
+CASES = [converges, camera, picks, edits, read_only, keeps_strangers_out, comes_back, two_pages]
+
+
+def main(arguments):
+    if len(arguments) < 3:
+        print(__doc__)
+        return 2
+    program, scenes, out = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
+    if not shutil.which("chromedriver"):
+        print("SKIPPED: no chromedriver (chromium-driver)")
+        return SKIPPED
+    out.mkdir(parents=True, exist_ok=True)
+    failed = []
+    for case in CASES if len(arguments) == 3 else [case for case in [*CASES, figures] if case.__name__ in arguments[3:]]:
+        start = time.monotonic()
+        try:
+            case(program, scenes, out)
+        except Exception:  # the next cases shall run too
+            traceback.print_exc()
+            failed.append(case.__name__)
+        print(f"{case.__name__}: {'FAILED' if case.__name__ in failed else 'passed'}, {time.monotonic() - start:.1f} s", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
