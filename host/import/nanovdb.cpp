@@ -19,8 +19,8 @@ namespace {
 
 // "NanoVDB0", and in newer files "NanoVDB1" of grids and "NanoVDB2" of files.
 constexpr std::uint64_t magic = 0x304244566f6e614e, magic_grid = 0x314244566f6e614e, magic_mask = 0x00ffffffffffffff;
-constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672, tree_bytes = 64;
-constexpr std::uint32_t type_float = 1, type_fp4 = 13, type_fp8 = 14, type_fp16 = 15, type_fpn = 16, class_level_set = 1;
+constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672;
+constexpr std::uint32_t type_float = 1, type_fp4 = 13, type_fpn = 16, class_level_set = 1;
 // By number; those without a name are of newer files.
 constexpr const char* type_names[] = {"an unknown type",
                                       "32-bit floats",

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Shadow rays among media: what is left of their light when they reach it.
-#include "media/crossings.cl"
+#include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "media/travel.cl"
 #include "stages/path.cl"

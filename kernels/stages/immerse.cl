@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // What holds the camera: of the first path, or of each where their rays begin at different points.
-#include "media/crossings.cl"
+#include "stages/crossings.cl"
 
 static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->rays.path_ray[item];

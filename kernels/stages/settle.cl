@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Before paths travel: what holds those that began where several surfaces are at one place, counted anew; and whether such a place is where they come to.
-#include "media/crossings.cl"
+#include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "stages/path.cl"
 

@@ -2,8 +2,8 @@
 // Copyright Caplet authors
 //
 // The crossings of a ray one after the other, those at the same t too; which solids hold it, by those that are still to come.
-#ifndef CAPLET_MEDIA_CROSSINGS_CL
-#define CAPLET_MEDIA_CROSSINGS_CL
+#ifndef CAPLET_STAGES_CROSSINGS_CL
+#define CAPLET_STAGES_CROSSINGS_CL
 
 #define CAPLET_LIST_SPACE __private
 #include "media/immersion.cl"
