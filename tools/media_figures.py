@@ -40,8 +40,9 @@ def nanovdb(density, side):
         struct.pack_into("<" + kind, memory, at, *values)
     put(0, "Q", 0x304244566F6E614E)
     for k in range(3):
-        put(288 + 88 + 32 * k, "d", 1 / side)
-    put(288 + 264, "6d", 0, 0, 0, 1, 1, 1)
+        put(296 + 88 + 32 * k, "d", 1 / side)
+    put(296 + 264, "6d", 0, 0, 0, 1, 1, 1)
+    put(636, "I", 1)
     put(672 + 24, "Q", root - 672)
     put(root + 24, "I", 1)
     put(root + 64, "Qq", 0, upper - root)

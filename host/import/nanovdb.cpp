@@ -2,8 +2,8 @@
 // Copyright Caplet authors
 //
 // NanoVDB files (Museth, "NanoVDB: A GPU-friendly and portable VDB data structure for real-time rendering and simulation", 2021):
-// segments of a header, of what is told of each grid, and of the grids, whose memory is written as it is. Layouts are those of
-// versions 32 and up.
+// segments of a header, of what is told of each grid, and of the grids, whose memory is written as it is; or, from version 32.6
+// on, such memory alone. Layouts are those of version 32.
 #include "import/detail/nanovdb.h"
 
 #include <zlib.h>
@@ -17,10 +17,35 @@ namespace caplet {
 
 namespace {
 
-// "NanoVDB0", and in newer files "NanoVDB1" and "NanoVDB2" (of grids and of files).
-constexpr std::uint64_t magic = 0x304244566f6e614e, magic_mask = 0x00ffffffffffffff;
-constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672, tree_bytes = 64;
-constexpr std::uint32_t type_float = 1;
+// "NanoVDB0", and in newer files "NanoVDB1" of grids and "NanoVDB2" of files.
+constexpr std::uint64_t magic = 0x304244566f6e614e, magic_grid = 0x314244566f6e614e, magic_mask = 0x00ffffffffffffff;
+constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672;
+constexpr std::uint32_t type_float = 1, type_fp4 = 13, type_fpn = 16, class_level_set = 1;
+// By number; those without a name are of newer files.
+constexpr const char* type_names[] = {"an unknown type",
+                                      "32-bit floats",
+                                      "64-bit floats",
+                                      "16-bit integers",
+                                      "32-bit integers",
+                                      "64-bit integers",
+                                      "vectors of 32-bit floats",
+                                      "vectors of 64-bit floats",
+                                      "masks",
+                                      "16-bit floats",
+                                      "32-bit unsigned integers",
+                                      "booleans",
+                                      "colours of 8 bits",
+                                      "4-bit quantised floats",
+                                      "8-bit quantised floats",
+                                      "16-bit quantised floats",
+                                      "quantised floats of varying bits",
+                                      "vectors of four 32-bit floats",
+                                      "vectors of four 64-bit floats",
+                                      "indices",
+                                      "indices of active values",
+                                      "indices with a mask",
+                                      "indices of active values with a mask",
+                                      "indices of points"};
 constexpr std::uint16_t codec_none = 0, codec_zip = 1;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 34;
 
@@ -40,6 +65,7 @@ class Bytes {
   void need(std::uint64_t offset, std::uint64_t count) const {
     if (offset > bytes_.size() || count > bytes_.size() - offset) fail("ends in the middle of a grid");
   }
+  std::uint64_t size() const { return bytes_.size(); }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(where_, file_ + ": " + what); }
 
  private:
@@ -55,7 +81,13 @@ class GridReader {
 
   SparseGrid read() {
     if ((bytes_.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask)) bytes_.fail("is no NanoVDB grid");
-    const std::uint64_t map = 24 + 8 + 256;  // after magic, checksum, version, flags, index, count, size and name
+    type_ = bytes_.at<std::uint32_t>(636);
+    if (bytes_.at<std::uint32_t>(632) == class_level_set)
+      bytes_.fail("has a level set (distances from a surface) where densities are wanted");
+    if (type_ != type_float && !(type_ >= type_fp4 && type_ <= type_fpn))
+      bytes_.fail("has a grid of " + std::string(type_ < std::size(type_names) ? type_names[type_] : type_names[0]) +
+                  ": 32-bit floats and quantised ones are read");
+    const std::uint64_t map = 40 + 256;  // after magic, checksum, version, flags, index, count, size and name
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c)
         out_.medium_from_voxels[c][r] = bytes_.at<double>(map + 88 + 8 * static_cast<std::uint64_t>(3 * r + c));
@@ -78,7 +110,7 @@ class GridReader {
       const Coordinates low{part(42), part(21), part(0)};
       if (child != 0)
         node<5>(at(root, child), low);
-      else if (bytes_.at<std::uint32_t>(tile + 16) != 0 && bytes_.at<float>(tile + 20) != 0)
+      else if (bytes_.at<float>(tile + 20) != 0)
         bytes_.fail("has a constant tile of 4096^3 voxels");
     }
     return std::move(out_);
@@ -94,34 +126,50 @@ class GridReader {
   template <int Log>
   void node(std::uint64_t begin, const Coordinates& low) {
     constexpr std::uint64_t children = std::uint64_t{1} << (3 * Log), mask = children / 8;
-    constexpr std::uint64_t values = 32, child_mask = values + mask, table = (values + 2 * mask + 16 + 31) / 32 * 32;
+    constexpr std::uint64_t child_mask = 32 + mask, table = (32 + 2 * mask + 16 + 31) / 32 * 32;
     constexpr int side = Log == 5 ? 128 : 8;
     bytes_.need(begin, table + 8 * children);
     for (std::uint64_t i = 0; i < children; ++i) {
       const auto n = static_cast<std::int32_t>(i);
       constexpr std::int32_t most = (1 << Log) - 1;
       const Coordinates here{low[0] + side * (n >> 2 * Log), low[1] + side * (n >> Log & most), low[2] + side * (n & most)};
-      const auto is_set = [&](std::uint64_t of) { return (bytes_.at<std::uint8_t>(begin + of + i / 8) >> (i % 8) & 1) != 0; };
-      if (is_set(child_mask)) {
+      if ((bytes_.at<std::uint8_t>(begin + child_mask + i / 8) >> (i % 8) & 1) != 0) {
         const std::uint64_t child = at(begin, bytes_.at<std::int64_t>(begin + table + 8 * i));
         if constexpr (Log == 5)
           node<4>(child, here);
         else
           leaf(child, here);
-      } else if (is_set(values)) {
+      } else {
         constant(bytes_.at<float>(begin + table + 8 * i), here, side);
       }
     }
   }
 
+  /// Behind its place, flags and mask: four statistics and the values, or of quantised ones the least, a step, statistics and
+  /// codes of 4, 8, 16, or by its flags 1 to 16 bits.
   void leaf(std::uint64_t begin, const Coordinates& low) {
-    constexpr std::uint64_t mask = 16, values = 96;
-    bytes_.need(begin, values + 2048);
+    constexpr std::uint64_t values = 96;
+    int bits = 32;
+    if (type_ == type_fpn)
+      bits = 1 << (bytes_.at<std::uint8_t>(begin + 15) >> 5);
+    else if (type_ != type_float)
+      bits = 4 << (type_ - type_fp4);
+    if (type_ == type_fpn && bits > 16) bytes_.fail("has values of more than 16 bits");
+    const std::uint64_t size = values + 64 * static_cast<std::uint64_t>(bits);
+    bytes_.need(begin, size);
+    if (++leaves_ > bytes_.size() / size) bytes_.fail("has nodes that are used twice");
+    const auto least = bytes_.at<float>(begin + 80), step = bytes_.at<float>(begin + 84);
+    const auto value_of = [&](std::uint64_t i) {
+      if (bits == 32) return bytes_.at<float>(begin + values + 4 * i);
+      const std::uint64_t bit = i * static_cast<std::uint64_t>(bits), at = begin + values + bit / 8;
+      const unsigned code =
+          bits == 16 ? bytes_.at<std::uint16_t>(at) : bytes_.at<std::uint8_t>(at) >> (bit % 8) & ((1u << bits) - 1);
+      return static_cast<float>(code) * step + least;
+    };
     std::vector<float>& to = brick(low);
     const std::size_t first = to.size() - 512;
     for (std::size_t i = 0; i < 512; ++i) {
-      (void)mask;
-      const auto value = bytes_.at<float>(begin + values + 4 * i);
+      const float value = value_of(i);
       if (!std::isfinite(value) || value < 0) bytes_.fail("has values that are negative or not finite");
       // From x slowest to x fastest.
       to[first + ((i & 7) * 8 + (i >> 3 & 7)) * 8 + (i >> 6)] = value;
@@ -148,6 +196,8 @@ class GridReader {
   }
 
   const Bytes& bytes_;
+  std::uint32_t type_ = 0;
+  std::uint64_t leaves_ = 0;
   SparseGrid out_;
 };
 
@@ -177,17 +227,34 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
     if (!stream.read(out.data(), static_cast<std::streamsize>(count))) whole.fail("cannot be read");
     return out;
   };
+  const auto check_version = [&](std::uint32_t version) {
+    if (version >> 21 != 32) whole.fail("is of NanoVDB version " + std::to_string(version >> 21) + ", not 32");
+  };
+  const auto grid_of = [&](const std::vector<char>& memory) {
+    const Bytes bytes(memory, where, file);
+    return std::make_shared<const SparseGrid>(GridReader(bytes).read());
+  };
   while (at < total) {
     const std::vector<char> head = read(at, file_header_bytes);
     const Bytes header(head, where, file);
+    if (header.at<std::uint64_t>(0) == magic_grid) {
+      // The memory of a grid and nothing else.
+      const std::vector<char> begin = read(at, grid_bytes);
+      const Bytes grid(begin, where, file);
+      check_version(grid.at<std::uint32_t>(16));
+      const auto size = grid.at<std::uint64_t>(32);
+      if (size < grid_bytes || size > total - at) whole.fail("ends in the middle of a grid");
+      if (std::string(begin.data() + 40, strnlen(begin.data() + 40, 256)) == name) return grid_of(read(at, size));
+      at += size;
+      continue;
+    }
     if ((header.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask)) whole.fail("is no NanoVDB file");
-    if (header.at<std::uint32_t>(8) >> 21 < 32) whole.fail("is of a NanoVDB version before 32");
+    check_version(header.at<std::uint32_t>(8));
     const auto grids = header.at<std::uint16_t>(12), codec = header.at<std::uint16_t>(14);
     at += file_header_bytes;
     struct Told {
       std::string name;
       std::uint64_t size, bytes;
-      std::uint32_t type;
     };
     std::vector<Told> all;
     for (std::uint16_t i = 0; i < grids; ++i) {
@@ -196,26 +263,27 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       const auto length = meta.at<std::uint32_t>(136);
       const std::vector<char> named = read(at + meta_bytes, length);
       const std::string text(named.begin(), named.end());
-      all.push_back({text.c_str(), meta.at<std::uint64_t>(0), meta.at<std::uint64_t>(8), meta.at<std::uint32_t>(32)});
+      all.push_back({text.c_str(), meta.at<std::uint64_t>(0), meta.at<std::uint64_t>(8)});
       at += meta_bytes + length;
     }
     for (const Told& one : all) {
+      // Of compressed ones the length stands before them; writers do not agree on whether what is told counts that as well.
+      const std::uint64_t prefix = codec == codec_none ? 0 : 8;
+      std::uint64_t bytes = one.bytes;
+      if (prefix != 0) {
+        const std::vector<char> length = read(at, prefix);
+        bytes = Bytes(length, where, file).at<std::uint64_t>(0);
+        at += prefix;
+      }
+      if (bytes > total - at) whole.fail("ends in the middle of a grid");
       if (one.name == name) {
-        if (one.type != type_float) whole.fail("has a grid \"" + name + "\" that is not of 32-bit floats");
         if (one.size > most_bytes) whole.fail("has a grid \"" + name + "\" of more than 16 GiB");
         if (codec != codec_none && codec != codec_zip)
           whole.fail("is compressed by BLOSC, which is not read: convert it with ZIP or without compression");
-        std::vector<char> memory = read(at, one.bytes);
-        if (codec == codec_zip) {
-          if (memory.size() < 8) whole.fail("ends in the middle of a grid");
-          memory.erase(memory.begin(), memory.begin() + 8);  // its length
-          memory = inflated(memory, one.size, whole);
-        }
-        const Bytes bytes(memory, where, file);
-        return std::make_shared<const SparseGrid>(GridReader(bytes).read());
+        const std::vector<char> memory = read(at, bytes);
+        return grid_of(codec == codec_zip ? inflated(memory, one.size, whole) : memory);
       }
-      if (one.bytes > total - at) whole.fail("ends in the middle of a grid");
-      at += one.bytes;
+      at += bytes;
     }
   }
   return nullptr;

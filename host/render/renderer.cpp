@@ -69,7 +69,7 @@ RoundStages round_stages(const DeviceScene& scene) {
 }
 /// Whether such a scene's renders have no use for a stage.
 bool is_idle(Stage stage, const DeviceScene& scene) {
-  if (stage == Stage::immerse || stage == Stage::travel) return !scene.has_media();
+  if (stage == Stage::immerse || stage == Stage::settle || stage == Stage::travel) return !scene.has_media();
   constexpr std::array choices{Stage::extend,      Stage::extend_camera, Stage::extend_alpha,  Stage::shade,
                                Stage::shade_media, Stage::connect,       Stage::connect_alpha, Stage::connect_media};
   if (std::ranges::find(choices, stage) == choices.end()) return false;
@@ -247,7 +247,10 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
     if (sorts) paths_.sort.sort_bins.clear();
     kernels.run(extend, bindings, paths);
     extend = stages.later;
-    if (scene_.has_media()) kernels.run(Stage::travel, bindings, paths);
+    if (scene_.has_media()) {
+      kernels.run(Stage::settle, bindings, paths);
+      kernels.run(Stage::travel, bindings, paths);
+    }
     kernels.run(stages.shade, bindings, paths);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
@@ -278,7 +281,10 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
       if (sorts) paths_.sort.sort_bins.clear();
       kernels.run(extend, bindings, paths, 0, counter_queued);
       extend = stages.later;
-      if (scene_.has_media()) kernels.run(Stage::travel, bindings, paths, 0, counter_queued);
+      if (scene_.has_media()) {
+        kernels.run(Stage::settle, bindings, paths, 0, counter_queued);
+        kernels.run(Stage::travel, bindings, paths, 0, counter_queued);
+      }
       kernels.run(stages.shade, bindings, paths, 0, counter_queued);
       kernels.run(stages.connect, bindings, paths, 0, counter_shadow);
       if (sorts)

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 namespace caplet {
 
@@ -18,23 +21,107 @@ double fresnel(double cosine, double eta) {
   return 0.5 * (parallel * parallel + across * across);
 }
 
+constexpr double pi = std::numbers::pi;
+
+/// A quadrature: places and weights.
+struct Nodes {
+  std::vector<double> at, weight;
+
+  /// Gauss and Legendre's of n places in a stretch.
+  void add(double low, double high, int n) {
+    for (int i = 0; i < n; ++i) {
+      double x = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+      for (int round = 0; round < 8; ++round) {
+        double p = 1, before = 0;
+        for (int k = 0; k < n; ++k) before = std::exchange(p, ((2 * k + 1) * x * p - k * before) / (k + 1));
+        slope = n * (x * p - before) / (x * x - 1);
+        x -= p / slope;
+      }
+      at.push_back(low + (high - low) * 0.5 * (1 + x));
+      weight.push_back((high - low) / ((1 - x * x) * slope * slope));
+    }
+  }
+};
+
+/// Half of space that scatters evenly, behind a smooth boundary of relative index eta.
+class HalfOfSpace {
+ public:
+  explicit HalfOfSpace(double eta) {
+    // Light from within is reflected as a whole below the critical cosine.
+    const double critical = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : 0;
+    if (critical > 0) mu_.add(0, critical, 20);
+    mu_.add(critical, 1, 24);
+    for (const double mu : mu_.at) mirrored_.push_back(fresnel(mu, 1 / eta));
+    theta_.add(0, 1, 64);
+  }
+
+  /// The part of even light, of what comes in, that goes out again. `albedo`: of a scattering, from 0 to 1.
+  double reflectance(double albedo) const {
+    const std::size_t n = mu_.at.size();
+    const std::vector<double> h = chandrasekhar(albedo);
+    // Upward radiance u at the boundary: u = K (j + f u), K the reflection of a half without a boundary, albedo H H' / (2 (mu +
+    // mu')) mu', j what comes in and f what the boundary sends back.
+    std::vector<double> table(n * (n + 1));
+    const auto at = [&](std::size_t row, std::size_t column) -> double& { return table[row * (n + 1) + column]; };
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < n; ++k) {
+        const double reflected = albedo * h[i] * h[k] / (2 * (mu_.at[i] + mu_.at[k])) * mu_.at[k] * mu_.weight[k];
+        at(i, k) = (i == k ? 1 : 0) - reflected * mirrored_[k];
+        at(i, n) += reflected * (1 - mirrored_[k]);
+      }
+    // The diagonal is large enough to divide by in order: columns of K f add up to less than 1.
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t r = i + 1; r < n; ++r) {
+        const double times = at(r, i) / at(i, i);
+        for (std::size_t k = i; k <= n; ++k) at(r, k) -= times * at(i, k);
+      }
+    double out = 0, in = 0;
+    for (std::size_t i = n; i-- > 0;) {
+      double u = at(i, n);
+      for (std::size_t k = i + 1; k < n; ++k) u -= at(i, k) * at(k, n);
+      at(i, n) = u / at(i, i);
+      out += mu_.at[i] * mu_.weight[i] * (1 - mirrored_[i]) * at(i, n);
+      in += mu_.at[i] * mu_.weight[i] * (1 - mirrored_[i]);
+    }
+    return out / in;
+  }
+
+ private:
+  /// Chandrasekhar's H of even scattering: log H(mu) = -mu / pi times the integral of log(1 - albedo t cot t) / (cos^2 t + mu^2
+  /// sin^2 t) for t from 0 to pi / 2 (Radiative Transfer, 1950).
+  std::vector<double> chandrasekhar(double albedo) const {
+    std::vector<double> log_h(mu_.at.size());
+    for (std::size_t j = 0; j < theta_.at.size(); ++j) {
+      // More places near 0, where the logarithm has no bound at albedo 1; and near pi / 2, where a small mu makes a peak.
+      const double s = theta_.at[j], t = pi / 2 * s * s * (3 - 2 * s), dt = pi * 3 * s * (1 - s);
+      const double cosine = std::cos(t), sine = std::sin(t), lost = std::log(std::max(1 - albedo * t * cosine / sine, 1e-30));
+      for (std::size_t i = 0; i < log_h.size(); ++i) {
+        const double mu = mu_.at[i];
+        log_h[i] -= mu / pi * lost / (cosine * cosine + mu * mu * sine * sine) * theta_.weight[j] * dt;
+      }
+    }
+    for (double& one : log_h) one = std::exp(one);
+    return log_h;
+  }
+
+  Nodes mu_, theta_;
+  std::vector<double> mirrored_;
+};
+
 }  // namespace
 
-double even_reflectance(double eta) {
-  // Even steps of the squared cosine, by which even light comes.
-  constexpr int steps = 4096;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) sum += fresnel(std::sqrt((i + 0.5) / steps), eta);
-  return sum / steps;
-}
-
 double albedo_within(double reflectance, double eta, double g) {
-  const double r = std::clamp(reflectance, 0.0, 1.0), within = even_reflectance(1 / eta);
-  const double bare = r / (1 - within + within * r);
-  // 0.139 s^2 - (1.139 + 1.17 bare) s + 1 - bare = 0
-  const double b = 1.139 + 1.17 * bare, c = 1 - bare;
-  const double s = 2 * c / (b + std::sqrt(std::max(0.0, b * b - 4 * 0.139 * c)));
-  return std::clamp((1 - s * s) / (1 - g * s * s), 0.0, 1.0);
+  const double wanted = std::clamp(reflectance, 0.0, 1.0);
+  if (wanted == 0 || wanted == 1) return wanted;
+  const HalfOfSpace half(eta);
+  double low = 0, high = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (half.reflectance(middle) < wanted ? low : high) = middle;
+  }
+  // Similar scattering: as much of it to the sides.
+  const double even = 0.5 * (low + high);
+  return even / (1 - g + even * g);
 }
 
 }  // namespace caplet

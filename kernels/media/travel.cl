@@ -81,6 +81,23 @@ static inline float4 scattering_share(float4 sigma_s, float4 null) {
   return select((float4)(0.0f), sigma_s / fmax(both, 1e-30f), both > 0.0f);
 }
 
+// A step by the random number u where no more than `most` is left of a cell. 0: it goes through, and the weights are of what it has passed. Else it
+// comes to a collision at *way, with *ratio to what the hero's density there is.
+static inline int collides(float4 majorant, float most, float u, MediumWeights* w, float* way, float4* ratio) {
+  const float hero = majorant.x, gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
+  const int stays = gone < most;
+  *way = stays ? gone : most;
+  *ratio = exp(-(majorant - hero) * *way);
+  if (stays) {
+    *ratio /= hero;
+    return 1;
+  }
+  w->throughput *= *ratio;
+  w->scattering *= *ratio;
+  w->light *= *ratio;
+  return 0;
+}
+
 static inline int travel_varying(uint kind, const MediumView* view, float3 o, float3 d, float t0, float t1, int scatters, float u, MediumNumbers* numbers,
                                  MediumWeights* w, float4* emitted, float* t_scattered) {
   const MediumBox box = medium_box(kind, view);
@@ -92,20 +109,14 @@ static inline int travel_varying(uint kind, const MediumView* view, float3 o, fl
     const float4 majorant = cell * box.extinction;
     const float hero = majorant.x;
     for (;;) {
-      const float gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
-      const int stays = gone < (end - t) * unit;
-      const float way = stays ? gone : (end - t) * unit;
-      float4 ratio = exp(-(majorant - hero) * way);
-      if (!stays) {
-        w->throughput *= ratio;
-        w->scattering *= ratio;
-        w->light *= ratio;
+      float way;
+      float4 ratio;
+      if (!collides(majorant, (end - t) * unit, u, w, &way, &ratio)) {
         // What is left of the random number: the next stretch's.
         u = hero > 0.0f ? clamp(1.0f - (1.0f - u) * exp(hero * way), 0.0f, 0x1.fffffep-1f) : u;
         break;
       }
-      t += gone / unit;
-      ratio /= hero;
+      t += way / unit;
       const MediumPoint at = medium_at(kind, view, box.place, o + t * d);
       if (scatters && max4(at.le) > 0.0f) {
         const float density = mean4(w->scattering * ratio * majorant);
@@ -171,18 +182,10 @@ static inline int medium_dims(const Media* media, const Spectra* spectra, uint m
     const float4 majorant = cell * box.extinction;
     const float hero = majorant.x;
     for (;;) {
-      const float gone = hero > 0.0f ? -log(1.0f - medium_number(numbers)) / hero : INFINITY;
-      const int stays = gone < (end - t) * unit;
-      const float way = stays ? gone : (end - t) * unit;
-      float4 ratio = exp(-(majorant - hero) * way);
-      if (!stays) {
-        w->throughput *= ratio;
-        w->scattering *= ratio;
-        w->light *= ratio;
-        break;
-      }
-      t += gone / unit;
-      ratio /= hero;
+      float way;
+      float4 ratio;
+      if (!collides(majorant, (end - t) * unit, hero > 0.0f ? medium_number(numbers) : 0.0f, w, &way, &ratio)) break;
+      t += way / unit;
       const MediumPoint at = medium_at(kind, &view, box.place, o + t * d);
       const float4 null = fmax(majorant - at.sigma_a - at.sigma_s, 0.0f);
       w->throughput *= ratio * null;

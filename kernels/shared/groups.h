@@ -146,11 +146,13 @@
   GROUP_BEGIN(Immersion, immersion)                                                                         \
   BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/immersion.cl) */ \
   BUFFER(path_around, uint, STATE_MEDIA)                                                                    \
+  BUFFER(path_near, uint, STATE_MEDIA) /* whether other surfaces are where it comes to: CAPLET_ALONE, ... (kinds.h) */ \
   /* densities with which scattering, and a light sample, would have made the path at each wavelength, over the mean of the first (media/travel.cl) */ \
   BUFFER(path_ratio, float4, STATE_MEDIA)                                                                   \
   BUFFER(path_light_ratio, float4, STATE_MEDIA)                                                             \
   BUFFER(shadow_inside, uint4, STATE_MEDIA)                                                                 \
   BUFFER(shadow_around, uint, STATE_MEDIA)                                                                  \
+  BUFFER(shadow_near, uint, STATE_MEDIA)                                                                    \
   BUFFER(shadow_pdfs, float2, STATE_MEDIA) /* of the light sample, and of scattering into its direction (0: a delta light) */ \
   GROUP_END(Immersion)
 

@@ -137,6 +137,12 @@ enum {
 // Boundaries that are told apart at a point; the numbers of those that there may be
 #define CAPLET_HELD_BY 4
 #define CAPLET_MOST_BOUNDARIES 0xfffffeu
+// path_near: a surface by itself; one of several at the same place, with the number of the largest boundary that is left there; what holds the
+// ray is to be counted
+#define CAPLET_ALONE 0u
+#define CAPLET_NEAR 1u
+#define CAPLET_NEAR_LEFT 2u
+#define CAPLET_UNSETTLED 0xffffffffu
 
 // Fields of textures (textures.def): what spectra of an image are
 #define CAPLET_USE_ALBEDO 0u     // from 0 to 1

@@ -2,27 +2,11 @@
 // Copyright Caplet authors
 //
 // Shadow rays among media: what is left of their light when they reach it.
-#include "media/immersion.cl"
+#include "stages/crossings.cl"
+#include "media/passing.cl"
 #include "media/travel.cl"
 #include "stages/path.cl"
 #include "trace/alpha.cl"
-
-// Whether light goes through the surface of a hit as if it were not there.
-static inline int surface_passes(const Stage* g, const HitRecord* hit) {
-  const uint primitive = as_uint(g->tree.leaves[hit->slot]);
-  __global const GeometryRecord* geometry = g->surfaces.geometries + g->surfaces.primitive_geometry[primitive];
-  uint material = geometry->material;
-  if (geometry->surface_begin != CAPLET_NONE)
-    material = g->surfaces.surface_materials[geometry->surface_begin + (hit->surface & CAPLET_SURFACE_MASK)] & ~CAPLET_SURFACE_DARK;
-  switch (g->materials.materials[material].kind) {
-#define MATERIAL(name, traits) \
-  case material_##name: return ((traits)&trait_passes) != 0;
-#define CHOICE(name, traits)
-#include "rows/materials.def"
-#undef MATERIAL
-    default: return 0;
-  }
-}
 
 static void stage_item(const Stage* g, uint item) {
   const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
@@ -38,19 +22,31 @@ static void stage_item(const Stage* g, uint item) {
   weights.throughput = g->shadows.path_shadow_radiance[path];
   weights.scattering = weights.light = g->immersion.path_ratio[path];
   weights.most = max4(fabs(weights.throughput));
+  if (g->immersion.shadow_near[path] == CAPLET_UNSETTLED) held = held_counted(&g->tree, &g->surfaces, &g->media, ray, held);
+  RayCrossings crossings;
+  crossings_begin(&crossings, ray);
+  HitRecord hit = {ray.t_min, CAPLET_NONE, CAPLET_NONE, 0u};
+  uint left = CAPLET_NONE;  // the largest of what was left at one place
+  float left_at = -INFINITY;
   for (;;) {
-    const HitRecord hit = trace_closest(&g->tree, ray);
-    const int met = hit.slot != CAPLET_NONE;
+    const float from = hit.t;
+    const int met = crossings_next(&g->tree, &crossings);
+    if (met) hit = crossings.hits[crossings.at - 1u];
+    else hit.slot = CAPLET_NONE;
     const int crosses = met && alpha_stops(&scene, &ray, &hit);
-    if (crosses && !surface_passes(g, &hit)) return;
-    const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), held);
-    const uint medium = held_medium(&g->media, &here);
-    if (medium != CAPLET_NONE && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, ray.t_min, met ? hit.t : ray.t_max, &numbers, &weights))
-      return;
+    if (crosses && !surface_passes(&g->tree, &g->surfaces, &g->materials, &hit)) return;
+    held = held_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), held);
+    const uint medium = held_medium(&g->media, &held);
+    const float to = met ? hit.t : ray.t_max;
+    if (medium != CAPLET_NONE && from < to && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers, &weights)) return;
     if (!met) break;
-    held = here;
-    if (crosses) held_cross(&g->tree, &g->surfaces, &g->media, &hit, &held);
-    ray.t_min = hit.t;
+    const uint boundary = crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;
+    if (boundary == CAPLET_NONE || crossing_repeats(&g->tree, &g->surfaces, &g->media, &crossings)) continue;
+    held_cross(&g->tree, &g->surfaces, &g->media, &hit, &held);
+    if (!boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &hit)) continue;
+    left = hit.t - left_at <= crossings_apart(&ray, hit.t) ? min(left, boundary) : boundary;
+    left_at = hit.t;
+    held.around = g->media.boundaries[left].outside;
   }
   const float light = mean4(weights.light), scattering = mean4(weights.scattering);
   if (!(light > 0.0f)) return;

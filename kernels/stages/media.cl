@@ -6,6 +6,7 @@
 #define CAPLET_STAGES_MEDIA_CL
 
 #include "media/immersion.cl"
+#include "media/passing.cl"
 #include "shapes/surface.cl"
 #include "stages/outbox.cl"
 #include "stages/path.cl"
@@ -19,7 +20,8 @@ static inline void set_path_held(const Stage* g, uint path, Held held) {
   g->immersion.path_inside[path] = held.inside;
   g->immersion.path_around[path] = held.around;
 }
-static inline void set_shadow_held(const Stage* g, uint path, Held held) {
+static inline void set_shadow_held(const Stage* g, uint path, Held held, int settled) {
+  g->immersion.shadow_near[path] = settled ? CAPLET_ALONE : CAPLET_UNSETTLED;
   g->immersion.shadow_inside[path] = held.inside;
   g->immersion.shadow_around[path] = held.around;
 }
@@ -30,24 +32,28 @@ static inline void media_goes_on(const Stage* g, Outbox* out, uint path, float3 
   append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
 }
 
+// What holds a path that goes through what it hit; where other surfaces are there as well, as far as this one tells.
+static inline Held held_behind(const Stage* g, uint path, const HitRecord* hit) {
+  Held held = path_held(g, path);
+  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
+  const uint near = g->immersion.path_near[path];
+  if (near >= CAPLET_NEAR_LEFT) held.around = g->media.boundaries[near - CAPLET_NEAR_LEFT].outside;
+  return held;
+}
+// A path that goes on from what it hit, or through it.
+static inline void media_settles(const Stage* g, uint path) {
+  if (g->immersion.path_near[path] != CAPLET_ALONE) g->immersion.path_near[path] = CAPLET_UNSETTLED;
+}
+static inline void media_crossed(const Stage* g, uint path, const HitRecord* hit) {
+  set_path_held(g, path, held_behind(g, path, hit));
+  media_settles(g, path);
+}
+
 // 1: the path goes on behind a surface that light passes as if it were not there. Its ray begins where it did, so that the densities
 // of lights are those at the last scattering, and sees nothing up to the surface.
 static inline int media_passes(const Stage* g, Outbox* out, uint path, uint material, const RayRecord* ray, const HitRecord* hit) {
-  int passes = 0;
-  switch (g->materials.materials[material].kind) {
-#define MATERIAL(name, traits) \
-  case material_##name:        \
-    passes = ((traits)&trait_passes) != 0; \
-    break;
-#define CHOICE(name, traits)
-#include "rows/materials.def"
-#undef MATERIAL
-    default: break;
-  }
-  if (!passes) return 0;
-  Held held = path_held(g, path);
-  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
-  set_path_held(g, path, held);
+  if (!material_passes(&g->materials, material)) return 0;
+  media_crossed(g, path, hit);
   g->rays.path_ray[path].t_min = hit->t;
   const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
   media_goes_on(g, out, path, o + hit->t * d, d);
@@ -56,9 +62,8 @@ static inline int media_passes(const Stage* g, Outbox* out, uint path, uint mate
 
 // What is to be known of a light sample beside its radiance: what holds its ray, and the densities.
 static inline void media_shadow(const Stage* g, uint path, const HitRecord* hit, const Surface* s, float3 wo, const LightSample* light, float bsdf_pdf) {
-  Held held = path_held(g, path);
-  if (dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f) held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
-  set_shadow_held(g, path, held);
+  const int crosses = dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f;
+  set_shadow_held(g, path, crosses ? held_behind(g, path, hit) : path_held(g, path), g->immersion.path_near[path] == CAPLET_ALONE);
   g->immersion.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
 }
 
@@ -72,10 +77,10 @@ static inline void media_hero_alone(const Stage* g, uint path, float4* throughpu
 // The path goes on from a scattering: at a surface, maybe through it.
 static inline void media_scattered(const Stage* g, uint path, const HitRecord* hit, int crosses) {
   g->immersion.path_light_ratio[path] = g->immersion.path_ratio[path];
-  if (!crosses) return;
-  Held held = path_held(g, path);
-  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
-  set_path_held(g, path, held);
+  if (crosses)
+    media_crossed(g, path, hit);
+  else
+    media_settles(g, path);
 }
 
 #endif

@@ -12,7 +12,7 @@
 // Random numbers beside those of dimensions.def: how far each of a path's rays comes.
 #define MEDIUM_SAMPLE(depth) (0x40000000u + (depth))
 
-static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene* scene, uint path, float3 p, float3 direction, float asymmetry, Held held, float4 throughput,
+static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene* scene, uint path, float3 p, float3 direction, float asymmetry, Held held, int settled, float4 throughput,
                                        float4 wavelengths, uint u_select, float2 u) {
   LightSample light;
   const LightReceiver at = {p, CAPLET_NONE};
@@ -24,7 +24,7 @@ static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene*
   RayRecord ray;
   ray.ox = p.x; ray.oy = p.y; ray.oz = p.z; ray.t_min = 0.0f;
   ray.dx = to.x; ray.dy = to.y; ray.dz = to.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
-  set_shadow_held(g, path, held);
+  set_shadow_held(g, path, held, settled);
   g->immersion.shadow_pdfs[path] = (float2)(light.pdf, light.delta ? 0.0f : phase);
   g->shadows.path_shadow[path] = ray;
   g->shadows.path_shadow_radiance[path] = contribution;
@@ -80,9 +80,13 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   g->immersion.path_ratio[path] = weights.scattering;
   g->immersion.path_light_ratio[path] = weights.scattering;
   if (!begins) set_path_held(g, path, here);  // others may still ask what holds the first path
+  // A point at either end may come to lie beyond the surface that is there.
+  const float ends = 0x1p-20f * (max3(fabs(o)) + t * max3(fabs(d))) / length(d);
+  const int settled = t - ray.t_min > ends && hit.t - t > ends;
+  g->immersion.path_near[path] = settled ? CAPLET_ALONE : CAPLET_UNSETTLED;
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   if (g->lights.lighting->sampled_light_count > 0)
-    sample_medium_light(g, out, &scene, path, p, d, asymmetry, here, throughput, wavelengths,
+    sample_medium_light(g, out, &scene, path, p, d, asymmetry, here, settled, throughput, wavelengths,
                         sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   float4 scatter = g->carried.path_scatter[path];

@@ -7,10 +7,14 @@
 
 #include "trace/trace.cl"
 
+#ifndef CAPLET_LIST_SPACE
+#define CAPLET_LIST_SPACE __global  // where lists are
+#endif
+
 // The list of one ray while it is made: the nearest crossings so far, in order.
 typedef struct {
   const Tree* tree;
-  __global HitRecord* sorted;
+  CAPLET_LIST_SPACE HitRecord* sorted;
   uint capacity, count;
   int more;       // some were left out
   float t_end;    // crossings at or beyond this t cannot matter; of a full list, those beyond its last one
@@ -18,7 +22,7 @@ typedef struct {
 } HitList;
 
 // By t; leaving before entering, so that solids that touch are not nested for an instant; then tie_is_before, surface.
-static inline int hit_is_before(const Tree* tree, const HitRecord* a, __global const HitRecord* b) {
+static inline int hit_is_before(const Tree* tree, const HitRecord* a, CAPLET_LIST_SPACE const HitRecord* b) {
   if (a->t != b->t) return a->t < b->t;
   const uint a_leaves = a->surface & CAPLET_LEAVING, b_leaves = b->surface & CAPLET_LEAVING;
   if (a_leaves != b_leaves) return a_leaves != 0;
@@ -101,7 +105,7 @@ static inline float list_end(const HitList* list, float t_end) {
 // traversal can show.
 // capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
 // itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
-static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
   HitList list;
   list.tree = tree;
   list.sorted = sorted;
@@ -166,7 +170,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
 }
 
 // In the whole scene.
-static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity, __global HitRecord* sorted) {
+static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
   return trace_list(tree, tree->world->root, ray, capacity, sorted);
 }
 

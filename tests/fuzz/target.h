@@ -4,7 +4,6 @@
 // What the fuzz targets share: how one is run, bytes as a file, and what must hold for every scene that an importer returns.
 #pragma once
 
-#include <spdlog/spdlog.h>
 #include <sys/mman.h>
 #include <unistd.h>
 

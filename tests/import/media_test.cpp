@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "import_text.h"
+#include "scene/media/subsurface.h"
 
 namespace caplet::test {
 namespace {
@@ -200,6 +201,32 @@ TEST(Subsurface, WhatIsWrongHasItsPlace) {
   EXPECT_THAT(wrong("\"rgb reflectance\" [.5 .5 .5] \"string name\" \"Skin1\""), ElementsAre(HasSubstr("takes one of")));
   EXPECT_THAT(said("Material \"subsurface\"\nShape \"disk\""),
               ElementsAre(HasSubstr("scene.pbrt:3:1: the medium subsurface is on an open surface")));
+}
+
+// Parts of even light that go out again, by walks (tests/media/walks.py; 2e5 of them).
+TEST(Subsurface, AlbedosAreThoseOfTransport) {
+  struct Walk {
+    double eta, g, albedo, reflectance, within;
+  };
+  for (const Walk& walk : {Walk{1.33, 0, 0.5, 0.0653, 0.001},
+                           {1.33, 0, 0.8, 0.1845, 0.001},
+                           {1.33, 0, 0.93, 0.3556, 0.001},
+                           {1.33, 0, 0.98, 0.5611, 0.001},
+                           {1.33, 0, 0.995, 0.7419, 0.001},
+                           {1.5, 0, 0.5, 0.0490, 0.001},
+                           {1.5, 0, 0.93, 0.2924, 0.001},
+                           {1.5, 0, 0.995, 0.6869, 0.0015},
+                           {1.33, 0.7, 0.5, 0.0129, 0.02},
+                           {1.33, 0.7, 0.8, 0.0595, 0.02},
+                           {1.33, 0.7, 0.93, 0.1704, 0.02},
+                           {1.33, 0.7, 0.98, 0.3653, 0.02},
+                           {1.33, 0.7, 0.995, 0.5893, 0.02}}) {
+    // It rises with the albedo: that of a little more is above.
+    EXPECT_LT(albedo_within(walk.reflectance - walk.within, walk.eta, walk.g), walk.albedo) << walk.eta << " " << walk.g;
+    EXPECT_GT(albedo_within(walk.reflectance + walk.within, walk.eta, walk.g), walk.albedo) << walk.eta << " " << walk.g;
+  }
+  EXPECT_EQ(albedo_within(0, 1.33, 0), 0);
+  EXPECT_EQ(albedo_within(1, 1.33, 0.5), 1);
 }
 
 }  // namespace

@@ -29,6 +29,15 @@ std::array<Mean, 3> colors_seen(const std::string& text, int samples, int size =
 /// Within four standard errors and a share of it.
 testing::AssertionResult agrees(const Mean& mean, double expected, double tolerance = 0.005);
 
+/// Media "a", "b" and "c", which absorb 0.3, 0.5 and 0.9 per unit.
+std::string three_media();
+/// What the light along +z from the point of that height loses in them, as an optical length. `before`: statements before the
+/// camera's.
+double lost(double z, const std::string& shapes, const std::string& before = "", const std::string& lens = "");
+/// Solids that light passes, around the z axis.
+std::string sphere(double z, double r, const std::string& inside, const std::string& outside = "");
+std::string box(double z0, double z1, const std::string& inside, const std::string& outside = "", double half = 1);
+
 /// Mean of exp(-sigma l) over the chords l of a sphere that parallel rays meet.
 double sphere_transmittance(double sigma, double radius);
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The crossings of a ray one after the other, those at the same t too; which solids hold it, by those that are still to come.
+#ifndef CAPLET_STAGES_CROSSINGS_CL
+#define CAPLET_STAGES_CROSSINGS_CL
+
+#define CAPLET_LIST_SPACE __private
+#include "media/immersion.cl"
+#include "trace/list.cl"
+
+#define CAPLET_CROSSINGS 16  // that are found at a time; of more at the same t the rest are not told
+
+// What of `ray` has not been told yet, and the next of it.
+typedef struct {
+  RayRecord ray;
+  uint at, count;
+  int more;
+  HitRecord hits[CAPLET_CROSSINGS];
+} RayCrossings;
+
+static inline void crossings_begin(RayCrossings* c, RayRecord ray) {
+  c->ray = ray;
+  c->at = c->count = 0u;
+  c->more = 1;
+}
+
+// The next one is hits[at - 1]. 0: there is none.
+static inline int crossings_next(const Tree* tree, RayCrossings* c) {
+  if (c->at == c->count) {
+    if (!c->more) return 0;
+    const uint found = trace_all(tree, c->ray, CAPLET_CROSSINGS, c->hits);
+    c->more = found > CAPLET_CROSSINGS;
+    c->at = 0u;
+    c->count = min(found, (uint)CAPLET_CROSSINGS);
+    if (c->count == 0u) return 0;
+    if (c->more) {
+      // Those at the same t as the last one come together.
+      const float last = c->hits[CAPLET_CROSSINGS - 1].t;
+      while (c->count > 0u && c->hits[c->count - 1u].t == last) c->count -= 1u;
+      if (c->count == 0u) c->count = CAPLET_CROSSINGS;
+      c->ray.t_min = c->hits[c->count - 1u].t;
+    }
+  }
+  c->at += 1u;
+  return 1;
+}
+
+// How far apart two crossings at about t can be of surfaces that are at one place: what rounding may do to either.
+static inline float crossings_apart(const RayRecord* ray, float t) {
+  const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
+  return 0x1p-17f * (max3(fabs(o)) + t * max3(fabs(d))) / length(d);
+}
+
+// Whether the last one is told a second time: of a mesh whose edge or corner the ray meets each face there is a crossing.
+static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, const Media* media, const RayCrossings* c) {
+  const HitRecord hit = c->hits[c->at - 1u];
+  const uint geometry = surfaces->primitive_geometry[as_uint(tree->leaves[hit.slot])];
+  if ((media->boundaries[media->geometry_boundary[geometry]].flags & CAPLET_BOUNDARY_SHEET) == 0) return 0;
+  const float first = hit.t - crossings_apart(&c->ray, hit.t);
+  for (uint i = c->at - 1u; i > 0u && c->hits[i - 1u].t >= first; --i) {
+    const HitRecord before = c->hits[i - 1u];
+    if (before.instance == hit.instance && ((before.surface ^ hit.surface) & CAPLET_LEAVING) == 0u &&
+        surfaces->primitive_geometry[as_uint(tree->leaves[before.slot])] == geometry)
+      return 1;
+  }
+  return 0;
+}
+
+#define CAPLET_HELD_COUNTED 16  // boundaries that are counted at a time
+
+// What holds a ray behind its t_min: the closed solids that it leaves more often than it enters them, and of `before` what goes by
+// normals alone.
+static inline Held held_counted(const Tree* tree, const Surfaces* surfaces, const Media* media, RayRecord ray, Held before) {
+  uint boundary[CAPLET_HELD_COUNTED];
+  int count[CAPLET_HELD_COUNTED];
+  for (int i = 0; i < CAPLET_HELD_COUNTED; ++i) count[i] = 0;
+  RayCrossings crossings;
+  ray.t_max = INFINITY;
+  crossings_begin(&crossings, ray);
+  while (crossings_next(tree, &crossings)) {
+    const HitRecord hit = crossings.hits[crossings.at - 1u];
+    const uint met = boundary_of(tree, surfaces, media, &hit);
+    if (met == CAPLET_NONE || (media->boundaries[met].flags & CAPLET_BOUNDARY_CLOSED) == 0) continue;
+    if (crossing_repeats(tree, surfaces, media, &crossings)) continue;
+    int place = -1, empty = -1;
+    for (int i = 0; i < CAPLET_HELD_COUNTED; ++i) {
+      if (count[i] != 0 && boundary[i] == met) place = i;
+      if (count[i] == 0) empty = i;
+    }
+    if (place < 0) place = empty;
+    if (place < 0) continue;
+    boundary[place] = met;
+    count[place] += boundary_is_left(tree, surfaces, media, met, &hit) ? 1 : -1;
+  }
+  Held held = {(uint4)(0u), before.around};
+  for (int i = 0; i < CAPLET_HELD_COUNTED; ++i)
+    for (int k = 0; k < count[i]; ++k) held_enter(&held, boundary[i]);
+  uint all[CAPLET_HELD_BY];
+  vstore4(before.inside, 0, all);
+  for (int i = 0; i < CAPLET_HELD_BY; ++i)
+    if (all[i] != 0u && (media->boundaries[(all[i] >> 8) - 1u].flags & CAPLET_BOUNDARY_CLOSED) == 0)
+      for (uint k = 0; k < (all[i] & 255u); ++k) held_enter(&held, (all[i] >> 8) - 1u);
+  return held;
+}
+
+#endif

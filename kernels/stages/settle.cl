@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Before paths travel: what holds those that began where several surfaces are at one place, counted anew; and whether such a place is where they come to.
+#include "stages/crossings.cl"
+#include "media/passing.cl"
+#include "stages/path.cl"
+
+static void stage_item(const Stage* g, uint item) {
+  const uint path = g->queues.queue[item];
+  const RayRecord ray = g->rays.path_ray[path];
+  const HitRecord hit = g->rays.path_hit[path];
+  const int begins = (g->carried.path_flags[path] >> PATH_DEPTH_SHIFT) == 0u && ray.t_min == 0.0f;
+  if (!begins && g->immersion.path_near[path] == CAPLET_UNSETTLED) {
+    Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
+    held = held_counted(&g->tree, &g->surfaces, &g->media, ray, held);
+    g->immersion.path_inside[path] = held.inside;
+    g->immersion.path_around[path] = held.around;
+  }
+  g->immersion.path_near[path] = CAPLET_ALONE;
+  if (hit.slot == CAPLET_NONE) return;
+
+  RayRecord around = ray;
+  const float apart = crossings_apart(&ray, hit.t);
+  around.t_min = hit.t - apart;
+  around.t_max = hit.t + apart;
+  RayCrossings crossings;
+  crossings_begin(&crossings, around);
+  int passes = surface_passes(&g->tree, &g->surfaces, &g->materials, &hit);
+  uint near = CAPLET_ALONE, left = CAPLET_NONE;
+  while (crossings_next(&g->tree, &crossings)) {
+    const HitRecord other = crossings.hits[crossings.at - 1u];
+    const uint boundary = boundary_of(&g->tree, &g->surfaces, &g->media, &other);
+    if (boundary != CAPLET_NONE && boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &other)) left = min(left, boundary);
+    if (other.slot == hit.slot && other.instance == hit.instance && other.t == hit.t && other.surface == hit.surface) continue;
+    if (boundary != CAPLET_NONE) near = CAPLET_NEAR;
+    if (!passes || other.t != hit.t) continue;
+    // What stops light at the same t, the nearest hit has hidden.
+    const uint geometry = g->surfaces.primitive_geometry[as_uint(g->tree.leaves[other.slot])];
+    passes = g->surfaces.geometries[geometry].alpha != CAPLET_NONE || surface_passes(&g->tree, &g->surfaces, &g->materials, &other);
+    if (passes) continue;
+    g->rays.path_hit[path] = other;
+    near = CAPLET_NEAR;
+  }
+  if (near == CAPLET_NEAR) g->immersion.path_near[path] = left == CAPLET_NONE ? CAPLET_NEAR : CAPLET_NEAR_LEFT + left;
+}
