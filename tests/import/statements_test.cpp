@@ -83,6 +83,19 @@ TEST(Integrators, AllThatMakePicturesAreTaken) {
   EXPECT_THAT(log.text(), HasSubstr("scene.pbrt:1:22: Integrator \"volpath\": nothing is made rougher than it is"));
 }
 
+// Edges of a crop are rounded up: 0.05, 0.55, 0.25 and 0.75 of 10 pixels.
+TEST(Films, CropsAreRoundedUp) {
+  const Scene scene =
+      scene_of("Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 10 \"float cropwindow\" [.05 .55 .25 .75]\n" +
+               std::string(ball));
+  EXPECT_THAT(scene.film.crop.value(), ElementsAre(1, 6, 3, 8));
+}
+
+TEST(Cameras, LensesHaveARadius) {
+  EXPECT_THAT(said_of("Camera \"perspective\" \"float lensradius\" -.5\n" + std::string(ball)),
+              HasSubstr("scene.pbrt:1:22: Camera \"perspective\": \"lensradius\" must not be negative"));
+}
+
 TEST(Cameras, HalfTheFieldOfView) {
   EXPECT_NEAR(scene_of("Camera \"perspective\" \"float halffov\" 20 \"float fov\" 10\n" + std::string(ball)).camera.fov,
               40 * 3.14159265358979 / 180, 1e-12);
@@ -97,6 +110,7 @@ TEST(Transforms, MayFlattenWhereNothingStands) {
       complaints("WorldBegin\nShape \"sphere\"\nAttributeBegin\n" + flat + "Translate 1 0 0\nAttributeEnd\nShape \"sphere\""),
       IsEmpty());
   EXPECT_THAT(complaints("WorldBegin\n" + flat + "Identity\nShape \"sphere\""), IsEmpty());
+  EXPECT_THAT(complaints("WorldBegin\n" + flat + "CoordSysTransform \"world\"\nShape \"sphere\""), IsEmpty());
   const auto error = HasSubstr("scene.pbrt:2:1: ConcatTransform has no inverse");
   EXPECT_THAT(complaints("WorldBegin\n" + flat + "Translate 1 0 0\nShape \"sphere\"\nShape \"sphere\""), ElementsAre(error));
   EXPECT_THAT(complaints("WorldBegin\n" + flat + "LightSource \"point\"\nIdentity\nShape \"sphere\""), ElementsAre(error));
@@ -183,6 +197,15 @@ TEST(LoopSubdivision, WhatMakesNoSurface) {
   EXPECT_THAT(said("0 1 2", "\"integer levels\" 13"), HasSubstr("more than 2^24 triangles"));
   EXPECT_THAT(said("0 1 2", "\"integer levels\" 100"), HasSubstr("more than 2^24 triangles"));
   EXPECT_THAT(said("0 1 9"), HasSubstr("but there are 5 vertices"));
+}
+
+TEST(Files, WhatIsImportedNamesItsOwnSystems) {
+  const auto folder = temporary_folder();
+  write_file(folder / "part.pbrt", "Translate 1 2 3\nCoordinateSystem \"inner\"\nShape \"sphere\"\n");
+  write_file(folder / "scene.pbrt",
+             "Camera \"perspective\"\nWorldBegin\nImport \"part.pbrt\"\nCoordSysTransform \"inner\"\nShape \"sphere\"\n");
+  EXPECT_THAT(complaint_of([&] { import_scene(folder / "scene.pbrt", StubImages()); }),
+              HasSubstr("scene.pbrt:4:19: unknown coordinate system \"inner\""));
 }
 
 /// A texture of constants worked out: of a checkerboard, tex1.
