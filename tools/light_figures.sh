@@ -4,14 +4,9 @@
 #
 # The figures of docs/lights.md: each light in a corner with a ball. light_figures.sh CAPLET [SAMPLES]
 set -eu
-caplet=$1 samples=${2:-256}
-out=$(dirname "$0")/../docs/images/lights
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-mkdir -p "$out"
+caplet=$1 samples=${2:-256} pictures=lights
+. "$(dirname "$0")/figures.sh"
 
-# Portable pixmaps, which need no library.
-printf 'P3 4 4 255\n230 60 40 240 200 60 60 160 80 40 90 200 250 250 250 30 30 30 250 250 250 30 30 30 40 90 200 230 60 40 240 200 60 60 160 80 30 30 30 250 250 250 30 30 30 250 250 250\n' > "$folder/tiles.ppm"
 # A sky of four colours, square: its upper half is the diamond within.
 printf 'P3 4 4 255\n40 40 40 90 140 230 90 140 230 40 40 40 90 140 230 250 220 160 250 220 160 90 140 230 90 140 230 250 220 160 250 220 160 90 140 230 40 40 40 90 140 230 90 140 230 40 40 40\n' > "$folder/sky.ppm"
 cat > "$folder/lamp.ies" <<END
@@ -29,7 +24,7 @@ END
 
 # figure NAME LIGHTS SHAPES
 figure() {
-  cat > "$folder/$1.pbrt" <<END
+  rendered "$1" <<END
 LookAt 0 -7 2.2  0 0 1  0 0 1
 Camera "perspective" "float fov" 32
 Film "rgb" "integer xresolution" 192 "integer yresolution" 144
@@ -43,7 +38,6 @@ $3
 Translate 0.8 0 0.7
 Shape "sphere" "float radius" 0.7
 END
-  "$caplet" render "$folder/$1.pbrt" -o none --preview "$out/$1.png" --quiet
 }
 
 figure point 'LightSource "point" "point3 from" [-1 -1 2.5] "float power" 200' ''

@@ -4,14 +4,11 @@
 """Renders the figures of docs/media.md: one scene for all media, docs/images/media/NAME.png.
 
 usage: tools/media_figures.py [--caplet PROGRAM] [--spp N] [NAME ...]      without names: all"""
-import argparse
 import math
-import pathlib
 import struct
-import subprocess
-import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from figure_frame import framed, run
+
 PLACE = "AttributeBegin\nTranslate -1.2 -1 0.02 Scale 2.4 2 2\n"
 
 
@@ -98,48 +95,13 @@ MEDIA = {
 
 
 def scene(name):
-    return f"""Integrator "volpath" "integer maxdepth" 100
-LookAt 0.3 -6.5 2.6  0.15 0 0.85  0 0 1
-Camera "perspective" "float fov" 26
-Film "rgb" "integer xresolution" 480 "integer yresolution" 300
-WorldBegin
-LightSource "infinite" "rgb L" [0.35 0.4 0.45]
-AttributeBegin
-  AreaLightSource "diffuse" "blackbody L" 5000 "float scale" 14
-  Translate 2.5 -3.5 5
-  Shape "sphere" "float radius" 0.8
-AttributeEnd
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [3 3 3]
-  Translate -4 2.5 3
-  Shape "sphere" "float radius" 0.7
-AttributeEnd
-Texture "floor" "spectrum" "checkerboard" "float uscale" 24 "float vscale" 24 "rgb tex1" [0.5 0.5 0.5] "rgb tex2" [0.3 0.3 0.3]
-Material "diffuse" "texture reflectance" "floor"
-Shape "bilinearmesh" "point3 P" [-12 -12 0 12 -12 0 -12 12 0 12 12 0] "integer indices" [0 1 2 3]
-{MEDIA[name]}
-"""
+    return framed('"volpath" "integer maxdepth" 100', MEDIA[name] + "\n")
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--caplet", default=str(ROOT / "build/release/bin/caplet"))
-    parser.add_argument("--spp", default="256")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="of " + ", ".join(MEDIA))
-    given = parser.parse_args()
-    if unknown := set(given.names) - set(MEDIA):
-        parser.error("unknown: " + ", ".join(sorted(unknown)))
-    pictures = ROOT / "docs/images/media"
-    pictures.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        for name in given.names or MEDIA:
-            file = pathlib.Path(folder) / f"{name}.pbrt"
-            file.write_text(scene(name))
-            if name == "nanovdb":
-                (pathlib.Path(folder) / "m.nvdb").write_bytes(nanovdb(blob, 48))
-            subprocess.run([given.caplet, "render", file, "-o", file.with_suffix(".exr"), "--preview", pictures / f"{name}.png",
-                            "--spp", given.spp], check=True)
+def files(name, folder):
+    if name == "nanovdb":
+        (folder / "m.nvdb").write_bytes(nanovdb(blob, 48))
 
 
 if __name__ == "__main__":
-    main()
+    run("media", MEDIA, scene, files)

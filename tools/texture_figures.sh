@@ -4,19 +4,14 @@
 #
 # The figures of docs/textures.md: a sphere and a wall of each texture, and of what else that page tells. texture_figures.sh CAPLET [SAMPLES]
 set -eu
-caplet=$1 samples=${2:-64}
-out=$(dirname "$0")/../docs/images/textures
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-mkdir -p "$out"
+caplet=$1 samples=${2:-64} pictures=textures
+. "$(dirname "$0")/figures.sh"
 
-# 4 x 4 texels: a portable pixmap, which needs no library.
-printf 'P3 4 4 255\n230 60 40 240 200 60 60 160 80 40 90 200 250 250 250 30 30 30 250 250 250 30 30 30 40 90 200 230 60 40 240 200 60 60 160 80 30 30 30 250 250 250 30 30 30 250 250 250\n' > "$folder/tiles.ppm"
 printf 'P3 2 2 255\n180 128 220 128 180 220 128 76 220 76 128 220\n' > "$folder/bends.ppm"
 
 # figure NAME TEXTURES MATERIAL SHAPE: statements before the material, its parameters, those of the shapes
 figure() {
-  cat > "$folder/$1.pbrt" <<END
+  rendered "$1" <<END
 LookAt 0 -6 1.6  0 0 0.9  0 0 1
 Camera "perspective" "float fov" 30
 Film "rgb" "integer xresolution" 192 "integer yresolution" 128
@@ -32,7 +27,6 @@ Shape "bilinearmesh" "point3 P" [-0.1 1 0  2.1 1 0  -0.1 1 2  2.1 1 2] $4
 Translate -1 0 0.9
 Shape "sphere" "float radius" 0.9 $4
 END
-  "$caplet" render "$folder/$1.pbrt" -o none --preview "$out/$1.png" --quiet
 }
 
 spectrum() { figure "$1" "$2" '"texture reflectance" "t"' ''; }

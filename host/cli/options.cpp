@@ -128,6 +128,7 @@ void apply(const Overrides& overrides, Scene& scene) {
   if (overrides.crop) with_flag("--crop", [&] { set_crop(scene, *overrides.crop); });
   if (overrides.samples_per_pixel) scene.sampler.samples_per_pixel = *overrides.samples_per_pixel;
   if (overrides.seed) scene.sampler.seed = *overrides.seed;
+  if (overrides.clamp) scene.film.max_component_value = *overrides.clamp;
   if (overrides.max_depth) scene.integrator.max_depth = *overrides.max_depth;
 }
 

@@ -77,6 +77,7 @@ struct Overrides {
   std::optional<std::array<int, 4>> crop;  // x0, y0, x1, y1
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
+  std::optional<double> clamp;  // film.max_component_value; 0: none
 };
 
 /// Applies them; a new size rescales the file's own crop and re-frames an automatic camera. Throws InputError when the crop does

@@ -37,7 +37,7 @@ struct Options {
   std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
-  std::optional<double> time_limit;
+  std::optional<double> time_limit, clamp;
   double patience = 60;
   std::size_t batch_paths = 0;
   bool variance = false, quiet = false;
@@ -67,6 +67,7 @@ Overrides check_options(const Options& options, Files& files) {
   overrides.samples_per_pixel = options.samples_per_pixel;
   overrides.max_depth = options.max_depth;
   overrides.seed = options.seed;
+  overrides.clamp = options.clamp;
   if (options.output == no_picture && options.preview.empty() && options.stats.empty())
     throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
   if (!options.output.empty() && options.output != no_picture) add_picture(files, output_named(options.output));
@@ -212,6 +213,12 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_option("--max-depth", o->max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))
       ->type_name("N");
+  command
+      ->add_option(
+          "--clamp", o->clamp,
+          "Greatest component of a sample, exposed, as pbrt's maxcomponentvalue: fewer fireflies, a darker picture; 0: none")
+      ->check(CLI::Range(0.0, 1e30))
+      ->type_name("X");
   command->add_option("--time", o->time_limit, "Stop after the sample pass that passes this limit")
       ->check([](const std::string& text) {
         const double value = std::strtod(text.c_str(), nullptr);

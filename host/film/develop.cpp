@@ -62,9 +62,9 @@ class Developer {
  public:
   Developer(const Film& film, const Scene& scene)
       : film_(film),
+        picture_from_xyz_(picture_from_xyz(scene.film)),
         rgb_from_xyz_(rgb_from_xyz(scene.film.space)),
         exposure_(scene.film.exposure_time * scene.film.iso / 100),
-        limit_(scene.film.max_component_value),
         brightest_(std::ldexp(1.0, film.layout().color_exponent)) {}
 
   void look_at(std::size_t pixel) {
@@ -73,16 +73,14 @@ class Developer {
     hits_ = film_.sum(Layer::coverage, 0, pixel);
     per_sample_ = samples_ > 0 ? 1 / samples_ : 0;
     per_hit_ = hits_ > 0 ? 1 / hits_ : 0;
-    rgb_ = rgb_from_xyz_ * (per_sample_ * sums(Layer::color));
-    const double peak = exposure_ * std::max({rgb_[0], rgb_[1], rgb_[2]});
-    gain_ = exposure_ * (limit_ > 0 && peak > limit_ ? limit_ / peak : 1.0);
+    rgb_ = picture_from_xyz_ * (per_sample_ * sums(Layer::color));
   }
 
   /// The channels of a layer that is no number.
   Vector values(Layer layer) const {
     switch (row_of(layer).how) {
       case LayerHow::picture:
-        return gain_ * rgb_;
+        return exposure_ * rgb_;
       case LayerHow::share:
         return per_sample_ * sums(layer);
       case LayerHow::distance:
@@ -106,7 +104,7 @@ class Developer {
           const double least = rgb_[c] * rgb_[c];
           const bool unknown = least > brightest_ * brightest_ && square[c] < 0.5 * least;
           of_mean[c] = unknown ? std::numeric_limits<double>::infinity()
-                               : gain_ * gain_ * std::max(0.0, square[c] - least) / (samples_ - 1);
+                               : exposure_ * exposure_ * std::max(0.0, square[c] - least) / (samples_ - 1);
         }
         return of_mean;
       }
@@ -125,10 +123,10 @@ class Developer {
   }
 
   const Film& film_;
-  const std::array<double, 9> rgb_from_xyz_;
-  const double exposure_, limit_, brightest_;
+  const std::array<double, 9> picture_from_xyz_, rgb_from_xyz_;
+  const double exposure_, brightest_;
   std::size_t pixel_ = 0;
-  double samples_ = 0, hits_ = 0, per_sample_ = 0, per_hit_ = 0, gain_ = 0;
+  double samples_ = 0, hits_ = 0, per_sample_ = 0, per_hit_ = 0;
   Vector rgb_{};
 };
 

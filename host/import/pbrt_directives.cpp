@@ -42,6 +42,7 @@ void Parser::camera() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type));
   has_camera_ = true;
+  check_place();
   coordinate_systems_["camera"] = glm::inverse(state_.ctm);
   if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, state_.ctm, scene_);
   scene_.camera.medium = state_.media.outside;
@@ -50,7 +51,7 @@ void Parser::camera() {
 void Parser::film() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type));
-  if (check_name("Film", type, where_, diagnostics_)) set_film(given, state_.space, scene_);
+  if (check_name("Film", type, where_, diagnostics_)) set_film(type, given, state_.space, scene_);
 }
 
 void Parser::integrator() {
@@ -101,7 +102,8 @@ void Parser::multiply(const glm::dmat4& matrix) {
   const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
   // Relative to the columns' lengths, so that small and uneven scales pass; 1e-12 leaves four digits of a double.
   if (!(std::abs(glm::determinant(a)) > 1e-12 * product) || !std::isfinite(product)) {
-    diagnostics_.error(where_, directive_ + " has no inverse");
+    // As pbrt-v4, which minds only where something stands there.
+    if (!state_.flat) state_.flat = {where_, directive_ + " has no inverse"};
     return;
   }
   if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1) {
@@ -118,21 +120,32 @@ void Parser::active_transform() {
 
 void Parser::concat_transform() { multiply(matrix_argument()); }
 
+void Parser::check_place() {
+  if (state_.flat) diagnostics_.error(state_.flat->where, state_.flat->what, state_.flat->where.to_string());
+}
+
 void Parser::transform() {
   const glm::dmat4 matrix = matrix_argument();
-  state_.ctm = glm::dmat4(1);
+  identity();
   multiply(matrix);
 }
 
-void Parser::identity() { state_.ctm = glm::dmat4(1); }
+void Parser::identity() {
+  state_.ctm = glm::dmat4(1);
+  state_.flat.reset();
+}
 
-void Parser::coordinate_system() { coordinate_systems_[string_argument("a name")] = state_.ctm; }
+void Parser::coordinate_system() {
+  check_place();
+  coordinate_systems_[string_argument("a name")] = state_.ctm;
+}
 
 void Parser::coord_sys_transform() {
   const SourceLocation place = lexer_->place(lexer_->peek());
   const std::string name = string_argument("a name");
   if (const auto found = coordinate_systems_.find(name); found != coordinate_systems_.end()) {
     state_.ctm = found->second;
+    state_.flat.reset();
     return;
   }
   diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) + nearest(name, coordinate_systems_));
@@ -292,6 +305,7 @@ void Parser::texture() {
 void Parser::light_source() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "light");
+  check_place();
   if (!check_name("LightSource", type, where_, diagnostics_)) return;
   if (auto light = make_light(type, given, state_.ctm, light_files_)) scene_.lights.push_back(std::move(*light));
 }
@@ -305,6 +319,7 @@ void Parser::area_light_source() {
 void Parser::shape() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "shape");
+  check_place();
   if (!check_name("Shape", type, where_, diagnostics_)) return;
   const auto by_name = [this](const std::string& name, const SourceLocation& where) { return use_of_name(name, where); };
   const auto finished = [this](const std::string& name, std::string& problem) { return finished_object(name, problem); };

@@ -13,6 +13,7 @@ namespace caplet::pbrt {
 
 namespace {
 
+constexpr int few_scatterings = 32;
 constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
 
 /// Calls `visit` with every index of a material that a shape has.
@@ -253,6 +254,9 @@ void Parser::fill_subsurfaces() {
   for (Shape& shape : scene_.shapes) visit(shape);
   for (Object& object : scene_.objects)
     for (Shape& shape : object.shapes) visit(shape);
+  if (const int depth = scene_.integrator.max_depth; !index_of.empty() && depth < few_scatterings)
+    diagnostics_.warning({main_file_}, "\"maxdepth\" counts what scatters within a \"subsurface\" as well: " +
+                                           std::to_string(depth) + " leave it darker than it is");
 }
 
 /// Takes out shapes whose material lets all light pass: what parts no media is not seen.

@@ -98,6 +98,28 @@ Spectrum melanin(double eumelanin, double pheomelanin) {
   return RgbSpectrum{eumelanin * glm::dvec3(0.419, 0.697, 1.37) + pheomelanin * glm::dvec3(0.187, 0.4, 1.05), ColorSpace::srgb};
 }
 
+/// Amounts of pigments by texture, each replaced by its number where there is none.
+std::uint32_t melanin_texture(const TextureOperand& eumelanin, const TextureOperand& pheomelanin, const SourceLocation& where,
+                              Scene& scene) {
+  const auto add = [&](auto model) {
+    scene.textures.push_back({std::move(model), false, "melanin", where});
+    return static_cast<std::uint32_t>(scene.textures.size() - 1);
+  };
+  // A sum is twice the mean.
+  const auto twice = [&](const Spectrum& color, const TextureOperand& amount) {
+    ScaleTexture product;
+    auto rgb = std::get<RgbSpectrum>(color);
+    rgb.rgb *= 2.0;
+    product.tex.value = rgb;
+    product.scale = amount;
+    return add(product);
+  };
+  MixTexture sum;
+  sum.tex1.texture = twice(melanin(1, 0), eumelanin);
+  sum.tex2.texture = twice(melanin(0, 1), pheomelanin);
+  return add(sum);
+}
+
 /// Reads what scene/materials.def visits.
 struct MaterialReader {
   Parameters& parameters;
@@ -159,12 +181,18 @@ struct MaterialReader {
       unbounded("sigma_a", sigma_a);
     } else {
       const auto amount = [&](const char* name, double fallback) {
+        TextureOperand operand = 0;
+        if (operand.texture = parameters.texture(name, true, textures); operand.texture) return operand;
         const double value = parameters.number_or_texture(name, fallback, textures);
         if (value < 0) parameters.error(name, "must not be negative");
-        return std::max(value, 0.0);
+        operand.value = ConstantSpectrum{std::max(value, 0.0)};
+        return operand;
       };
-      const double eumelanin = amount("eumelanin", has_melanin ? 0 : 1.3), pheomelanin = amount("pheomelanin", 0);
-      sigma_a = melanin(eumelanin, pheomelanin);
+      const TextureOperand eumelanin = amount("eumelanin", has_melanin ? 0 : 1.3), pheomelanin = amount("pheomelanin", 0);
+      if (eumelanin.texture || pheomelanin.texture)
+        material.textures.push_back({"sigma_a", melanin_texture(eumelanin, pheomelanin, parameters.where(), scene)});
+      else
+        sigma_a = melanin(std::get<ConstantSpectrum>(eumelanin.value).value, std::get<ConstantSpectrum>(pheomelanin.value).value);
     }
   }
   void roughness(double& alpha_u, double& alpha_v, const char* prefix = "") {
@@ -406,7 +434,7 @@ Material make_material(const std::string& type, Parameters& parameters, const Te
     DielectricMaterial boundary;
     boundary.eta = ConstantSpectrum{1.33};
     DielectricMaterial::fields(boundary, MaterialReader{parameters, textures, part_named, material, scene});
-    within = subsurface_medium(parameters, textures, boundary.eta);
+    within = subsurface_medium(parameters, textures, scene, boundary.eta);
     material.model = std::move(boundary);
   }
   parameters.finish();

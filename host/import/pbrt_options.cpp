@@ -2,12 +2,15 @@
 // Copyright Caplet authors
 #include "import/detail/pbrt_options.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
 #include "base/log.h"
+#include "base/spelling.h"
 
 namespace caplet::pbrt {
 
@@ -27,16 +30,47 @@ int positive_integer(Parameters& parameters, std::string_view name, int fallback
   return fallback;
 }
 
+void warn(Parameters& parameters, std::string_view name, const std::string& message) {
+  parameters.diagnostics().warning(parameters.where(name), parameters.owner() + ": " + message);
+}
+
+/// Sensors of cameras that pbrt-v4 has the response curves of.
+const std::vector<std::string>& camera_sensors() {
+  static const std::vector<std::string> names = {
+      "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d", "canon_eos_200d_mkii", "canon_eos_5d",   "canon_eos_5d_mkii",
+      "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",  "canon_eos_5ds",  "canon_eos_m",         "cie1931",        "hasselblad_l1d_20c",
+      "nikon_d810",         "nikon_d850",         "sony_ilce_6400", "sony_ilce_7m3",       "sony_ilce_7rm3", "sony_ilce_9"};
+  return names;
+}
+
+/// "sensor" and "whitebalance". Of a camera's sensor the white is as balanced as pbrt-v4 does; its curves are not there.
+void set_sensor(Parameters& parameters, FilmSettings& film) {
+  const std::string sensor = parameters.text("sensor", "cie1931");
+  const auto& known = camera_sensors();
+  if (std::ranges::find(known, sensor) == known.end())
+    return parameters.error("sensor",
+                            "is " + in_quotes(sensor) + "; the nearest known name is \"" + nearest_name(sensor, known) + "\"");
+  film.white_balance = parameters.number("whitebalance", 0);
+  if (film.white_balance < 0) parameters.error("whitebalance", "must not be negative");
+  if (film.white_balance > 0 && !(film.white_balance >= 1000 && film.white_balance <= 25000))
+    parameters.error("whitebalance", must_lie_within(1000, 25000) + " kelvin");
+  if (sensor == "cie1931") return;
+  if (film.white_balance == 0) film.white_balance = 6500;
+  warn(parameters, "sensor", "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
+}
+
 }  // namespace
 
 void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Scene& scene) {
   Camera camera;
   camera.world_from_camera = glm::inverse(camera_from_world);
-  const double degrees = parameters.number("fov", 90);
+  const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
+  const double degrees = half > 0 ? 2 * half : given;
   if (degrees > 0 && degrees < 180)
     camera.fov = degrees * glm::pi<double>() / 180;
   else
-    parameters.error("fov", "must be above 0 and below 180 degrees");
+    parameters.error(half > 0 ? "halffov" : "fov",
+                     half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
   if (parameters.has("frameaspectratio")) camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
   if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
     const auto& v = window->numbers;
@@ -59,7 +93,7 @@ void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Sce
   scene.camera = camera;
 }
 
-void set_film(Parameters& parameters, ColorSpace space, Scene& scene) {
+void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene) {
   FilmSettings film;
   film.exposure_time = scene.film.exposure_time;
   film.space = space;
@@ -97,9 +131,15 @@ void set_film(Parameters& parameters, ColorSpace space, Scene& scene) {
   positive(parameters, "diagonal", 35);
   parameters.boolean("savefp16", true);
   film.iso = positive(parameters, "iso", 100);
-  if (const std::string sensor = parameters.text("sensor", "cie1931"); sensor != "cie1931")
-    parameters.error("sensor", in_quotes(sensor) + " is not rendered yet; only \"cie1931\" is");
-  if (parameters.number("whitebalance", 0) != 0) parameters.refuse("whitebalance");
+  set_sensor(parameters, film);
+  if (type == "gbuffer") {
+    parameters.text("coordinatesystem", "camera");
+    warn(parameters, {}, "the layers have names of our own (--layers), and are of the world");
+  }
+  if (type == "spectral") {
+    for (const char* name : {"nbuckets", "lambdamin", "lambdamax"}) parameters.ignore(name);
+    warn(parameters, {}, "red, green and blue are written, not the spectrum");
+  }
   if (parameters.has("maxcomponentvalue")) film.max_component_value = positive(parameters, "maxcomponentvalue", 1);
   parameters.finish();
   scene.film = film;
@@ -116,6 +156,10 @@ void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
   } else if (type == "gaussian") {
     radius = 1.5;
     filter.sigma = positive(parameters, "sigma", 0.5);
+  } else if (type == "sinc") {
+    filter.kind = PixelFilter::Kind::sinc;
+    radius = 4;
+    filter.tau = positive(parameters, "tau", 3);
   } else {
     filter.kind = PixelFilter::Kind::mitchell;
     filter.b = parameters.number("B", 1.0 / 3);
@@ -146,9 +190,10 @@ std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& pa
 }
 
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
-  if (type != "path")
-    parameters.diagnostics().warning(parameters.where(),
-                                     parameters.owner() + ": rendered by the path tracer, which converges to the same image");
+  if (type == "ambientocclusion")
+    warn(parameters, {}, "rendered by the path tracer, which gives another image: the scene by its lights and materials");
+  else if (type != "path" && type != "volpath")
+    warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
   const int depth = parameters.integer("maxdepth", 5);
   if (depth < 0)
     parameters.error("maxdepth", "must not be negative");
@@ -160,11 +205,14 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
     parameters.boolean("samplelights", true);
   }
   if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
-    if (parameters.boolean("regularize", false)) parameters.refuse("regularize");
-  if (type == "bdpt") {
-    if (parameters.boolean("visualizestrategies", false)) parameters.refuse("visualizestrategies");
-    if (parameters.boolean("visualizeweights", false)) parameters.refuse("visualizeweights");
-  }
+    if (parameters.boolean("regularize", false))
+      warn(parameters, "regularize", "nothing is made rougher than it is (\"regularize\")");
+  // Pictures beside the picture, and what only noise depends on.
+  if (type == "bdpt")
+    for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
+  if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");
+  if (type == "ambientocclusion")
+    for (const char* name : {"cossample", "maxdistance"}) parameters.ignore(name);
   if (type == "mlt")
     for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
       parameters.ignore(name);
@@ -195,7 +243,7 @@ std::optional<std::uint32_t> set_option(const std::string& name, const Token& va
       wrong("must be \"camera\", \"cameraworld\" or \"world\", not " + in_quotes(value.text));
   } else if (value.text != "true" && value.text != "false") {
     wrong("must be true or false, not " + in_quotes(value.text));
-  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "wavefront") {
+  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "pixelstats" && name != "wavefront") {
     wrong("is not rendered yet");
   }
   return std::nullopt;

@@ -300,12 +300,13 @@ void Parser::object_end() {
 void Parser::object_instance() {
   const std::string name = string_argument("an object's name");
   if (object_) throw SyntaxError{where_, "ObjectInstance within the ObjectBegin of " + object_where_.to_string()};
+  check_place();
   instances_.push_back({name, state_.ctm, where_});
 }
 
 void Parser::world_begin() {
   in_world_ = true;
-  state_.ctm = glm::dmat4(1);
+  identity();
   coordinate_systems_["world"] = state_.ctm;
 }
 

@@ -3,6 +3,8 @@
 #include "import/detail/pbrt_subsurface.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <variant>
 
 #include "base/spelling.h"
 #include "scene/media/subsurface.h"
@@ -11,12 +13,6 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Coefficients that vary over the surface would vary within: there is no such medium.
-void refuse_textures(Parameters& parameters, const TextureTable& textures) {
-  for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp"})
-    if (parameters.texture(name, false, textures)) parameters.error(name, "varies over the surface: no medium can be made of it");
-}
-
 /// Red, green and blue of what can be one.
 std::optional<glm::dvec3> as_colors(const Spectrum& spectrum) {
   if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return glm::dvec3(constant->value);
@@ -24,9 +20,51 @@ std::optional<glm::dvec3> as_colors(const Spectrum& spectrum) {
   return std::nullopt;
 }
 
+/// Means over the whole of a texture, in red, green and blue; none of a kind without an easy one.
+struct TextureMean {
+  const Scene& scene;
+
+  std::optional<glm::dvec3> of(const TextureOperand& operand) const {
+    return operand.texture ? of(*operand.texture) : as_colors(operand.value);
+  }
+  std::optional<glm::dvec3> of(std::uint32_t texture) const { return std::visit(*this, scene.textures[texture].model); }
+
+  std::optional<glm::dvec3> operator()(const ImagemapTexture& map) const {
+    const TextureImage& image = *map.image;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    glm::dvec3 sum(0);
+    for (std::size_t i = 0; i < image.values(); ++i) {
+      const std::size_t channel = i % channels;
+      const double value = image.bytes.empty() ? image.floats[i] : image.decoded[image.bytes[i]];
+      if (channels < 3)
+        sum += channel == 0 ? glm::dvec3(value) : glm::dvec3(0);
+      else if (channel < 3)
+        sum[static_cast<int>(channel)] += value;
+    }
+    const glm::dvec3 mean = map.scale * sum / (static_cast<double>(image.width) * image.height);
+    return map.invert ? glm::max(1.0 - mean, 0.0) : mean;
+  }
+  std::optional<glm::dvec3> operator()(const ScaleTexture& product) const {
+    const auto a = of(product.tex), b = of(product.scale);
+    return a && b ? std::optional(*a * *b) : std::nullopt;
+  }
+  std::optional<glm::dvec3> operator()(const MixTexture& mix) const {
+    const auto a = of(mix.tex1), b = of(mix.tex2), amount = of(mix.amount);
+    return a && b && amount ? std::optional((1.0 - *amount) * *a + *amount * *b) : std::nullopt;
+  }
+  std::optional<glm::dvec3> operator()(const CheckerboardTexture& board) const {
+    const auto a = of(board.tex1), b = of(board.tex2);
+    return a && b ? std::optional(0.5 * (*a + *b)) : std::nullopt;
+  }
+  template <class Other>
+  std::optional<glm::dvec3> operator()(const Other&) const {
+    return std::nullopt;
+  }
+};
+
 }  // namespace
 
-Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, const Spectrum& eta) {
+Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, const Scene& scene, const Spectrum& eta) {
   HomogeneousMedium model;
   model.scattering = HomogeneousMedium::milk();
   ScatteringProperties& of = model.scattering;
@@ -35,10 +73,22 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
   double g = parameters.number("g", 0);
   if (!(g > -1 && g < 1)) parameters.error("g", "must lie between -1 and 1, and be neither");
   g = std::clamp(g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry);
-  refuse_textures(parameters, textures);
 
   const std::string name = parameters.text("name", "");
-  const auto spectrum = [&](const char* given, SpectrumUse use) { return parameters.spectrum(given, use, &textures); };
+  // What varies over the surface would vary within.
+  const auto spectrum = [&](const char* given, SpectrumUse use) -> std::optional<Spectrum> {
+    const auto texture = parameters.texture(given, false, textures);
+    if (!texture) return parameters.spectrum(given, use, &textures);
+    const auto mean = TextureMean{scene}.of(*texture);
+    if (!mean) {
+      parameters.error(given, "varies over the surface: no medium can be made of it");
+      return std::nullopt;
+    }
+    parameters.diagnostics().warning(parameters.where(given), parameters.owner() + ": \"" + given +
+                                                                  "\" varies over the surface, and counts by its mean within");
+    const glm::dvec3 held = glm::clamp(*mean, 0.0, use == SpectrumUse::albedo ? 1.0 : 1e9);
+    return RgbSpectrum{held, parameters.space()};
+  };
   const auto sigma_a = spectrum("sigma_a", SpectrumUse::unbounded), sigma_s = spectrum("sigma_s", SpectrumUse::unbounded);
   const auto reflectance = spectrum("reflectance", SpectrumUse::albedo), mfp = spectrum("mfp", SpectrumUse::unbounded);
   if (!name.empty() + (sigma_a || sigma_s) + reflectance.has_value() > 1)

@@ -7,6 +7,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 
+#include "scene/scene.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -24,5 +25,9 @@ std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
 /// 3x3 row-major, linear RGB of `space` from XYZ and back.
 std::array<double, 9> rgb_from_xyz(ColorSpace space);
 std::array<double, 9> xyz_from_rgb(ColorSpace space);
+
+/// The same of a film's picture: with its white balance, by von Kries' rule in the space of Bradford's cones (as pbrt-v4). The
+/// white that is balanced is that of CIE daylight of that temperature, below 4000 K a black body's.
+std::array<double, 9> picture_from_xyz(const FilmSettings& film);
 
 }  // namespace caplet

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/check.h"
 
@@ -16,6 +17,11 @@ double mitchell(double x, double b, double c) {
   if (x <= 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
   if (x <= 2) return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6;
   return 0;
+}
+
+double sinc(double x) {
+  const double t = std::numbers::pi * x;
+  return t == 0 ? 1 : std::sin(t) / t;
 }
 
 /// Right half of the nodes: 0, ..., radius. Zero crossings become nodes.
@@ -85,6 +91,8 @@ double filter_value(const PixelFilter& filter, double x, double radius) {
     }
     case PixelFilter::Kind::mitchell:
       return mitchell(2 * x / radius, filter.b, filter.c);
+    case PixelFilter::Kind::sinc:
+      return sinc(x) * sinc(x / filter.tau);
   }
   return 0;
 }

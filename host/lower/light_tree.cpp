@@ -76,6 +76,11 @@ LightBounds united(const LightBounds& a, const LightBounds& b) {
   out.intensity = a.intensity + b.intensity;
   out.cos_reach = std::min(a.cos_reach, b.cos_reach);
   const LightBounds &wide = a.cos_cone < b.cos_cone ? a : b, &narrow = a.cos_cone < b.cos_cone ? b : a;
+  if (wide.cos_cone <= -1) {  // as capsules are, all around: nothing to turn
+    out.axis = wide.axis;
+    out.cos_cone = wide.cos_cone;
+    return out;
+  }
   const double theta_wide = std::acos(std::clamp(wide.cos_cone, -1.0, 1.0)),
                theta_narrow = std::acos(std::clamp(narrow.cos_cone, -1.0, 1.0));
   const double between = std::acos(std::clamp(glm::dot(a.axis, b.axis), -1.0, 1.0));

@@ -35,7 +35,10 @@ FlatView lower_view(const Scene& scene) {
   lower_filter(scene.filter, out);
   out.view.seed = scene.sampler.seed;
   out.view.max_depth = narrow<uint>(scene.integrator.max_depth);
-  std::ranges::transform(rgb_from_xyz(scene.film.space), out.view.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
+  if (scene.film.max_component_value > 0)
+    out.view.sample_limit =
+        static_cast<float>(scene.film.max_component_value / (scene.film.exposure_time * scene.film.iso / 100));
+  std::ranges::transform(picture_from_xyz(scene.film), out.view.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
   return out;
 }
 

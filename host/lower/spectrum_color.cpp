@@ -93,6 +93,19 @@ double sampled_at(const SampledSpectrum& spectrum, double nm) {
   return values[after - 1] + (nm - low) / (high - low) * (values[after] - values[after - 1]);
 }
 
+/// XYZ, of luminance 1, of CIE daylight (CIE 15:2018, 4.1.2), whose temperatures are by an older constant of Planck's law.
+glm::dvec3 daylight_white(double kelvin) {
+  if (kelvin < 4000) {
+    const glm::dvec3 xyz = xyz_of(sample(BlackbodySpectrum{kelvin}));
+    return xyz / xyz.y;
+  }
+  const double t = 1e3 / (kelvin * 1.4388 / 1.438);
+  const double x = kelvin * 1.4388 / 1.438 <= 7000 ? ((-4.607 * t + 2.9678) * t + 0.09911) * t + 0.244063
+                                                   : ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.23704;
+  const double y = (-3 * x + 2.87) * x - 0.275;
+  return {x / y, 1, (1 - x - y) / y};
+}
+
 }  // namespace
 
 const std::array<SpectrumSamples, 3>& normalized_observer() {
@@ -147,6 +160,16 @@ SpectrumSamples wavelength_density() {
 
 std::array<double, 9> xyz_from_rgb(ColorSpace space) { return row_major(xyz_from_rgb_matrix(space)); }
 std::array<double, 9> rgb_from_xyz(ColorSpace space) { return row_major(glm::inverse(xyz_from_rgb_matrix(space))); }
+
+std::array<double, 9> picture_from_xyz(const FilmSettings& film) {
+  if (film.white_balance == 0) return rgb_from_xyz(film.space);
+  const glm::dmat3 cones = glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+  const glm::dvec3 white = xyz_of(illuminant(film.space));
+  const glm::dvec3 gains = (cones * (white / white.y)) / (cones * daylight_white(film.white_balance));
+  glm::dmat3 balance(0);
+  for (int c = 0; c < 3; ++c) balance[c][c] = gains[c];
+  return row_major(glm::inverse(xyz_from_rgb_matrix(film.space)) * glm::inverse(cones) * balance * cones);
+}
 
 bool is_constant(const Spectrum& spectrum) {
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return rgb->rgb.r == rgb->rgb.g && rgb->rgb.g == rgb->rgb.b;

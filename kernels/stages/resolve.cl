@@ -8,12 +8,15 @@
 #include "stages/layers.cl"
 #include "stages/path.cl"
 
-// CIE XYZ of a sample; black, and counted, where it is not a number.
+// CIE XYZ of a sample, scaled to the view's limit where it is beyond; black, and counted, where it is not a number.
 static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   const float4 radiance = g->radiance.path_radiance[path];
   const float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
                                        g->carried.path_wavelength_pdfs[path]);
-  if (all(isfinite(radiance)) && all(isfinite(xyz))) return xyz;
+  if (all(isfinite(radiance)) && all(isfinite(xyz))) {
+    const float limit = g->view.view->sample_limit, peak = fmax(fabs(xyz.x), fmax(fabs(xyz.y), fabs(xyz.z)));
+    return limit > 0.0f && peak > limit ? (limit / peak) * xyz : xyz;
+  }
   if (counted) atomic_inc(&g->counters.counters[counter_not_finite]);
   return (float3)(0.0f);
 }

@@ -86,8 +86,7 @@ std::vector<BadInput> bad_inputs() {
       // Directives and parameters.
       scene("unknown_directive", head + "Shapes \"sphere\"\n" + capsule, "scene.pbrt:5:1", "Shapes"),
       scene("unknown_shape", head + "Shape \"potato\"\n" + capsule, "scene.pbrt:5:", "potato"),
-      scene("known_unsupported_shape", head + "Shape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]\n" + capsule,
-            "scene.pbrt:5:", "loopsubdiv"),
+      scene("known_unsupported_motion", head + "ActiveTransform EndTime\n" + capsule, "scene.pbrt:5:17", "EndTime"),
       scene("cylinder_without_axis", head + "Shape \"cylinder\" \"point3 p0\" [1 2 3] \"point3 p1\" [1 2 3] \"float radius\" 1\n",
             "scene.pbrt:5:", "axis"),
       scene("polyhedron_without_bounds", head + "Shape \"polyhedron\" \"point3 P\" [0 0 0 0 0 1] \"normal N\" [0 0 -1 0 0 1]\n",

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "film/image.h"
@@ -52,6 +53,14 @@ TEST_F(Options, MaxDepthLimitsScattering) {
   EXPECT_EQ(center(none), 0);
   EXPECT_GT(none.find("R")->floats[0], 0);
   EXPECT_GT(center(picture({"--max-depth", "1"})), 0);
+}
+
+// No sample is brighter than the limit, and so no pixel; the sky's luminance is above it.
+TEST_F(Options, ClampLimitsSamples) {
+  const auto brightest = [](const LayeredImage& image) { return *std::ranges::max_element(image.find("G")->floats); };
+  const float free = brightest(picture({}));
+  EXPECT_LE(brightest(picture({"--clamp", std::to_string(free / 100)})), 0.05f * free);
+  EXPECT_EQ(brightest(picture({"--clamp", "0"})), free);
 }
 
 TEST_F(Options, BatchTakesLessMemory) {

@@ -39,8 +39,8 @@ TEST(Program, HelpAndVersion) {
   for (const char* later : {"merge", "convert"}) EXPECT_THAT(help.out, Not(HasSubstr(later)));
   const Result render = test::run_program({"render", "--help"}, folder);
   EXPECT_EQ(render.code, 0);
-  for (const char* option : {"--spp", "--size", "--crop", "--device", "--seed", "--max-depth", "--time", "--layers", "--variance",
-                             "--preview", "--quiet", "--stats"})
+  for (const char* option : {"--spp", "--size", "--crop", "--device", "--seed", "--clamp", "--max-depth", "--time", "--layers",
+                             "--variance", "--preview", "--quiet", "--stats"})
     EXPECT_THAT(render.out, HasSubstr(option));
   EXPECT_THAT(render.out, Not(HasSubstr("--batch")));
   const Result version = test::run_program({"--version"}, folder);

@@ -136,8 +136,8 @@ const Bad bad_scenes[] = {
      "scene.pbrt:1:23: unknown MakeNamedMedium \"homogenous\"; the nearest known name is \"homogeneous\""},
     {"RefusedMotion", "ActiveTransform EndTime\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:17: ActiveTransform \"EndTime\" is not rendered yet"},
-    {"RefusedSensor", "Film \"rgb\" \"string sensor\" \"nikon_d850\"\nWorldBegin\nShape \"sphere\"",
-     "scene.pbrt:1:12: Film \"rgb\": \"sensor\" \"nikon_d850\" is not rendered yet; only \"cie1931\" is"},
+    {"UnknownSensor", "Film \"rgb\" \"string sensor\" \"nikon_d85\"\nWorldBegin\nShape \"sphere\"",
+     "scene.pbrt:1:12: Film \"rgb\": \"sensor\" is \"nikon_d85\"; the nearest known name is \"nikon_d850\""},
     {"RefusedOption", "Option \"disablepixeljitter\" true\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:29: Option \"disablepixeljitter\" is not rendered yet"},
 };

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "lower/color.h"
 #include "scene_text.h"
 
 namespace caplet::test {
@@ -165,6 +166,65 @@ TEST(ColorOfFilm, WhatIsBeyondAFloatIsSaidAndBlack) {
   const auto [nothing, plain] = rendered_aloud("1 1 1", 100);
   EXPECT_EQ(nothing.find("finite"), std::string::npos);
   EXPECT_EQ(nothing.find("beyond"), std::string::npos);
+}
+
+// What is far above the limit in every sample is scaled as a whole.
+TEST(ColorOfFilm, LimitedSamplesKeepTheirHue) {
+  const auto rendered = [](const std::string& film) {
+    return render_text(
+               "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 4 "
+               "\"integer yresolution\" 4 " +
+                   film + "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [40 10 20]\nTranslate 0 0 -5 Shape \"sphere\"\n",
+               1)
+        .image;
+  };
+  const LayeredImage free = rendered(""), limited = rendered("\"float maxcomponentvalue\" .5");
+  for (std::size_t i = 0; i < 16; ++i) {
+    const dvec3 a = at3(free, "", "RGB", i), b = at3(limited, "", "RGB", i);
+    EXPECT_LT(glm::length(b / glm::length(b) - a / glm::length(a)), 1e-5) << i;
+  }
+}
+
+// As pbrt-v4: the greatest component of a sample's exposed XYZ.
+TEST(Limit, IsOfEachSampleAsItIsExposed) {
+  const auto rendered = [](double radiance, const std::string& film, int samples) {
+    return render_text(
+               "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\nCamera \"perspective\"\nFilm \"rgb\" "
+               "\"integer xresolution\" 8 \"integer yresolution\" 8 " +
+                   film + "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" " + numbers(dvec3(radiance)) +
+                   "Translate 0 0 -5 Shape \"sphere\"\n",
+               samples)
+        .image;
+  };
+  const auto peak_of = [](const LayeredImage& image, std::size_t pixel) {
+    const dvec3 xyz = times(xyz_from_rgb(ColorSpace::srgb), at3(image, "", "RGB", pixel));
+    return std::max({xyz.x, xyz.y, xyz.z});
+  };
+  // One bright sample a pixel: its greatest component is the limit, whatever its wavelengths.
+  for (const char* film : {"\"float maxcomponentvalue\" 2", "\"float maxcomponentvalue\" 2 \"float iso\" 400"}) {
+    const LayeredImage image = rendered(1e4, film, 1);
+    for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(peak_of(image, i), 2, 1e-5) << film << i;
+  }
+  // A pixel of which a part is bright has that part of the limit: it is not of means. A light of one spectrum has the same
+  // component greatest in every sample.
+  const LayeredImage part =
+      render_text(
+          "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\nCamera \"perspective\"\nFilm \"rgb\" "
+          "\"integer xresolution\" 8 \"integer yresolution\" 8 \"float maxcomponentvalue\" 2\nWorldBegin\n"
+          "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [1e4 1e4 1e4]\nTranslate 0 0 2\nShape "
+          "\"disk\" \"float radius\" 1.3\n",
+          64)
+          .image;
+  int partly = 0;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const double share = at(part, "A", i);
+    partly += share > 0.1 && share < 0.9;
+    EXPECT_NEAR(peak_of(part, i), 2 * share, 1e-4) << i;
+  }
+  EXPECT_GE(partly, 8);
+  // Of dim ones nothing is changed.
+  const LayeredImage dim = rendered(0.1, "\"float maxcomponentvalue\" 50", 4), free = rendered(0.1, "", 4);
+  for (const char* name : {"R", "G", "B"}) EXPECT_EQ(channel(dim, name).floats, channel(free, name).floats) << name;
 }
 
 }  // namespace

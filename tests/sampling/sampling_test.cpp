@@ -280,13 +280,15 @@ std::vector<PixelFilter> filters() {
   add({.kind = PixelFilter::Kind::gaussian, .sigma = 1.1});  // far from 0 at the radius: the shift matters
   add({.kind = PixelFilter::Kind::mitchell});
   add({.kind = PixelFilter::Kind::mitchell, .b = 0, .c = 1});
+  add({.kind = PixelFilter::Kind::sinc});
+  add({.kind = PixelFilter::Kind::sinc, .tau = 1.5});
   return out;
 }
 
 // The moments come from the filters' integrals in closed form (support/filters.h).
 TEST(Filter, SamplesHaveTheMomentsOfTheFilter) {
   for (const PixelFilter& filter : filters()) {
-    const bool negative = filter.kind == PixelFilter::Kind::mitchell;
+    const bool negative = filter.kind == PixelFilter::Kind::mitchell || filter.kind == PixelFilter::Kind::sinc;
     const FilterSamples samples = filter_samples(filter, 400000);
     for (int axis = 0; axis < 2; ++axis) {
       const double radius = axis == 0 ? filter.radius_x : filter.radius_y;

@@ -25,6 +25,18 @@ inline double mitchell_integral(double t, double b, double c) {
   return sum;
 }
 
+/// Of sinc(x) sinc(x / tau) from 0 to x, by Simpson's rule: sinc(x) = sin(pi x) / (pi x).
+inline double windowed_sinc_integral(double x, double tau) {
+  const auto sinc = [](double t) { return t == 0 ? 1 : std::sin(std::numbers::pi * t) / (std::numbers::pi * t); };
+  constexpr int steps = 2000;
+  double sum = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = x * i / steps;
+    sum += (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2) * sinc(t) * sinc(t / tau);
+  }
+  return sum * x / (3 * steps);
+}
+
 /// The part of a filter's integral along one axis that lies below `x` (pixels from the centre): the response to a step. Not
 /// within 0..1 where the filter is negative.
 inline double filter_share(const PixelFilter& filter, double x, double radius) {
@@ -44,6 +56,8 @@ inline double filter_share(const PixelFilter& filter, double x, double radius) {
     }
     case PixelFilter::Kind::mitchell:  // stretched to the radius
       return from_half(mitchell_integral(2 * size / radius, filter.b, filter.c), 0.5);
+    case PixelFilter::Kind::sinc:
+      return from_half(windowed_sinc_integral(size, filter.tau), windowed_sinc_integral(radius, filter.tau));
   }
   return 0;
 }

@@ -81,6 +81,10 @@ Geometry make_cylinder(Parameters& parameters);
 ConeShape make_cone(Parameters& parameters);
 PolyhedronShape make_polyhedron(Parameters& parameters);
 TriangleMeshShape make_triangle_mesh(Parameters& parameters);
+/// Its "P" and "indices" alone.
+TriangleMeshShape make_vertices_and_triangles(Parameters& parameters);
+/// "loopsubdiv": the limit of Loop's rules, as triangles of its level (shapes/loop_subdivision.cpp).
+TriangleMeshShape make_loop_subdivision(Parameters& parameters);
 BilinearMeshShape make_bilinear_mesh(Parameters& parameters);
 /// Chains of tapered capsules along pbrt's curve: no point of a chain's axis is further from the curve's point of the same
 /// parameter than max(1e-3 of the greater width, 1e-5 of the diagonal of the control points' bounds). As radii run linearly in

@@ -33,8 +33,13 @@ class Parser {
   Scene parse(std::string text);
 
  private:
+  struct Flat {
+    SourceLocation where;
+    std::string what;
+  };
   struct State {
     glm::dmat4 ctm{1};
+    std::optional<Flat> flat;  // the first transform in it that has no inverse, and is not in ctm
     bool reverse_orientation = false;
     ColorSpace space = ColorSpace::srgb;
     std::uint32_t material = 0;  // index into uses_
@@ -140,6 +145,8 @@ class Parser {
   std::shared_ptr<const TextureImage> texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
                                                     std::string& problem);
   void multiply(const glm::dmat4& matrix);
+  /// Reports the transform where it has no inverse, before something is put there.
+  void check_place();
   void open_block();
   void close_block(const std::string& opener);
   void report_unclosed(std::size_t first_block);

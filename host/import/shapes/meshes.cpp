@@ -77,11 +77,19 @@ TriangleMeshShape make_triangle_mesh(Parameters& parameters) {
   return mesh;
 }
 
+TriangleMeshShape make_vertices_and_triangles(Parameters& parameters) {
+  TriangleMeshShape mesh;
+  if (!parameters.has("P")) parameters.error("\"point3 P\" is missing");
+  mesh.positions = vectors3(parameters, parameters.values("P", {"point3"}));
+  mesh.triangles = read_indices<3>(parameters, mesh.positions.size());
+  return mesh;
+}
+
 BilinearMeshShape make_bilinear_mesh(Parameters& parameters) {
   BilinearMeshShape mesh;
   read_vertices(parameters, mesh, {"uv"});
   parameters.values("faceIndices", {"integer"});
-  parameters.refuse("emissionfilename");
+  parameters.ignore("emissionfilename");  // where light samples go: the light's own image decides what it emits
   mesh.patches = read_indices<4>(parameters, mesh.positions.size());
   return mesh;
 }
