@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 #
-# The README's pictures of scenes/materials.pbrt and scenes/hair.pbrt. pictures.sh [CAPLET [SAMPLES]]
+# The README's pictures of scenes/materials.pbrt, scenes/hair.pbrt and scenes/smoke.pbrt. pictures.sh [CAPLET [SAMPLES]]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 caplet=${1:-$root/build/release/bin/caplet}
 samples=${2:-48}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-for name in materials hair; do
+for name in materials hair smoke; do
   size=960x540
-  [ $name = materials ] || size=640x360
+  [ $name != hair ] || size=640x360
+  [ $name != smoke ] || size=480x300
   "$caplet" render "$root/scenes/$name.pbrt" -o "$folder/$name.exr" --preview "$root/docs/images/$name.png" --size $size --spp "$samples"
 done
