@@ -233,7 +233,7 @@ WHY = r"""**Why they differ**, shown by variants of the scenes (64 samples, dept
 | three renders in grey, one a channel: red, green and blue of each colour as numbers | +0.04 % | +0.06 % | +0.07 % | +0.05 % |
 
 An RGB renderer multiplies the channels of colours at every bounce; ours multiplies spectra, whose channels are not the products of channels. What is left of the
-blocks is the row with the light's edge (a fifth of a pixel elsewhere there): 1.7 % without it.
+blocks is the row with the light's edge (0.08 of a pixel elsewhere there): 1.7 % without it.
 
 | `coffee` | all | red, orange body | floor |
 |---|---:|---:|---:|
