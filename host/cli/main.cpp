@@ -104,6 +104,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);
   caplet::cli::add_info(app);
+  caplet::cli::add_convert(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);

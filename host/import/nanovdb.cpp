@@ -212,7 +212,9 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
           memory = inflated(memory, one.size, whole);
         }
         const Bytes bytes(memory, where, file);
-        return std::make_shared<const SparseGrid>(GridReader(bytes).read());
+        SparseGrid grid = GridReader(bytes).read();
+        grid.file = file;
+        return std::make_shared<const SparseGrid>(std::move(grid));
       }
       if (one.bytes > total - at) whole.fail("ends in the middle of a grid");
       at += one.bytes;

@@ -29,9 +29,9 @@ int positive_integer(Parameters& parameters, std::string_view name, int fallback
 
 }  // namespace
 
-void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Scene& scene) {
+void set_camera(Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
   Camera camera;
-  camera.world_from_camera = glm::inverse(camera_from_world);
+  camera.world_from_camera = world_from_camera;
   const double degrees = parameters.number("fov", 90);
   if (degrees > 0 && degrees < 180)
     camera.fov = degrees * glm::pi<double>() / 180;
@@ -55,6 +55,8 @@ void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Sce
     scene.film.exposure_time = close - open;
   else
     parameters.error("shutterclose", "must be after shutteropen");
+  scene.automatic_camera = parameters.boolean("automatic", false);
+  scene.has_no_up = parameters.boolean("noup", false);
   parameters.finish();
   scene.camera = camera;
 }

@@ -46,6 +46,7 @@ const std::vector<Parser::Handler>& Parser::handlers() {
       {"Import", &Parser::import, world},
       {"Include", &Parser::include, anywhere},
       {"Integrator", &Parser::integrator, options},
+      {"InverseTransform", &Parser::inverse_transform, anywhere},
       {"LightSource", &Parser::light_source, world},
       {"LookAt", &Parser::look_at, anywhere},
       {"MakeNamedMaterial", &Parser::make_named_material, world},
@@ -305,7 +306,7 @@ void Parser::object_instance() {
 
 void Parser::world_begin() {
   in_world_ = true;
-  state_.ctm = glm::dmat4(1);
+  set_transform(glm::dmat4(1));
   coordinate_systems_["world"] = state_.ctm;
 }
 
