@@ -218,10 +218,9 @@ struct LightWriter {
     to.file(name, of->file, "the light's profile", stream);
   }
   void cone(double total_angle, double falloff_start_angle) {
-    // The second is read as a difference.
-    const double cone = degrees_of(total_angle), start = degrees_of(std::min(falloff_start_angle, total_angle));
+    const double cone = degrees_of(total_angle);
     to.number("coneangle", cone);
-    to.number("conedeltaangle", difference(cone, start));
+    to.number("conedeltaangle", degrees_below(cone, std::min(falloff_start_angle, total_angle)));
   }
   void sky(const InfiniteLight& light) {
     if (light.image) {
@@ -240,18 +239,6 @@ struct LightWriter {
   }
   void finish() {
     if (!position_name.empty() && !is_placed) to.point(position_name, position_);
-  }
-
- private:
-  /// What is to be taken from `whole` that `rest` is left.
-  static double difference(double whole, double rest) {
-    const double near = whole - rest;
-    for (const double toward : {0.0, whole}) {
-      double one = near;
-      for (int i = 0; i < 8; ++i, one = std::nextafter(one, toward))
-        if (whole - one == rest) return one;
-    }
-    return near;
   }
 };
 

@@ -284,11 +284,12 @@ class SceneWriter {
       stream_.text << "ObjectBegin " << quoted(found->second, operand->where) << "\n";
       const std::string outer = material_;
       use_material(*operand, material_);
-      stream_.text << "AttributeBegin\n" << transform_of(operand->world_from_object, operand->where);
+      const std::string transform = transform_of(operand->world_from_object, operand->where);
+      if (!transform.empty()) stream_.text << "AttributeBegin\n" << transform;
       Statement statement = shape_statement(*operand, references(), true);
       if (is_hair(scene_, *operand) && !operand->one_sided) statement.boolean("onesided", false);
       statement.write(stream_);
-      stream_.text << "AttributeEnd\nObjectEnd\n";
+      stream_.text << (transform.empty() ? "" : "AttributeEnd\n") << "ObjectEnd\n";
       material_ = outer;
     }
   }

@@ -112,7 +112,7 @@ struct GeometryWriter {
     points(out, "point3", "p0", of.p0);
     points(out, "point3", "p1", of.p1);
     floats(out, "radius", of.radius0);
-    floats(out, "radius1", of.radius1);
+    if (of.radius1 != of.radius0) floats(out, "radius1", of.radius1);
     if (of.materials.empty()) return out;
     // Those that are used, each once.
     constexpr std::uint32_t none = 0xffffffffu;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -35,18 +36,26 @@ double rounded_to(double value, int digits) {
 
 double radians_of(double degrees) { return degrees * std::numbers::pi / 180; }
 
-std::optional<double> exact_degrees(double radians) {
-  const double near = radians * 180 / std::numbers::pi;
+/// A number about `near` of as few digits as may be that `read` makes `wanted` of.
+template <class Read>
+std::optional<double> exactly(double near, double wanted, Read&& read) {
   for (int digits = 1; digits <= 17; ++digits)
-    if (const double degrees = rounded_to(near, digits); radians_of(degrees) == radians) return degrees;
+    if (const double degrees = rounded_to(near, digits); read(degrees) == wanted) return degrees;
   double below = near, above = near;
   for (int i = 0; i < 8; ++i) {
     below = std::nextafter(below, 0.0);
     above = std::nextafter(above, std::numeric_limits<double>::infinity());
     for (const double degrees : {below, above})
-      if (radians_of(degrees) == radians) return degrees;
+      if (read(degrees) == wanted) return degrees;
   }
   return std::nullopt;
+}
+
+/// Where there is none, one of what `read` makes of `near`.
+template <class Read>
+double about(double near, double wanted, Read&& read) {
+  if (const auto exact = exactly(near, wanted, read)) return *exact;
+  return exactly(near, read(near), read).value_or(near);
 }
 
 }  // namespace
@@ -101,9 +110,18 @@ std::string matrix_text(const glm::dmat4& matrix) {
 }
 
 double degrees_of(double radians) {
-  if (const auto exact = exact_degrees(radians)) return *exact;
-  const double nearest = radians_of(radians * 180 / std::numbers::pi);
-  return exact_degrees(nearest).value_or(nearest * 180 / std::numbers::pi);
+  const double near = radians * 180 / std::numbers::pi;
+  const auto read = [](double degrees) { return radians_of(degrees); };
+  const double degrees = about(near, radians, read);
+  // Once more: of what is read now, as it will be written then.
+  return about(read(degrees) * 180 / std::numbers::pi, read(degrees), read);
+}
+
+double degrees_below(double degrees, double radians) {
+  const auto read = [degrees](double less) { return radians_of(degrees - less); };
+  const auto near = [degrees](double of) { return std::max(0.0, degrees - of * 180 / std::numbers::pi); };
+  const double less = about(near(radians), radians, read);
+  return about(near(read(less)), read(less), read);
 }
 
 std::string inverse_text(const glm::dmat4& inverse) {

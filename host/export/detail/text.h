@@ -60,6 +60,9 @@ std::string matrix_text(const glm::dmat4& matrix);
 /// nearest, which is off by a unit in the last place.
 double degrees_of(double radians);
 
+/// What readers take from `degrees` to get these radians, likewise.
+double degrees_below(double degrees, double radians);
+
 /// A transform that readers turn around to get `inverse`, as a statement with its line's end.
 std::string inverse_text(const glm::dmat4& inverse);
 
