@@ -48,7 +48,7 @@ TEST(WrittenPictures, OfReferenceScenes) {
 
 TEST(WrittenPictures, OfOtherSharedScenes) {
   CAPLET_NEEDS_DATA();
-  for (const char* folder : {"scenes_pbrt", "swc", "fibres"}) expect_same_pictures(data_folder() / folder);
+  for (const char* folder : {"scenes_pbrt", "swc"}) expect_same_pictures(data_folder() / folder);
 }
 
 }  // namespace
