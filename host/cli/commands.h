@@ -18,6 +18,7 @@ struct Invocation {
 };
 
 void add_render(CLI::App& app, const Invocation& invocation);
+void add_convert(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_pick(CLI::App& app);

@@ -107,6 +107,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_view(app);
 #endif
   caplet::cli::add_info(app);
+  caplet::cli::add_convert(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);

@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/clock.h"
@@ -17,12 +20,16 @@
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
+#include "display/tev.h"
+#include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/lower.h"
+#include "present/stereo.h"
 #include "render/render.h"
 #include "report/bands.h"
 #include "report/picture.h"
+#include "report/stereo.h"
 #include "report/summary.h"
 
 namespace caplet::cli {
@@ -37,7 +44,8 @@ struct Options {
   std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
-  std::optional<double> time_limit, clamp;
+  std::optional<double> time_limit, clamp, separation, convergence;
+  std::string layout, display;
   double patience = 60;
   std::size_t batch_paths = 0;
   bool variance = false, quiet = false;
@@ -68,6 +76,8 @@ Overrides check_options(const Options& options, Files& files) {
   overrides.max_depth = options.max_depth;
   overrides.seed = options.seed;
   overrides.clamp = options.clamp;
+  if (!options.separation && (options.convergence || !options.layout.empty()))
+    throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"}, "goes with --stereo");
   if (options.output == no_picture && options.preview.empty() && options.stats.empty())
     throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
   if (!options.output.empty() && options.output != no_picture) add_picture(files, output_named(options.output));
@@ -83,6 +93,13 @@ Overrides check_options(const Options& options, Files& files) {
   return overrides;
 }
 
+report::StereoLayout layout_of(const Options& options) {
+  const auto found = std::ranges::find(report::stereo_layout_names, options.layout);
+  return found == report::stereo_layout_names.end()
+             ? report::StereoLayout::side_by_side
+             : static_cast<report::StereoLayout>(found - report::stereo_layout_names.begin());
+}
+
 /// What the scene tells of outputs: the picture's name (the scene's own film name, else the scene file's, in the current folder),
 /// its size, and the files that the scene was read from.
 void check_outputs(const Options& options, const Scene& scene, Layers layers, Files& files) {
@@ -95,8 +112,11 @@ void check_outputs(const Options& options, const Scene& scene, Layers layers, Fi
   const std::array<int, 4> window = scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
-  if (!files.picture.empty()) check_exr_size(width, height, layers.channels(), flag);
-  if (!files.preview.empty()) check_preview_size(files.preview, width, height, flag);
+  if (!files.picture.empty()) check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
+  if (!files.preview.empty())
+    check_preview_size(files.preview,
+                       options.separation && layout_of(options) == report::StereoLayout::side_by_side ? 2 * width : width,
+                       options.separation && layout_of(options) == report::StereoLayout::over_under ? 2 * height : height, flag);
 }
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
@@ -131,12 +151,109 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
   }
 }
 
+/// All that a picture is made of.
+struct Work {
+  const Options& options;
+  const Invocation& invocation;
+  const Scene& scene;
+  const FlatScene& flat;
+  const std::vector<Device>& devices;
+  Layers layers;
+  const Files& files;
+  RenderOptions render_options;
+};
+
+/// Renders a view, which tev shows as it grows where it is asked to.
+RenderResult render_shown(const Work& work, const FlatView& view, const std::string& view_name) {
+  if (work.options.display.empty())
+    return render_with_progress(work.flat, view, work.devices, work.render_options, work.options.quiet);
+  constexpr double most_seconds_at_the_end = 5;
+  const std::string name = (work.files.picture.empty() ? fs::path(work.options.scene) : work.files.picture).filename().string();
+  TevDisplay display(parse_tev_address(work.options.display, "--display"),
+                     view_name.empty() ? name : name + " (" + view_name + ")");
+  NotFinite ignored;
+  RenderOptions shown = work.render_options;
+  shown.film_on_device = false;
+  shown.look = [&](const Film& film) {
+    if (display.is_idle()) display.show(develop(film, work.scene, work.layers, ignored));
+  };
+  RenderResult result = render_with_progress(work.flat, view, work.devices, shown, work.options.quiet);
+  display.show(develop(result.film, work.scene, work.layers, ignored));
+  display.finish(most_seconds_at_the_end);
+  return result;
+}
+
+void add_to(report::RunSeconds& seconds, const RenderResult& result) {
+  seconds.compile += result.compile_seconds;
+  seconds.render += result.render_seconds;
+}
+
+BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
+  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene, work.layers, not_finite)
+                                       : report::developed_in_bands(result.film, work.scene, work.layers, not_finite);
+  out.whole.metadata = report::picture_metadata(work.scene, work.options.scene, work.invocation.command_line(), result);
+  return out;
+}
+
+RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeconds& seconds) {
+  RenderResult result = render_shown(work, view, "");
+  add_to(seconds, result);
+  NotFinite not_finite;
+  const BandedImage picture = bands_of(work, result, not_finite);
+  Stopwatch phase;
+  report::write_pictures(work.files.picture, work.files.preview, picture, work.layers.channels(), result.render_seconds);
+  not_finite.warn();
+  seconds.write = phase.lap();
+  return result;
+}
+
+/// The views of two eyes, one after the other. The right one gets as many samples as the left one got. What is returned tells of
+/// both.
+RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
+  const Stereo stereo{*both.options.separation, both.options.convergence};
+  std::array<RenderResult, 2> results;
+  for (const Eye eye : {Eye::left, Eye::right}) {
+    Work work = both;
+    work.render_options.film_on_device = false;
+    if (work.render_options.time_limit) *work.render_options.time_limit /= 2;
+    Scene seen;
+    seen.camera = camera_of_eye(both.scene, stereo, eye);
+    seen.filter = both.scene.filter;
+    seen.film = both.scene.film;
+    seen.sampler = both.scene.sampler;
+    seen.integrator = both.scene.integrator;
+    const std::size_t i = eye == Eye::left ? 0 : 1;
+    if (i == 1) work.render_options.samples_per_pixel = results[0].samples_per_pixel;
+    if (i == 1) work.render_options.time_limit.reset();
+    results[i] = render_shown(work, lower_view(seen), eye == Eye::left ? "left" : "right");
+    add_to(seconds, results[i]);
+    if (results[i].interrupted && i == 0) throw RunError("interrupted before there was a view for both eyes; nothing is written");
+  }
+  NotFinite not_finite;
+  BandedImage left = bands_of(both, results[0], not_finite);
+  const BandedImage right = bands_of(both, results[1], not_finite);
+  left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
+  if (stereo.convergence) left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
+  Stopwatch phase;
+  report::write_stereo_pictures(both.files.picture, both.files.preview, left, right, layout_of(both.options),
+                                both.layers.channels(), results[0].render_seconds + results[1].render_seconds);
+  not_finite.warn();
+  seconds.write = phase.lap();
+  RenderResult& out = results[1];
+  out.render_seconds += results[0].render_seconds;
+  out.camera_rays += results[0].camera_rays;
+  out.bounce_rays += results[0].bounce_rays;
+  out.shadow_rays += results[0].shadow_rays;
+  return std::move(out);
+}
+
 void run_render(const Options& options, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
   log::set_quiet(options.quiet);
   Files files;
   const Overrides overrides = check_options(options, files);
+  if (!options.display.empty()) parse_tev_address(options.display, "--display");
   const Layers layers = parse_layers(options.layers, options.variance);
   install_interrupt_handlers();
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
@@ -165,18 +282,8 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.cancelled = interrupt_requested;
   render_options.layers = layers;
   render_options.patience = options.patience;
-  const RenderResult result = render_with_progress(flat, view, devices, render_options, options.quiet);
-  seconds.compile = result.compile_seconds;
-  seconds.render = result.render_seconds;
-
-  NotFinite not_finite;
-  BandedImage picture = result.device_film ? report::developed_in_bands(*result.device_film, scene, layers, not_finite)
-                                           : report::developed_in_bands(result.film, scene, layers, not_finite);
-  picture.whole.metadata = report::picture_metadata(scene, options.scene, invocation.command_line(), result);
-  phase.lap();
-  report::write_pictures(files.picture, files.preview, picture, layers.channels(), result.render_seconds);
-  not_finite.warn();
-  seconds.write = phase.lap();
+  const Work work{options, invocation, scene, flat, devices, layers, files, render_options};
+  const RenderResult result = options.separation ? stereo_pictures(work, seconds) : one_picture(work, view, seconds);
   seconds.total = total.lap();
   if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
   const fs::path& first = files.picture.empty() ? files.preview.empty() ? files.stats : files.preview : files.picture;
@@ -229,6 +336,17 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->add_option("--layers", o->layers,
                    "Layers beside R G B A: some of Z,albedo,N,P,object,primitive,variance, or all, or none")
       ->type_name("LIST");
+  command->add_option("--stereo", o->separation, "Render for two eyes, so far apart, into one multi-view EXR")
+      ->check(CLI::Range(1e-18, 1e18))
+      ->type_name("SEPARATION");
+  command->add_option("--convergence", o->convergence, "Distance at which both eyes see things at one place (default: none)")
+      ->check(CLI::Range(1e-18, 1e18))
+      ->type_name("DISTANCE");
+  command->add_option("--stereo-layout", o->layout, "How the preview shows both views: sbs (default), over-under or anaglyph")
+      ->check(CLI::IsMember(std::vector<std::string>(report::stereo_layout_names.begin(), report::stereo_layout_names.end())))
+      ->type_name("LAYOUT");
+  command->add_option("--display", o->display, "Show the picture in tev as it grows, such as 127.0.0.1:14158")
+      ->type_name("HOST:PORT");
   command->add_flag("--variance", o->variance, "Also write variance.R/G/B: the variance of each pixel's mean");
   command->add_option("--stats", o->stats, "Write times, ray counts and memory as JSON; -: to stdout")->type_name("FILE.json");
   command->add_flag("-q,--quiet", o->quiet, "No progress, only warnings and errors");

@@ -170,6 +170,7 @@ bool has_image_io() { return image_files::available(); }
 EnvironmentImage FileImageReader::read_rgb(const fs::path& path) const {
   EnvironmentImage image = is_exr(path) ? rgb_of(path, read_exr(path)) : rgb_of(image_files::read_linear(path));
   check_values(path, image);
+  image.file = path.string();
   return image;
 }
 
@@ -180,6 +181,8 @@ TextureImage FileImageReader::read_texture(const fs::path& path, const ImageEnco
       const std::size_t pixel = i / static_cast<std::size_t>(image.channels), width = static_cast<std::size_t>(image.width);
       throw InputError(fmt::format("{}: pixel ({}, {}) is not finite", path.string(), pixel % width, pixel / width));
     }
+  image.file = path.string();
+  image.encoding = encoding;
   return image;
 }
 

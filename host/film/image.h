@@ -33,10 +33,15 @@ struct LayeredImage {
   ColorSpace space = ColorSpace::srgb;           // its chromaticities are written
   std::optional<Chromaticities> chromaticities;  // as a file states them; written in place of the space's own
   std::map<std::string, std::string> metadata;   // attributes that are text or numbers
+  std::vector<std::string> views = {};           // of a multi-view picture, the one by default first (name_in_view)
 
   /// The channel of that name, or null.
   const Channel* find(const std::string& name) const;
 };
+
+/// What a channel of one view is called among those of all `views`, by the rules of multi-view OpenEXR: plain channels of the
+/// first have their own names, and in all others the view's name is put before the last part ("right.R", "albedo.left.R").
+std::string name_in_view(const std::string& channel, const std::vector<std::string>& views, std::size_t view);
 
 /// A picture that is made in bands of whole rows, so that it is never in memory as a whole.
 struct BandedImage {

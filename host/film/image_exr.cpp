@@ -14,6 +14,7 @@
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfMultiView.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
@@ -193,6 +194,7 @@ Imf::Header header_of(const LayeredImage& whole, const std::vector<Channel>& cha
   Imf::Header header(display, data);
   header.compression() = compression == ExrCompression::zip ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION;
   Imf::addChromaticities(header, to_imf(whole.chromaticities ? *whole.chromaticities : chromaticities_of(whole.space)));
+  if (!whole.views.empty()) Imf::addMultiView(header, whole.views);
   for (const auto& [name, value] : whole.metadata) header.insert(name, Imf::StringAttribute(value));
   for (const Channel& channel : channels)
     header.channels().insert(channel.name, Imf::Channel(channel.uints.empty() ? Imf::FLOAT : Imf::UINT));
@@ -234,6 +236,10 @@ void write_bands(const fs::path& path, const LayeredImage& whole, int step, ExrC
 }
 
 }  // namespace
+
+std::string name_in_view(const std::string& channel, const std::vector<std::string>& views, std::size_t view) {
+  return Imf::insertViewName(channel, views, narrow<int>(view));
+}
 
 ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores) {
   // OpenEXR 3.1 packs some 60 MB/s of such layers on each core of a server of 2020.

@@ -195,6 +195,10 @@ class Reader {
 
 IesProfile parse_ies(const std::string& name, std::string_view text) { return Reader(name, text).run(); }
 
-IesProfile read_ies(const std::filesystem::path& path) { return parse_ies(path.string(), TextFile(path).text()); }
+IesProfile read_ies(const std::filesystem::path& path) {
+  IesProfile profile = parse_ies(path.string(), TextFile(path).text());
+  profile.file = path.string();
+  return profile;
+}
 
 }  // namespace caplet

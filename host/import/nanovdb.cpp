@@ -232,7 +232,9 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
   };
   const auto grid_of = [&](const std::vector<char>& memory) {
     const Bytes bytes(memory, where, file);
-    return std::make_shared<const SparseGrid>(GridReader(bytes).read());
+    SparseGrid grid = GridReader(bytes).read();
+    grid.file = file;
+    return std::make_shared<const SparseGrid>(std::move(grid));
   };
   while (at < total) {
     const std::vector<char> head = read(at, file_header_bytes);

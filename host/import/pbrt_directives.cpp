@@ -21,6 +21,7 @@
 #include "import/detail/pbrt_shapes.h"
 #include "import/detail/pbrt_v3.h"
 #include "scene/edit.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -43,8 +44,8 @@ void Parser::camera() {
   Parameters given = parameters(owner(type));
   has_camera_ = true;
   check_place();
-  coordinate_systems_["camera"] = glm::inverse(state_.ctm);
-  if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, state_.ctm, scene_);
+  coordinate_systems_["camera"] = inverse_of_transform();
+  if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, inverse_of_transform(), scene_);
   scene_.camera.medium = state_.media.outside;
 }
 
@@ -98,20 +99,24 @@ void Parser::color_space() {
 // --- Transforms ---
 
 void Parser::multiply(const glm::dmat4& matrix) {
-  const glm::dmat3 a(matrix);
-  const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
-  // Relative to the columns' lengths, so that small and uneven scales pass; 1e-12 leaves four digits of a double.
-  if (!(std::abs(glm::determinant(a)) > 1e-12 * product) || !std::isfinite(product)) {
+  if (!has_inverse(matrix)) {
     // As pbrt-v4, which minds only where something stands there.
     if (!state_.flat) state_.flat = {where_, directive_ + " has no inverse"};
     return;
   }
-  if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1) {
+  if (!is_affine(matrix)) {
     diagnostics_.error(where_, directive_ + " is not affine (its last row must be 0 0 0 1)");
     return;
   }
-  state_.ctm = state_.ctm * matrix;
+  set_transform(state_.ctm * matrix);
 }
+
+void Parser::set_transform(const glm::dmat4& ctm) {
+  state_.ctm = ctm;
+  state_.inverse.reset();
+}
+
+glm::dmat4 Parser::inverse_of_transform() const { return state_.inverse ? *state_.inverse : glm::inverse(state_.ctm); }
 
 void Parser::active_transform() {
   const Token token = lexer_->next();
@@ -128,10 +133,22 @@ void Parser::transform() {
   const glm::dmat4 matrix = matrix_argument();
   identity();
   multiply(matrix);
+  if (state_.ctm == matrix) state_.ctm = matrix;  // zeros with their signs
+}
+
+void Parser::inverse_transform() {
+  const glm::dmat4 matrix = matrix_argument();
+  if (!has_inverse(matrix)) {
+    diagnostics_.error(where_, directive_ + " has no inverse");
+    return;
+  }
+  identity();
+  state_.ctm = glm::inverse(matrix);
+  state_.inverse = matrix;
 }
 
 void Parser::identity() {
-  state_.ctm = glm::dmat4(1);
+  set_transform(glm::dmat4(1));
   state_.flat.reset();
 }
 
@@ -144,7 +161,7 @@ void Parser::coord_sys_transform() {
   const SourceLocation place = lexer_->place(lexer_->peek());
   const std::string name = string_argument("a name");
   if (const auto found = coordinate_systems_.find(name); found != coordinate_systems_.end()) {
-    state_.ctm = found->second;
+    set_transform(found->second);
     state_.flat.reset();
     return;
   }
@@ -154,7 +171,7 @@ void Parser::coord_sys_transform() {
 void Parser::look_at() {
   const glm::dvec3 eye = vector_argument(), target = vector_argument(), up = vector_argument();
   if (const auto world_from_camera = camera_looking(eye, target, up))
-    state_.ctm = state_.ctm * glm::affineInverse(*world_from_camera);
+    set_transform(state_.ctm * glm::affineInverse(*world_from_camera));
   else
     diagnostics_.error(where_, "LookAt has no direction (the points coincide, or up lies along the view)");
 }
@@ -254,7 +271,8 @@ void Parser::named_material() {
 }
 
 TextureContext Parser::texture_context() {
-  return {state_.ctm, [this](Parameters& parameters, const char* name, const ImageEncoding& encoding, std::string& problem) {
+  return {state_.ctm, inverse_of_transform(),
+          [this](Parameters& parameters, const char* name, const ImageEncoding& encoding, std::string& problem) {
             return texture_image(parameters, name, encoding, problem);
           }};
 }
@@ -328,6 +346,7 @@ void Parser::shape() {
   shape.reverse_orientation = state_.reverse_orientation;
   shape.emission = state_.emission;
   shape.media = state_.media;
+  if (!shape.one_sided && given.has("onesided")) said_two_sided_.insert(shape.where.to_string());
   (object_ ? scene_.objects[*object_].shapes : scene_.shapes).push_back(std::move(shape));
 }
 

@@ -79,6 +79,22 @@ Token Lexer::next() {
   return ahead_;
 }
 
+void Lexer::take_numbers(std::vector<double>& numbers, bool whole) {
+  if (has_ahead_) return;
+  const char* const end = text_.data() + text_.size();
+  for (;;) {
+    skip_blanks();
+    const char* const at = text_.data() + at_;
+    double value = 0;
+    int count = 0;
+    const auto [behind, error] = whole ? std::from_chars(at, end, count) : std::from_chars(at, end, value);
+    if (error != std::errc() || behind == end || !(is_blank(*behind) || *behind == ']')) return;
+    if (!std::isfinite(value)) return;
+    numbers.push_back(whole ? count : value);
+    at_ += static_cast<std::size_t>(behind - at);
+  }
+}
+
 Token Lexer::scan() {
   skip_blanks();
   Token token{Token::Kind::end, "end of file", line_, column()};

@@ -9,6 +9,8 @@
 #include <glm/matrix.hpp>
 
 #include "import/detail/ies.h"
+#include "present/present.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -34,7 +36,7 @@ double scale_of(Parameters& parameters) {
 glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::dvec3& to, const glm::dmat4& world_from_light) {
   const glm::dvec3 along(world_from_light * glm::dvec4(to - from, 0));
   const double length = glm::length(along);
-  if (length > 0 && std::isfinite(length)) return along / length;
+  if (length > 0 && std::isfinite(length)) return is_unit(length) ? along : along / length;
   parameters.error("\"from\" and \"to\" give no direction");
   return {0, 0, 1};
 }
@@ -43,7 +45,7 @@ glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::
 glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_light) {
   const glm::dmat3 a(world_from_light);
   const double scale = glm::length(a[0]);
-  const glm::dmat3 r = a / scale;
+  const glm::dmat3 r = is_unit(scale) ? a : a / scale;
   // Matrices in scene files carry six digits; anything further from orthonormal than 1e-3 is a shear or an uneven scale.
   const glm::dmat3 error = glm::transpose(r) * r - glm::dmat3(1);
   bool orthonormal = true;
@@ -110,7 +112,14 @@ struct LightReader {
   void sky(InfiniteLight& light) {
     const bool has_radiance = parameters.has("L");
     light.radiance = white(parameters, "L");
-    if (!parameters.text("filename", "").empty()) {
+    if (const std::string preset = parameters.text("preset", ""); !preset.empty()) {
+      for (const char* other : {"L", "filename"})
+        if (parameters.has(other)) parameters.error("preset", "cannot be combined with " + in_quotes(other));
+      if (preset != studio_preset)
+        return parameters.error("preset", "is " + in_quotes(preset) + "; the nearest known name is " + in_quotes(studio_preset));
+      light.image = studio_image();
+      light.world_from_light = rotation_of(parameters, world_from_light);
+    } else if (!parameters.text("filename", "").empty()) {
       if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");
       light.image = files.image(parameters, "filename");
       light.world_from_light = rotation_of(parameters, world_from_light);

@@ -283,7 +283,7 @@ void Parser::make_hair_one_sided() {
   const auto visit = [&](Shape& shape) {
     bool some = false;
     each_material(shape, [&](std::uint32_t& material) { some = some || (material < hair.size() && hair[material]); });
-    if (some && is_closed(shape)) shape.one_sided = true;
+    if (some && is_closed(shape) && !said_two_sided_.contains(shape.where.to_string())) shape.one_sided = true;
   };
   for (Shape& shape : scene_.shapes) visit(shape);
   for (Object& object : scene_.objects)

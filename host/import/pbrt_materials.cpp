@@ -11,6 +11,7 @@
 
 #include "base/spelling.h"
 #include "import/detail/pbrt_subsurface.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -57,7 +58,7 @@ std::optional<Spectrum> mix_spectra(const Spectrum& a, const Spectrum& b, double
 /// A spectrum texture's argument: a spectrum, a texture, or the reason why it is not rendered (in `refusal`).
 Spectrum texture_argument(Parameters& parameters, const char* name, double fallback, const TextureTable& textures,
                           std::string& refusal) {
-  if (const Parameter* named = parameters.values(name, {"texture", "rgb", "spectrum", "blackbody"});
+  if (const Parameter* named = parameters.values(name, {"texture", "rgb", "spectrum", "blackbody", "float"});
       named && named->type == "texture")
     if (const TextureValue* found = textures.find(named->strings[0], false); found && !found->refusal.empty()) {
       refusal = found->refusal;
@@ -285,7 +286,7 @@ struct TextureReader {
     int kind = 0;
     choice("mapping", kind, texture_mapping_names);
     value.kind = static_cast<TextureMapping::Kind>(kind);
-    value.texture_from_world = glm::inverse(context.world_from_texture);
+    value.texture_from_world = context.texture_from_world;
     if (value.kind == TextureMapping::Kind::uv) {
       number("uscale", value.uscale);
       number("vscale", value.vscale);
@@ -304,13 +305,13 @@ struct TextureReader {
     if (dimension != 2 && dimension != 3) parameters.error("dimension", "must be 2 or 3");
     if (dimension != 3) return mapping(value);
     value.kind = TextureMapping::Kind::solid;
-    value.texture_from_world = glm::inverse(context.world_from_texture);
+    value.texture_from_world = context.texture_from_world;
   }
-  void place(glm::dmat4& value) { value = glm::inverse(context.world_from_texture); }
+  void place(glm::dmat4& value) { value = context.texture_from_world; }
   void direction(const char* name, glm::dvec3& value) {
     const glm::dvec3 turned(context.world_from_texture * glm::dvec4(parameters.vector(name, value), 0));
-    if (glm::length(turned) > 0)
-      value = glm::normalize(turned);
+    if (const double length = glm::length(turned); length > 0)
+      value = is_unit(length) ? turned : glm::normalize(turned);
     else
       parameters.error(name, "is no direction");
   }

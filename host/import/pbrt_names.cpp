@@ -105,6 +105,7 @@ const std::vector<std::string>& directive_names() {
                                                  "Import",
                                                  "Include",
                                                  "Integrator",
+                                                 "InverseTransform",
                                                  "LightSource",
                                                  "LookAt",
                                                  "MakeNamedMaterial",

@@ -61,9 +61,9 @@ void set_sensor(Parameters& parameters, FilmSettings& film) {
 
 }  // namespace
 
-void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Scene& scene) {
+void set_camera(Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
   Camera camera;
-  camera.world_from_camera = glm::inverse(camera_from_world);
+  camera.world_from_camera = world_from_camera;
   const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
   const double degrees = half > 0 ? 2 * half : given;
   if (degrees > 0 && degrees < 180)
@@ -89,6 +89,8 @@ void set_camera(Parameters& parameters, const glm::dmat4& camera_from_world, Sce
     scene.film.exposure_time = close - open;
   else
     parameters.error("shutterclose", "must be after shutteropen");
+  scene.automatic_camera = parameters.boolean("automatic", false);
+  scene.has_no_up = parameters.boolean("noup", false);
   parameters.finish();
   scene.camera = camera;
 }

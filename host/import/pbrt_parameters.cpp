@@ -87,6 +87,10 @@ void skip_values(Lexer& lexer) {
   if (lexer.peek().kind == Token::Kind::close) lexer.next();
 }
 
+bool takes_numbers(const std::string& type) {
+  return type != "bool" && type != "string" && type != "texture" && type != "spectrum";
+}
+
 /// The values after a declaration; a first wrong value is kept in `problem` while the rest is read over.
 void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>& problem) {
   const auto add = [&](const Token& token) {
@@ -105,6 +109,7 @@ void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>
     return;
   }
   const Token open = lexer.next();
+  if (takes_numbers(parameter.type)) lexer.take_numbers(parameter.numbers, parameter.type == "integer");
   while (lexer.peek().kind != Token::Kind::close) {
     if (lexer.peek().kind == Token::Kind::end) throw SyntaxError{lexer.place(open), "this bracket is never closed"};
     if (lexer.peek().kind == Token::Kind::open) throw SyntaxError{lexer.place(lexer.peek()), "a bracket within brackets"};
@@ -322,8 +327,8 @@ glm::dvec3 Parameters::vector(std::string_view name, const glm::dvec3& fallback)
 }
 
 std::optional<Spectrum> Parameters::spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures) {
-  const Parameter* parameter =
-      textures ? values(name, {"rgb", "spectrum", "blackbody", "texture"}) : values(name, {"rgb", "spectrum", "blackbody"});
+  const Parameter* parameter = textures ? values(name, {"rgb", "spectrum", "blackbody", "float", "texture"})
+                                        : values(name, {"rgb", "spectrum", "blackbody", "float"});
   return parameter ? spectrum_of(*parameter, use, textures) : std::nullopt;
 }
 
@@ -343,6 +348,12 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
     }
     if (found->texture) return wrong("takes no texture other than constants here");
     return found->spectrum;
+  }
+  if (parameter.type == "float") {
+    if (parameter.numbers.size() != 1) return wrong("takes 1 value, not " + std::to_string(parameter.numbers.size()));
+    if (parameter.numbers[0] < 0) return wrong("must not be negative");
+    if (use == SpectrumUse::albedo && parameter.numbers[0] > 1) return wrong("is a reflectance above 1");
+    return ConstantSpectrum{parameter.numbers[0]};
   }
   if (parameter.type == "rgb") {
     if (parameter.numbers.size() != 3) return wrong("takes 3 values, not " + std::to_string(parameter.numbers.size()));

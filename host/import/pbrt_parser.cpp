@@ -46,6 +46,7 @@ const std::vector<Parser::Handler>& Parser::handlers() {
       {"Import", &Parser::import, world},
       {"Include", &Parser::include, anywhere},
       {"Integrator", &Parser::integrator, options},
+      {"InverseTransform", &Parser::inverse_transform, anywhere},
       {"LightSource", &Parser::light_source, world},
       {"LookAt", &Parser::look_at, anywhere},
       {"MakeNamedMaterial", &Parser::make_named_material, world},

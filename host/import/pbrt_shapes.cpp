@@ -39,6 +39,7 @@ Geometry make_ply_mesh(Parameters& parameters) {
 }
 
 Geometry make_capsules(Parameters& parameters, const MaterialIndex& material_index) {
+  if (parameters.has("p0")) return make_capsule_list(parameters, material_index);
   const std::string file = file_of(parameters);
   if (file.empty()) return CapsulesShape{};
   return read_other(parameters, [&] {

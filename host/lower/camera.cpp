@@ -2,7 +2,6 @@
 // Copyright Caplet authors
 #include "lower/camera.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -25,9 +24,7 @@ void lower_camera(const Scene& scene, FlatView& out) {
   view.crop_width = narrow<uint>(window[1] - window[0]);
   view.crop_height = narrow<uint>(window[3] - window[2]);
 
-  const double aspect = camera.frame_aspect_ratio.value_or(static_cast<double>(film.width) / film.height);
-  const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
-  const std::array<double, 4> screen = camera.screen_window.value_or(std::array<double, 4>{-x, x, -y, y});
+  const std::array<double, 4> screen = screen_window_of(camera, film);
   const double unit = std::tan(camera.fov / 2);  // half the shorter side, at distance 1
 
   CameraRecord& record = out.camera;

@@ -192,6 +192,7 @@ EnvironmentImage studio() {
       SoftLight{from_angles(radians(150), radians(58)), radians(18), radians(8), {2.8, 2.9, 3.1}},
   };
   EnvironmentImage image;
+  image.preset = studio_preset;
   image.width = 512;
   image.height = 256;
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
@@ -253,11 +254,15 @@ void frame_camera(Scene& scene) {
   scene.automatic_camera = true;
 }
 
+std::shared_ptr<const EnvironmentImage> studio_image() {
+  static const auto image = std::make_shared<const EnvironmentImage>(studio());
+  return image;
+}
+
 void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
-  static const auto image = std::make_shared<const EnvironmentImage>(studio());
-  light.image = image;
+  light.image = studio_image();
   const glm::dmat3 camera(scene.camera.world_from_camera);
   light.world_from_light = glm::dmat3(-camera[2], camera[0], camera[1]);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});

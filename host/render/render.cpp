@@ -24,14 +24,35 @@ RenderResult render(const FlatScene& scene, const FlatView& view, std::span<cons
   result.stage_compile_seconds = session.compile_seconds_by_stage();
   const Clock::time_point start = Clock::now();
   if (progress) progress({0, 0, 0});
-  const std::uint32_t done = session.render(
-      total,
-      [&](const SessionProgress& now) {
-        if (now.samples_done > 0 && result.first_pass_seconds == 0) result.first_pass_seconds = seconds_since(start);
-        if (options.cancelled && options.cancelled()) session.cancel();
-        if (progress) progress({now.fraction, narrow<int>(now.samples_done), now.samples_per_second});
-      },
-      options.time_limit);
+  std::uint32_t done = 0;
+  const auto pass = [&](std::uint32_t samples) {
+    std::optional<double> time_left = options.time_limit;
+    if (time_left) *time_left = std::max(0.0, *time_left - seconds_since(start));
+    const std::uint32_t more = session.render(
+        samples,
+        [&](const SessionProgress& now) {
+          if (now.samples_done > 0 && result.first_pass_seconds == 0) result.first_pass_seconds = seconds_since(start);
+          if (options.cancelled && options.cancelled()) session.cancel();
+          if (progress)
+            progress({(done + now.fraction * samples) / total, narrow<int>(done + now.samples_done), now.samples_per_second});
+        },
+        time_left);
+    done += more;
+    return more == samples;
+  };
+  if (options.look) {
+    // As many samples at a time as take so long.
+    for (std::uint32_t samples = 1; done < total;) {
+      const Clock::time_point begin = Clock::now();
+      if (!pass(std::min(samples, total - done)) || (options.time_limit && seconds_since(start) >= *options.time_limit)) break;
+      const double seconds = seconds_since(begin);
+      if (done < total) options.look(session.film());
+      if (seconds < options.look_seconds / 2) samples *= 2;
+      if (seconds > 2 * options.look_seconds) samples = std::max<std::uint32_t>(1, samples / 2);
+    }
+  } else {
+    pass(total);
+  }
   result.interrupted = options.cancelled && options.cancelled();
   if (options.film_on_device) result.device_film = session.film_on_device();
   if (!result.device_film) result.film = session.film();

@@ -27,6 +27,9 @@ struct RenderOptions {
   bool film_on_device = false;       // RenderResult::device_film in place of film, where it is on one device
   double patience = 60;              // SessionOptions::patience
   Layers layers = Layers::all();     // of the film
+  // Called between passes, about once in so many seconds, with the film as it then is; the film at the end does not depend on it.
+  std::function<void(const Film&)> look = {};
+  double look_seconds = 1;
 };
 
 struct Progress {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scene/spectrum.h"
@@ -16,6 +17,8 @@ struct EnvironmentImage {
   ColorSpace space = ColorSpace::srgb;
   // As directions: square equal-area octahedral (pbrt-v4); otherwise latitude-longitude, 2:1, z up
   bool equal_area = false;
+  std::string file = {};    // that it was read from
+  std::string preset = {};  // or what scene files call it: an image of Caplet's own
 };
 
 /// What a light's data have of an image: its colours, or the means of their channels.

@@ -4,7 +4,15 @@
 // Bounds and counts of whole scenes.
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace caplet {
+
+std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film) {
+  const double aspect = camera.frame_aspect_ratio.value_or(static_cast<double>(film.width) / film.height);
+  const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
+  return camera.screen_window.value_or(std::array<double, 4>{-x, x, -y, y});
+}
 
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;

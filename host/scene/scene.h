@@ -95,6 +95,9 @@ struct Scene {
   bool has_no_up = false;         // no direction is up (a neuron): the automatic camera may turn the scene within the image
 };
 
+/// The camera's screen window: its own, or that of its or the film's aspect ratio.
+std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film);
+
 /// Of all shapes where they lie, instances among them.
 Bounds bounds_of(const Scene& scene);
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "scene/spectrum.h"
@@ -27,6 +28,8 @@ struct TextureImage {
   std::array<float, 256> decoded{};  // what bytes stand for, ascending; of alpha, byte / 255
   std::vector<float> floats;
   ColorSpace space = ColorSpace::srgb;
+  std::string file = {};  // that it was read from, as of this encoding
+  ImageEncoding encoding = {};
 
   std::size_t values() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);

@@ -96,7 +96,7 @@ TEST(Unused, MaterialsMediaAndTexturesDoNotBlockAScene) {
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"\"\n"
       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"\n"
       "MakeNamedMaterial \"c\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\"\n"
-      "Material \"diffuse\" \"float reflectance\" .5\n"
+      "Material \"diffuse\" \"string reflectance\" \"half\"\n"
       "Material \"diffuse\" \"spectrum reflectance\" [400 .25 700 .25]\nShape \"sphere\"");
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(

@@ -8,6 +8,7 @@
 #include <caplet/render.h>
 #include <caplet/session.h>
 #include <caplet/verify.h>
+#include <caplet/write.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -510,6 +511,17 @@ TEST_F(Library, MessagesGoWhereTheyAreWanted) {
   EXPECT_EQ(said.size(), 1u);
   caplet::set_log_level(caplet::LogLevel::warning);
   caplet::set_log_sink({});
+}
+
+TEST_F(Library, AnEditedSceneIsWrittenAndReadAgain) {
+  caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
+  scene.set_material(0, caplet::NamedMaterial{"principled", {{"base_color", caplet::Rgb{0.8, 0.3, 0.1}}, {"metallic", 0.25}}});
+  caplet::write_scene(scene, folder_ / "written.pbrt");
+  const caplet::Scene read = caplet::import_scene(folder_ / "written.pbrt");
+  const caplet::Device device = test_device();
+  const caplet::Film a = caplet::render(scene, device), b = caplet::render(read, device);
+  for (const char* channel : {"R", "G", "B", "Z"}) EXPECT_EQ(a.values(channel), b.values(channel)) << channel;
+  EXPECT_THROW(caplet::write_scene(scene, folder_ / "written.exr"), caplet::InputError);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <variant>
 
+#include "import/detail/capsules.h"
 #include "import/detail/pbrt_parameters.h"
 #include "scene/scene.h"
 
@@ -76,6 +77,8 @@ Type read_fields(Parameters& parameters) {
 Geometry make_sphere(Parameters& parameters);
 DiskShape make_disk(Parameters& parameters);
 CapsulesShape make_capsule(Parameters& parameters);
+/// The capsules of a statement's own lists.
+CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index);
 /// With "p0" or "p1" ours, otherwise pbrt's open one.
 Geometry make_cylinder(Parameters& parameters);
 ConeShape make_cone(Parameters& parameters);

@@ -7,6 +7,7 @@
 #include <deque>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 
@@ -36,6 +37,9 @@ class Lexer {
   /// The next token, left in place. Throws SyntaxError for an unterminated string or an unknown escape.
   const Token& peek();
   Token next();
+  /// Appends the plain numbers (`whole`: of 32 bits) that stand next, up to the first token that is none: the quick way through
+  /// long lists. Blanks and line ends are between them, no comments.
+  void take_numbers(std::vector<double>& numbers, bool whole);
   SourceLocation place(const Token& token) const { return {file_, token.line, token.column}; }
   const std::string& file() const { return file_; }
 

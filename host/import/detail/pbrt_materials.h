@@ -18,7 +18,7 @@ using TextureImages = std::function<std::shared_ptr<const TextureImage>(Paramete
 
 /// What textures take of where they stand.
 struct TextureContext {
-  glm::dmat4 world_from_texture;
+  glm::dmat4 world_from_texture, texture_from_world;
   TextureImages images;
 };
 

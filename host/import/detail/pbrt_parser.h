@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -40,6 +41,7 @@ class Parser {
   struct State {
     glm::dmat4 ctm{1};
     std::optional<Flat> flat;  // the first transform in it that has no inverse, and is not in ctm
+    std::optional<glm::dmat4> inverse;  // of ctm, where the file states that: it is not to be computed from ctm
     bool reverse_orientation = false;
     ColorSpace space = ColorSpace::srgb;
     std::uint32_t material = 0;  // index into uses_
@@ -117,6 +119,7 @@ class Parser {
   void import();
   void include();
   void integrator();
+  void inverse_transform();
   void light_source();
   void look_at();
   void make_named_material();
@@ -147,6 +150,8 @@ class Parser {
   void multiply(const glm::dmat4& matrix);
   /// Reports the transform where it has no inverse, before something is put there.
   void check_place();
+  void set_transform(const glm::dmat4& ctm);
+  glm::dmat4 inverse_of_transform() const;
   void open_block();
   void close_block(const std::string& opener);
   void report_unclosed(std::size_t first_block);
@@ -208,6 +213,7 @@ class Parser {
   TextureTable textures_;
   std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images_;
   SharedParameters all_attributes_;
+  std::set<std::string> said_two_sided_;  // places of shapes whose statements say that they are not one-sided
 };
 
 }  // namespace caplet::pbrt

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "scene/lights/unit.h"
@@ -21,6 +22,7 @@ struct IesProfile {
   std::vector<double> polar;     // from the light's -z on; at least 2
   std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or one alone for all
   std::vector<double> candela;   // for each azimuth those of all polar angles
+  std::string file = {};         // that it was read from
 
   /// Lumens: the integral of the intensity over all directions.
   double flux() const {

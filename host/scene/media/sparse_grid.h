@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scene/bounds.h"
@@ -18,6 +19,7 @@ struct SparseGrid {
   Bounds box;                                       // in the medium's space
   std::vector<std::array<std::int32_t, 3>> bricks;  // of each the coordinates over 8, no two the same
   std::vector<float> values;                        // 512 a brick
+  std::string file = {};                            // that it was read from
 };
 using SparseGridPointer = std::shared_ptr<const SparseGrid>;
 

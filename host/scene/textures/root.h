@@ -12,6 +12,7 @@ struct RootTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
+    visit.only(true);
     visit.operand("tex", self.tex);
   }
 };

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet convert`: any scene file in, pbrt text out.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "export/export.h"
+#include "film/image.h"
+#include "import/import.h"
+
+namespace caplet::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, output;
+  bool quiet = false;
+};
+
+void run_convert(const Options& options) {
+  log::set_quiet(options.quiet);
+  const std::filesystem::path output = output_named(options.output);
+  Outputs outputs;
+  outputs.add("OUT.pbrt", output);
+  if (output.extension() != ".pbrt" && !is_stream(output))
+    throw InputError(SourceLocation{"OUT.pbrt"}, "'" + output.string() + "': scenes are written as pbrt text, to a file .pbrt");
+  install_interrupt_handlers();
+  const Scene scene = import_scene(options.scene, FileImageReader());
+  outputs.check_inputs();
+  write_scene(scene, output, interrupt_requested);
+  if (!is_stream(output)) log::info("wrote {}", output.string());
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("convert", "Write any scene file as pbrt text that gives the same picture");
+  command->add_option("SCENE", o->scene, "Scene file: .pbrt (pbrt-v4), .capsules or .swc")->required();
+  command->add_option("OUT.pbrt", o->output, "Scene file to write; -: to stdout")->required();
+  command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  command->footer(
+      "The picture of the written scene is that of the first one, bit for bit. Images and other files that the scene names are\n"
+      "not copied: the text names them relative to OUT.pbrt. Comments, includes and the names of transforms are not kept.");
+  command->callback([o] { run_convert(*o); });
+}
+
+}  // namespace caplet::cli

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Statements of pbrt text with their parameters, and what of the graphics state they stand in.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "export/detail/text.h"
+#include "scene/scene.h"
+
+namespace caplet::pbrt_text {
+
+/// Where statements go, and the colour space there.
+struct Stream {
+  Text& text;
+  std::filesystem::path folder;  // of the file, absolute
+  std::function<bool()> cancelled;
+  ColorSpace space = ColorSpace::srgb;
+
+  /// Throws RunError when it is cancelled.
+  void go_on() const {
+    if (cancelled && cancelled()) throw RunError("interrupted; nothing is written");
+  }
+};
+
+/// One statement: `head` and the parameters that are asked for, in order. What a list of parameters holds of other colour spaces
+/// than the stream's is put before it (Attribute `target`).
+class Statement {
+ public:
+  Statement(std::string head, const char* target, const SourceLocation& where)
+      : head_(std::move(head)), target_(target), where_(where) {}
+
+  void number(const std::string& name, double value);
+  void whole(const std::string& name, std::int64_t value) {
+    add("integer", name, text_of([&](Text& to) { to << value; }));
+  }
+  void boolean(const std::string& name, bool value) { add("bool", name, value ? "true" : "false"); }
+  void text(const std::string& name, std::string_view value) { add("string", name, quoted(value, where_)); }
+  void texts(const std::string& name, const std::vector<std::string>& values);
+  void texture(const std::string& name, std::string_view value) { add("texture", name, quoted(value, where_)); }
+  void numbers(const char* type, const std::string& name, std::initializer_list<double> values);
+  void point(const std::string& name, const glm::dvec3& p) { numbers("point3", name, {p.x, p.y, p.z}); }
+  void vector(const std::string& name, const glm::dvec3& v) { numbers("vector3", name, {v.x, v.y, v.z}); }
+  void spectrum(const std::string& name, const Spectrum& value);
+  /// A path as the scene has it: of a file that the statement's file then names. Throws InputError when it is empty.
+  void file(const std::string& name, const std::string& path, const char* what, const Stream& stream);
+  /// `count` values that `write` writes one by one, while the statement is written.
+  void list(const char* type, const std::string& name, std::size_t count, std::function<void(Text&, std::size_t)> write,
+            std::optional<ColorSpace> space = {});
+  /// The statement stands in a block, after this line.
+  void within(std::string line) { before_ += std::move(line); }
+
+  const SourceLocation& where() const { return where_; }
+  void write(Stream& stream);
+
+ private:
+  struct Parameter {
+    std::string declaration, value;
+    std::optional<ColorSpace> space = {};
+    std::size_t count = 0;  // of a list
+    std::function<void(Text&, std::size_t)> list = {};
+  };
+  void add(const char* type, const std::string& name, std::string value, std::optional<ColorSpace> space = {});
+  static void write(const Parameter& parameter, Stream& stream);
+  void finite(double value, const std::string& name) const;
+
+  std::string head_, before_;
+  const char* target_;
+  const SourceLocation& where_;
+  std::vector<Parameter> parameters_;
+};
+
+/// `ColorSpace` from here on.
+void set_space(Stream& stream, ColorSpace space);
+
+}  // namespace caplet::pbrt_text

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The order of the statements. Where importers number things by their own rules (media by their use, parts of mixes before these,
+// what lets all light through last), they come in that order, so that what is read is written as the same text.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "export/detail/families.h"
+#include "export/export.h"
+#include "scene/transform.h"
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace pbrt_text {
+
+namespace {
+
+[[noreturn]] void refuse(const SourceLocation& where, const std::string& what) {
+  throw InputError(where, what + ": it cannot be written");
+}
+
+class SceneWriter {
+ public:
+  SceneWriter(const Scene& scene, Stream& stream) : scene_(scene), stream_(stream) {}
+
+  void write() {
+    // Every field of the scene is of one of these names: one that is added does not compile without its statement.
+    const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter, film, sampler, integrator,
+                 source, automatic_camera, has_no_up] = scene_;
+    order_materials();
+    order_media();
+    name_all();
+    stream_.text << "# pbrt-v4 text with Caplet's shapes\n";
+    set_space(stream_, film.space);
+    write_camera(camera);
+    write_film(film);
+    write_filter(filter);
+    write_sampler(sampler, integrator);
+    stream_.text << "WorldBegin\n";
+    if (camera.medium) stream_.text << "MediumInterface \"\" \"\"\n";
+    for (const std::uint32_t medium : media_) medium_statement(media[medium], names_.media[medium], stream_).write(stream_);
+    for (std::uint32_t i = 0; i < textures.size(); ++i)
+      if (auto statement = texture_statement(scene_, i, names_, stream_)) statement->write(stream_);
+    for (const std::uint32_t i : materials_) material_statement(scene_, i, names_, stream_).write(stream_);
+    for (const Light& light : lights) light_statement(light, stream_).write(stream_);
+    for (std::uint32_t i = 0; i < objects.size(); ++i) write_object(i);
+    for (const Shape& shape : shapes) ensure_operands(shape);
+    for (const Shape& shape : shapes) write_shape(shape);
+    for (const auto& [object, world_from_object, where] : instances) {
+      stream_.go_on();
+      stream_.text << "AttributeBegin\n" << transform_of(world_from_object, where);
+      stream_.text << "ObjectInstance " << quoted(names_.objects[object], where) << "\nAttributeEnd\n";
+    }
+  }
+
+ private:
+  // --- Order and names ---
+
+  bool is_interface(std::uint32_t material) const {
+    return std::holds_alternative<InterfaceMaterial>(scene_.materials[material].model);
+  }
+
+  void order_materials() {
+    std::vector<bool> done(scene_.materials.size(), false);
+    // Parts before what has them; validate() has seen that no mix is its own part.
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t i = 0; i < done.size(); ++i) {
+      open.push_back(i);
+      while (!open.empty()) {
+        const std::uint32_t at = open.back();
+        std::optional<std::uint32_t> before;
+        if (const auto* mix = std::get_if<MixMaterial>(&scene_.materials[at].model))
+          for (const std::uint32_t part : mix->materials) {
+            if (is_interface(part)) refuse(scene_.materials[at].where, "a mix of an interface");
+            if (!done[part] && !before) before = part;
+          }
+        if (before && !done[at]) {
+          open.push_back(*before);
+          continue;
+        }
+        open.pop_back();
+        if (!done[at] && !is_interface(at)) materials_.push_back(at);
+        done[at] = true;
+      }
+    }
+    for (std::uint32_t i = 0; i < done.size() && !interface_; ++i)
+      if (is_interface(i)) interface_ = i;
+    if (interface_) materials_.push_back(*interface_);
+  }
+
+  void order_media() {
+    std::vector<bool> seen(scene_.media.size(), false);
+    const auto use = [&](const std::optional<std::uint32_t>& medium) {
+      if (!medium || seen[*medium]) return;
+      seen[*medium] = true;
+      media_.push_back(*medium);
+    };
+    const auto visit = [&](const Shape& shape) {
+      use(shape.media.inside);
+      use(shape.media.outside);
+    };
+    use(scene_.camera.medium);
+    std::ranges::for_each(scene_.shapes, visit);
+    for (const Object& object : scene_.objects) std::ranges::for_each(object.shapes, visit);
+  }
+
+  bool is_written(std::uint32_t object) const { return !scene_.objects[object].shapes.empty() || is_instanced_[object]; }
+
+  void name_all() {
+    names_.textures.resize(scene_.textures.size());
+    NameList of_textures[2], of_materials, of_media;
+    for (std::size_t i = 0; i < scene_.textures.size(); ++i)
+      names_.textures[i] = of_textures[scene_.textures[i].is_float ? 1 : 0].take(scene_.textures[i].name, "texture");
+    names_.materials.resize(scene_.materials.size());
+    const std::string interface = of_materials.take("interface", "");
+    for (const std::uint32_t i : materials_)
+      if (!is_interface(i)) names_.materials[i] = of_materials.take(scene_.materials[i].name, "material");
+    for (std::uint32_t i = 0; i < scene_.materials.size(); ++i)
+      if (is_interface(i)) names_.materials[i] = interface;
+    names_.media.resize(scene_.media.size());
+    for (const std::uint32_t i : media_) names_.media[i] = of_media.take(scene_.media[i].name, "medium");
+    is_instanced_.resize(scene_.objects.size(), false);
+    for (const Instance& instance : scene_.instances) is_instanced_[instance.object] = true;
+    names_.objects.resize(scene_.objects.size());
+    for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
+      if (is_written(i)) names_.objects[i] = object_names_.take(scene_.objects[i].name, "object");
+  }
+
+  // --- Options ---
+
+  std::string here() const { return scene_.source; }
+
+  void write_camera(const Camera& camera) {
+    const auto& [world_from_camera, fov, frame_aspect_ratio, screen_window, lens_radius, focal_distance, medium] = camera;
+    const SourceLocation where{here()};
+    stream_.text << inverse_text(world_from_camera);
+    if (medium) stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
+    Statement out("Camera \"perspective\"", nullptr, where);
+    out.number("fov", degrees_of(fov));
+    if (frame_aspect_ratio) out.number("frameaspectratio", *frame_aspect_ratio);
+    if (screen_window) {
+      const auto& w = *screen_window;
+      out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});
+    }
+    if (lens_radius != 0) out.number("lensradius", lens_radius);
+    out.number("focaldistance", focal_distance);
+    if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
+    if (scene_.automatic_camera) out.boolean("automatic", true);
+    if (scene_.has_no_up) out.boolean("noup", true);
+    out.write(stream_);
+  }
+
+  void write_film(const FilmSettings& film) {
+    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value, white_balance, space] = film;
+    const SourceLocation where{here()};
+    Statement out("Film \"rgb\"", nullptr, where);
+    out.whole("xresolution", width);
+    out.whole("yresolution", height);
+    if (crop) {
+      const auto& c = *crop;
+      out.list("integer", "pixelbounds", c.size(), [&c](Text& text, std::size_t i) { text << std::int64_t{c[i]}; });
+    }
+    out.text("filename", filename);
+    if (iso != 100) out.number("iso", iso);
+    if (max_component_value != 0) out.number("maxcomponentvalue", max_component_value);
+    if (white_balance != 0) out.number("whitebalance", white_balance);
+    out.write(stream_);
+  }
+
+  void write_filter(const PixelFilter& filter) {
+    const auto& [kind, radius_x, radius_y, sigma, b, c, tau] = filter;
+    static constexpr const char* types[] = {"box", "triangle", "gaussian", "mitchell", "sinc"};
+    const SourceLocation where{here()};
+    Statement out(std::string("PixelFilter \"") + types[static_cast<std::size_t>(kind)] + "\"", nullptr, where);
+    out.number("xradius", radius_x);
+    out.number("yradius", radius_y);
+    if (kind == PixelFilter::Kind::gaussian) out.number("sigma", sigma);
+    if (kind == PixelFilter::Kind::mitchell) {
+      out.number("B", b);
+      out.number("C", c);
+    }
+    if (kind == PixelFilter::Kind::sinc) out.number("tau", tau);
+    out.write(stream_);
+  }
+
+  void write_sampler(const SamplerSettings& sampler, const IntegratorSettings& integrator) {
+    const auto& [samples_per_pixel, seed] = sampler;
+    const auto& [max_depth] = integrator;
+    const SourceLocation where{here()};
+    Statement samples("Sampler \"zsobol\"", nullptr, where);
+    samples.whole("pixelsamples", samples_per_pixel);
+    if (seed != 0) samples.whole("seed", static_cast<std::int32_t>(seed));
+    samples.write(stream_);
+    Statement paths("Integrator \"path\"", nullptr, where);
+    paths.whole("maxdepth", max_depth);
+    paths.write(stream_);
+  }
+
+  // --- Shapes ---
+
+  static std::string transform_of(const glm::dmat4& matrix, const SourceLocation& where) {
+    if (!has_inverse(matrix) || !is_affine(matrix)) refuse(where, "the transform has no inverse as importers see it");
+    return matrix == glm::dmat4(1) ? std::string() : "Transform " + matrix_text(matrix) + "\n";
+  }
+
+  /// The one that the statement's state says; none where no surface has it.
+  std::optional<std::uint32_t> stated_material(const Shape& shape) const {
+    if (!shape.materials.empty() || std::holds_alternative<CsgShape>(shape.geometry)) return std::nullopt;
+    const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+    if (capsules && capsules->p0.size() == 1 && !capsules->materials.empty()) return capsules->materials[0];
+    return shape.material;
+  }
+
+  bool is_all_interface(const Shape& shape) const {
+    const auto interface = [&](std::uint32_t material) { return is_interface(material); };
+    if (!shape.materials.empty()) return std::ranges::all_of(shape.materials, interface);
+    if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
+      return std::ranges::all_of(csg->operands, [&](const auto& operand) { return is_all_interface(*operand); });
+    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry); capsules && !capsules->materials.empty())
+      return std::ranges::all_of(capsules->materials, interface);
+    return is_interface(shape.material);
+  }
+
+  ShapeReferences references() {
+    return {scene_, names_, [this](const Shape& operand) { return operands_.at(operand_text(operand)); }};
+  }
+
+  void use_material(const Shape& shape, std::string& current) {
+    const auto material = stated_material(shape);
+    if (!material || names_.materials[*material] == current) return;
+    current = names_.materials[*material];
+    stream_.text << "NamedMaterial " << quoted(current, shape.where) << "\n";
+  }
+
+  void write_shape(const Shape& shape) {
+    if (interface_ && is_all_interface(shape) && (shape.emission || !shape.media.differ()))
+      refuse(shape.where, "a shape that is seen by nothing and parts no media, or emits");
+    use_material(shape, material_);
+    const std::string transform = transform_of(shape.world_from_object, shape.where);
+    const bool is_block = !transform.empty() || shape.emission || shape.reverse_orientation || shape.media != MediumSides{};
+    const ColorSpace space = stream_.space;
+    if (is_block) stream_.text << "AttributeBegin\n" << transform;
+    if (shape.media != MediumSides{}) {
+      const auto name = [&](const std::optional<std::uint32_t>& medium) {
+        return quoted(medium ? names_.media[*medium] : std::string(), shape.where);
+      };
+      stream_.text << "MediumInterface " << name(shape.media.inside) << " " << name(shape.media.outside) << "\n";
+    }
+    if (shape.reverse_orientation) stream_.text << "ReverseOrientation\n";
+    if (shape.emission) area_statement(*shape.emission, shape.where, stream_).write(stream_);
+    shape_statement(shape, references()).write(stream_);
+    if (!is_block) return;
+    stream_.text << "AttributeEnd\n";
+    stream_.space = space;
+  }
+
+  /// What tells operands apart.
+  std::string operand_text(const Shape& shape) {
+    return text_of([&](Text& text) {
+      Stream aside{text, stream_.folder, {}};
+      if (const auto material = stated_material(shape))
+        text << "NamedMaterial " << quoted(names_.materials[*material], shape.where) << "\n";
+      text << transform_of(shape.world_from_object, shape.where);
+      shape_statement(shape, references(), true).write(aside);
+    });
+  }
+
+  /// Every operand of a csg shape is in an object before it.
+  void ensure_operands(const Shape& shape) {
+    const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+    if (!csg) return;
+    for (const auto& operand : csg->operands) {
+      ensure_operands(*operand);
+      const std::string text = operand_text(*operand);
+      const auto [found, fresh] = operands_.try_emplace(text);
+      if (!fresh) continue;
+      found->second = object_names_.take("", "operand");
+      stream_.text << "ObjectBegin " << quoted(found->second, operand->where) << "\n";
+      const std::string outer = material_;
+      use_material(*operand, material_);
+      const std::string transform = transform_of(operand->world_from_object, operand->where);
+      if (!transform.empty()) stream_.text << "AttributeBegin\n" << transform;
+      Statement statement = shape_statement(*operand, references(), true);
+      if (is_hair(scene_, *operand) && !operand->one_sided) statement.boolean("onesided", false);
+      statement.write(stream_);
+      stream_.text << (transform.empty() ? "" : "AttributeEnd\n") << "ObjectEnd\n";
+      material_ = outer;
+    }
+  }
+
+  bool may_be_operand(const Object& object) const {
+    if (object.shapes.size() != 1) return false;
+    const Shape& shape = object.shapes[0];
+    const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+    return is_closed(shape) && !(capsules && capsules->p0.size() != 1) && !shape.emission && !shape.reverse_orientation &&
+           !shape.alpha && (!shape.one_sided || is_hair(scene_, shape));
+  }
+
+  void write_object(std::uint32_t index) {
+    const auto& [name, shapes, where] = scene_.objects[index];
+    if (!is_written(index)) return;
+    for (const Shape& shape : shapes) ensure_operands(shape);
+    stream_.text << "ObjectBegin " << quoted(names_.objects[index], where) << "\n";
+    const std::string outer = material_;
+    for (const Shape& shape : shapes) write_shape(shape);
+    material_ = outer;
+    stream_.text << "ObjectEnd\n";
+    if (may_be_operand(scene_.objects[index])) operands_.try_emplace(operand_text(shapes[0]), names_.objects[index]);
+  }
+
+  const Scene& scene_;
+  Stream& stream_;
+  Names names_;
+  NameList object_names_;
+  std::vector<std::uint32_t> materials_, media_;  // in order
+  std::optional<std::uint32_t> interface_;
+  std::vector<bool> is_instanced_;
+  std::string material_;                         // of the state
+  std::map<std::string, std::string> operands_;  // objects by what they hold
+};
+
+}  // namespace
+
+}  // namespace pbrt_text
+
+void write_pbrt(const Scene& scene, const fs::path& folder, const std::function<void(std::string_view)>& sink,
+                const std::function<bool()>& cancelled) {
+  Diagnostics diagnostics;
+  validate(scene, diagnostics);
+  diagnostics.finish();
+  pbrt_text::Text text(sink);
+  pbrt_text::Stream stream{text, fs::weakly_canonical(fs::absolute(folder)), cancelled};
+  pbrt_text::SceneWriter(scene, stream).write();
+  text.flush();
+}
+
+void write_scene(const Scene& scene, const fs::path& file, const std::function<bool()>& cancelled) {
+  if (file.extension() != ".pbrt" && !is_stream(file))
+    throw InputError(SourceLocation{file.string()}, "scenes are written as pbrt text, to a file .pbrt");
+  const fs::path folder = is_stream(file) ? fs::path(".") : fs::absolute(file).parent_path();
+  write_atomically(file, [&](const fs::path& path) {
+    struct Close {
+      void operator()(std::FILE* open) const { std::fclose(open); }
+    };
+    std::unique_ptr<std::FILE, Close> out(std::fopen(path.c_str(), "wb"));
+    const auto failed = [&] {
+      throw RunError(file.string() + ": cannot be written (" + std::generic_category().message(errno) + ")");
+    };
+    if (!out) failed();
+    write_pbrt(
+        scene, folder,
+        [&](std::string_view piece) {
+          if (std::fwrite(piece.data(), 1, piece.size(), out.get()) != piece.size()) failed();
+        },
+        cancelled);
+    if (std::fclose(out.release()) != 0) failed();
+  });
+}
+
+}  // namespace caplet

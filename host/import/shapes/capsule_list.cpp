@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Capsules in lists: what a .capsules file holds, within the statement.
+#include <algorithm>
+
+#include "import/detail/pbrt_geometry.h"
+
+namespace caplet::pbrt {
+
+namespace {
+
+/// One float from 0 up a capsule; none where the parameter is not there or wrong (reported).
+std::vector<float> radii(Parameters& parameters, const char* name, std::size_t count) {
+  std::vector<float> out;
+  const Parameter* given = parameters.values(name, {"float"});
+  if (!given) return out;
+  if (given->numbers.size() != count) {
+    parameters.error(name, "has " + std::to_string(given->numbers.size()) + " values for " + std::to_string(count) + " capsules");
+    return out;
+  }
+  out.reserve(count);
+  for (const double value : given->numbers) {
+    out.push_back(to_float(parameters, name, value));
+    if (value >= 0) continue;
+    parameters.error(name, "must not be negative");
+    return {};
+  }
+  return out;
+}
+
+/// The materials that "materialindices" tells by their places in "capsulematerials".
+void read_materials(Parameters& parameters, const MaterialIndex& material_index, CapsulesShape& capsules) {
+  const Parameter* names = parameters.values("capsulematerials", {"string"});
+  const Parameter* indices = parameters.values("materialindices", {"integer"});
+  if (!names && !indices) return;
+  if (!names || !indices)
+    return parameters.error(names ? "capsulematerials" : "materialindices",
+                            names ? "needs \"integer materialindices\"" : "needs \"string capsulematerials\"");
+  if (indices->numbers.size() != capsules.p0.size())
+    return parameters.error("materialindices", "has " + std::to_string(indices->numbers.size()) + " values for " +
+                                                   std::to_string(capsules.p0.size()) + " capsules");
+  std::vector<std::uint32_t> known;
+  for (const std::string& name : names->strings) known.push_back(material_index(name, names->where));
+  capsules.materials.reserve(indices->numbers.size());
+  for (const double index : indices->numbers) {
+    if (!(index >= 0 && index < static_cast<double>(known.size()))) {
+      capsules.materials.clear();
+      return parameters.error("materialindices", "must be below the number of \"capsulematerials\", from 0 up");
+    }
+    capsules.materials.push_back(known[static_cast<std::size_t>(index)]);
+  }
+}
+
+}  // namespace
+
+CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index) {
+  CapsulesShape capsules;
+  for (const char* name : {"p1", "radius"})
+    if (!parameters.has(name)) parameters.error("\"" + std::string(name) + "\" is missing");
+  capsules.p0 = vectors3(parameters, parameters.values("p0", {"point3"}));
+  capsules.p1 = vectors3(parameters, parameters.values("p1", {"point3"}));
+  const std::size_t count = capsules.p0.size();
+  if (count == 0 || capsules.p1.empty()) return {};
+  if (capsules.p1.size() != count) {
+    parameters.error("p1", "has " + std::to_string(capsules.p1.size()) + " points for " + std::to_string(count) + " of \"p0\"");
+    return {};
+  }
+  capsules.radius0 = radii(parameters, "radius", count);
+  if (capsules.radius0.empty()) return {};
+  capsules.radius1 = radii(parameters, "radius1", count);
+  if (capsules.radius1 == capsules.radius0) capsules.radius1.clear();
+  read_materials(parameters, material_index, capsules);
+  return capsules;
+}
+
+}  // namespace caplet::pbrt

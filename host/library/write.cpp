@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "caplet/write.h"
+
+#include "export/export.h"
+#include "library/detail/inside.h"
+
+namespace caplet::v0 {
+
+void write_scene(const Scene& scene, const std::filesystem::path& file) { caplet::write_scene(*Inside::model(scene), file); }
+
+}  // namespace caplet::v0

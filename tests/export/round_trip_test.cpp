@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What is written is read as the same scene: the same buffers of the device to the bit, and the same text when it is written
+// again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
+#include <sstream>
+
+#include "base/log.h"
+#include "export/detail/text.h"
+#include "export/export.h"
+#include "flat_equal.h"
+#include "import/detail/pbrt.h"
+#include "present/present.h"
+#include "random_scene.h"
+#include "scene_files.h"
+
+namespace caplet {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string text_of(const Scene& scene, const fs::path& folder) {
+  std::string out;
+  write_pbrt(scene, folder, [&](std::string_view piece) { out += piece; });
+  return out;
+}
+
+std::string contents(const fs::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+Scene scene_of(const std::string& text) {
+  const fs::path file = temporary_folder() / "scene.pbrt";
+  std::ofstream(file, std::ios::binary) << text;
+  return import_scene(file, NamedImages());
+}
+
+std::string refusal_of(const Scene& scene) {
+  try {
+    text_of(scene, "/tmp");
+  } catch (const InputError& error) {
+    return error.messages().front();
+  }
+  return {};
+}
+
+TEST(RoundTrip, EveryRowOfEveryList) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const fs::path folder = temporary_folder(), file = folder / "scene.pbrt";
+    const Scene scene = random_scene(seed, folder);
+    write_scene(scene, file);
+    const std::string text = contents(file);
+    for (const char* type : {
+#define TEXTURE_MODEL(name, Type) #name,
+#define OWN_TEXTURE_MODEL(name, Type)
+#include "scene/textures.def"
+#define MATERIAL_MODEL(name, Type) #name,
+#include "scene/materials.def"
+#define LIGHT_MODEL(name, Type) #name,
+#include "scene/lights.def"
+         })
+      EXPECT_THAT(text, HasSubstr("\"" + std::string(type) + "\""));
+    const Scene read = import_scene(file, NamedImages());
+    EXPECT_EQ(different_buffers(scene, read), "");
+    EXPECT_EQ(text_of(read, folder), text);
+    EXPECT_EQ(read.automatic_camera, scene.automatic_camera);
+    EXPECT_EQ(read.has_no_up, scene.has_no_up);
+    EXPECT_EQ(read.film.filename, scene.film.filename);
+    EXPECT_EQ(read.film.exposure_time, scene.film.exposure_time);
+    EXPECT_EQ(read.film.max_component_value, scene.film.max_component_value);
+    EXPECT_EQ(read.film.iso, scene.film.iso);
+    EXPECT_EQ(read.sampler.samples_per_pixel, scene.sampler.samples_per_pixel);
+    EXPECT_EQ(read.camera.world_from_camera, scene.camera.world_from_camera);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+      if (!scene.materials[i].name.empty()) {
+        EXPECT_EQ(read.materials[i].name, scene.materials[i].name);
+      }
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) EXPECT_EQ(read.shapes[i].name, scene.shapes[i].name);
+  }
+}
+
+void expect_same(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const fs::path& file : scene_files(folder)) {
+    const auto scene = readable_scene(file);
+    if (!scene) continue;
+    SCOPED_TRACE(file);
+    ++count;
+    const fs::path target = temporary_folder() / "scene.pbrt";
+    write_scene(*scene, target);
+    const Scene read = import_scene(target, FileImageReader());
+    EXPECT_EQ(text_of(read, target.parent_path()), contents(target));
+    EXPECT_EQ(read.camera.world_from_camera, scene->camera.world_from_camera);
+    EXPECT_EQ(read.camera.fov, scene->camera.fov);
+    EXPECT_EQ(count_primitives(read), count_primitives(*scene));
+    EXPECT_EQ(read.lights.size(), scene->lights.size());
+  }
+  EXPECT_GT(count, 0u);
+}
+
+TEST(RoundTrip, ExampleScenesAreTheSameText) { expect_same(source_folder() / "scenes"); }
+
+TEST(RoundTrip, SharedScenesAreTheSameText) {
+  CAPLET_NEEDS_DATA();
+  expect_same(data_folder());
+}
+
+TEST(RoundTrip, SeedsOfTheFuzzersAreTheSameText) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "tests/fuzz/seeds/pbrt")) {
+    if (!entry.is_regular_file()) continue;
+    SCOPED_TRACE(entry.path());
+    const fs::path beside = source_folder() / "tests/fuzz/beside";
+    const auto read = [&](const std::string& from) {
+      Scene scene = pbrt::import_text((beside / "seed.pbrt").string(), from, NamedImages());
+      Diagnostics diagnostics;
+      validate(scene, diagnostics);
+      diagnostics.finish();
+      return scene;
+    };
+    std::optional<Scene> scene;
+    try {
+      scene = read(contents(entry.path()));
+    } catch (const InputError&) {
+      continue;
+    }
+    const std::string text = text_of(*scene, beside);
+    EXPECT_EQ(text_of(read(text), beside), text);
+    ++count;
+  }
+  EXPECT_GT(count, 3u);
+}
+
+// --- What scenes say beyond their picture ---
+
+const std::string world = "Camera \"perspective\"\nWorldBegin\n";
+
+TEST(RoundTrip, NeuronsAreFramedAgainWhenTheirSizeChanges) {
+  Scene scene = import_scene(source_folder() / "scenes/neuron.swc", FileImageReader());
+  Scene read = scene_of(text_of(scene, "/tmp"));
+  EXPECT_TRUE(read.automatic_camera);
+  EXPECT_TRUE(read.has_no_up);
+  for (Scene* one : {&scene, &read}) {
+    one->film.width = 300;
+    one->film.height = 700;
+    frame_camera(*one);
+  }
+  EXPECT_EQ(different_buffers(scene, read), "");
+}
+
+TEST(RoundTrip, OperandsAreTheObjectsThatThereAre) {
+  const std::string text = text_of(scene_of(world + R"(
+MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [1 0 0]
+NamedMaterial "red"
+ObjectBegin "ball" Shape "sphere" "float radius" 1 ObjectEnd
+ObjectBegin "die" Translate 1 0 0 Shape "box" "point3 p0" [0 0 0] "point3 p1" [1 1 1] ObjectEnd
+ObjectBegin "cut" Shape "csg" "string operation" "difference" "string operands" ["ball" "die"] ObjectEnd
+Shape "csg" "string operation" "union" "string operands" ["cut" "die"]
+)"),
+                                   "/tmp");
+  EXPECT_THAT(text, HasSubstr("\"string operands\" [\"ball\" \"die\"]"));
+  EXPECT_THAT(text, HasSubstr("\"string operands\" [\"cut\" \"die\"]"));
+  EXPECT_THAT(text, Not(HasSubstr("operand 1")));
+}
+
+TEST(RoundTrip, OperandsOfNoObjectGetOne) {
+  Scene scene = scene_of(world + R"(
+ObjectBegin "ball" Shape "sphere" ObjectEnd
+ObjectBegin "die" Shape "box" "point3 p0" [0 0 0] "point3 p1" [1 1 1] ObjectEnd
+Shape "csg" "string operation" "difference" "string operands" ["ball" "die"]
+)");
+  scene.objects.clear();
+  const std::string text = text_of(scene, "/tmp");
+  EXPECT_THAT(text, HasSubstr("\"string operands\" [\"operand 1\" \"operand 2\"]"));
+  const Scene read = scene_of(text);
+  EXPECT_EQ(text_of(read, "/tmp"), text);
+  EXPECT_EQ(std::get<CsgShape>(read.shapes[0].geometry).operands.size(), 2u);
+}
+
+TEST(RoundTrip, HairIsOneSidedUnlessTheSceneSaysOtherwise) {
+  const std::string fibre = R"(Material "hair"
+Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [1 0 0] "float radius" 1)";
+  Scene scene = scene_of(world + fibre);
+  EXPECT_TRUE(scene.shapes[0].one_sided);
+  EXPECT_THAT(text_of(scene, "/tmp"), Not(HasSubstr("onesided")));
+  EXPECT_FALSE(scene_of(world + fibre + " \"bool onesided\" false").shapes[0].one_sided);
+  scene.shapes[0].one_sided = false;
+  EXPECT_FALSE(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided);
+}
+
+TEST(RoundTrip, FilesAreNamedFromTheFolder) {
+  const fs::path folder = temporary_folder();
+  fs::create_directories(folder / "images");
+  fs::create_directories(folder / "out");
+  std::ofstream(folder / "images/sky.exr") << "x";
+  std::ofstream(folder / "a.pbrt") << world +
+                                          "LightSource \"infinite\" \"string filename\" \"images/sky.exr\"\nShape \"sphere\"\n";
+  const Scene scene = import_scene(folder / "a.pbrt", NamedImages());
+  EXPECT_THAT(text_of(scene, folder), HasSubstr("\"string filename\" \"images/sky.exr\""));
+  EXPECT_THAT(text_of(scene, folder / "out"), HasSubstr("\"string filename\" \"../images/sky.exr\""));
+  EXPECT_THAT(text_of(scene, "/nowhere/else"), HasSubstr("\"string filename\" \"" + fs::canonical(folder).string()));
+}
+
+TEST(RoundTrip, SpectraWithNamesKeepThem) {
+  const std::string text =
+      text_of(scene_of(world + R"(Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k"
+Shape "sphere")"),
+              "/tmp");
+  EXPECT_THAT(text, HasSubstr("\"spectrum eta\" \"metal-Ag-eta\""));
+  EXPECT_THAT(text, HasSubstr("\"spectrum k\" \"metal-Ag-k\""));
+}
+
+// --- Refusals ---
+
+TEST(WriteScene, WhatNoTextSaysIsRefusedAtItsPlace) {
+  const Scene good = scene_of(world + "LightSource \"infinite\" \"rgb L\" [1 1 1]\nShape \"sphere\" \"string name\" \"a\"\n");
+  EXPECT_EQ(refusal_of(good), "");
+  Scene scene = good;
+  auto image = std::make_shared<EnvironmentImage>();
+  image->width = image->height = 1;
+  image->rgb = {1, 1, 1};
+  std::get<InfiniteLight>(scene.lights[0].model).image = image;
+  EXPECT_THAT(refusal_of(scene), HasSubstr("scene.pbrt:3:1: the light's image was read from no file"));
+  scene = good;
+  scene.shapes[0].name = "a\x02";
+  EXPECT_THAT(refusal_of(scene), HasSubstr("scene.pbrt:4:1: the name holds a control character"));
+  scene = good;
+  scene.shapes[0].material = 7;
+  EXPECT_THAT(refusal_of(scene), HasSubstr("material that does not exist"));
+  scene = good;
+  scene.lights.emplace_back();
+  scene.lights.back().model = DistantLight{ConstantSpectrum{1}, {0, 0, 2}};
+  EXPECT_THAT(refusal_of(scene), HasSubstr("not of unit length"));
+  scene = good;
+  scene.shapes[0].world_from_object = glm::scale(glm::dmat4(1), {1e-7, 1e-7, 1});
+  scene.shapes[0].world_from_object[0][1] = 1e-7;
+  scene.shapes[0].world_from_object[1][0] = 1e-7 * (1 - 1e-13);
+  EXPECT_NE(refusal_of(scene), "");
+  scene = good;
+  scene.materials.push_back({InterfaceMaterial{}, "gone", {}});
+  scene.shapes[0].material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  EXPECT_THAT(refusal_of(scene), HasSubstr("seen by nothing"));
+}
+
+TEST(WriteScene, AFileIsReplacedAsAWholeOrNotAtAll) {
+  const fs::path folder = temporary_folder(), file = folder / "scene.pbrt";
+  std::ofstream(file) << "old";
+  Scene scene = scene_of(world + "Shape \"sphere\"\n");
+  EXPECT_THROW(write_scene(scene, folder / "scene.exr"), InputError);
+  EXPECT_THROW(write_scene(scene, file, [] { return true; }), RunError);
+  scene.shapes[0].name = "a\x02";
+  EXPECT_THROW(write_scene(scene, file), InputError);
+  EXPECT_EQ(contents(file), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  scene.shapes[0].name = "a";
+  write_scene(scene, file);
+  EXPECT_THAT(contents(file), HasSubstr("Shape \"sphere\" \"float radius\" 1 \"string name\" \"a\"\n"));
+}
+
+// --- What importers read for the writer's sake ---
+
+TEST(OurStatements, CapsulesInLists) {
+  const std::string materials =
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n";
+  const Scene scene = scene_of(world + materials + R"(NamedMaterial "a"
+Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
+1 1 0] "float radius" [0.1 0.2] "float radius1" [0.1 0.3] "string capsulematerials" ["" "b"] "integer materialindices" [1 0])");
+  const auto& read = std::get<CapsulesShape>(scene.shapes[0].geometry);
+  EXPECT_EQ(read.p0, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(read.p1, (std::vector<glm::vec3>{{0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(read.radius0, (std::vector<float>{0.1f, 0.2f}));
+  EXPECT_EQ(read.radius1, (std::vector<float>{0.1f, 0.3f}));
+  EXPECT_EQ(read.materials, (std::vector<std::uint32_t>{1, 0}));
+  const auto said = [&](const std::string& parameters) {
+    try {
+      scene_of(world + materials + "Shape \"capsules\" \"point3 p0\" [0 0 0 1 0 0] " + parameters);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string ends = "\"point3 p1\" [0 1 0 1 1 0] ";
+  EXPECT_THAT(said("\"float radius\" [1 1]"), HasSubstr("\"p1\" is missing"));
+  EXPECT_THAT(said("\"point3 p1\" [0 1 0] \"float radius\" [1 1]"), HasSubstr("has 1 points for 2"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1]"), HasSubstr("has 1 values for 2 capsules"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 -1]"), HasSubstr("must not be negative"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\""),
+              HasSubstr("needs \"integer materialindices\""));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\" \"integer materialindices\" [0 1]"),
+              HasSubstr("must be below"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"c\" \"integer materialindices\" [0 0]"),
+              HasSubstr("\"c\" is not defined"));
+}
+
+TEST(OurStatements, InverseTransformIsNotComputed) {
+  const std::string matrix = "[0.6 0.8 0 0 -0.8 0.6 0 0 0 0 1 0 1 2 3 1]";
+  const Scene scene = scene_of("InverseTransform " + matrix + "\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+  EXPECT_EQ(scene.camera.world_from_camera, glm::dmat4(0.6, 0.8, 0, 0, -0.8, 0.6, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1));
+  EXPECT_THROW(scene_of("InverseTransform [1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1] Camera \"perspective\" WorldBegin Shape \"sphere\""),
+               InputError);
+  // A later statement of a transform takes its place.
+  const Scene moved = scene_of("InverseTransform " + matrix + " Identity Camera \"perspective\" WorldBegin Shape \"sphere\"");
+  EXPECT_EQ(moved.camera.world_from_camera, glm::dmat4(1));
+}
+
+TEST(OurStatements, ANumberIsASpectrum) {
+  const Scene scene = scene_of(
+      world + "LightSource \"point\" \"float I\" 3\nMaterial \"diffuse\" \"float reflectance\" 0.25\nShape \"sphere\"\n");
+  EXPECT_EQ(std::get<ConstantSpectrum>(std::get<PointLight>(scene.lights[0].model).intensity).value, 3);
+  EXPECT_EQ(std::get<ConstantSpectrum>(std::get<DiffuseMaterial>(scene.materials[0].model).reflectance).value, 0.25);
+  EXPECT_THROW(scene_of(world + "Material \"diffuse\" \"float reflectance\" 1.25\nShape \"sphere\"\n"), InputError);
+  EXPECT_THROW(scene_of(world + "LightSource \"point\" \"float I\" -1\nShape \"sphere\"\n"), InputError);
+}
+
+TEST(OurStatements, TheStudioHasAName) {
+  const Scene scene = scene_of(world + "LightSource \"infinite\" \"string preset\" \"studio\"\nShape \"sphere\"\n");
+  EXPECT_EQ(std::get<InfiniteLight>(scene.lights[0].model).image, studio_image());
+  EXPECT_THROW(scene_of(world + "LightSource \"infinite\" \"string preset\" \"studium\"\nShape \"sphere\"\n"), InputError);
+}
+
+}  // namespace
+}  // namespace caplet
