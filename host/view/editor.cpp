@@ -98,7 +98,7 @@ Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> inst
 
 template <class Rearrange>
 Rearrange addition(std::shared_ptr<const Things> things) {
-  return {[things](Scene& scene) {
+  return {[things = std::move(things)](Scene& scene) {
     Things copy = *things;
     std::vector<std::size_t> shapes, instances;
     for (const auto& [place, shape] : copy.shapes) shapes.push_back(place);

@@ -36,7 +36,7 @@ int tiles_of(const Picture& picture) { return ((picture.width - 1) / tile_size +
 bool differ(const Picture& a, const Picture& b, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(tile.x0));
-    const auto count = static_cast<std::size_t>(3 * (tile.x1 - tile.x0));
+    const auto count = 3 * static_cast<std::size_t>(tile.x1 - tile.x0);
     if (std::memcmp(&a.color[first], &b.color[first], count * sizeof a.color[0]) != 0) return true;
   }
   return false;

@@ -458,11 +458,12 @@ class Maker {
     scene_.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8, random_.uniform(0.5, 1)};
     scene_.camera.lens_radius = random_.uniform(0.01, 0.1);
     scene_.camera.focal_distance = random_.uniform(1, 30);
-    scene_.filter = {static_cast<PixelFilter::Kind>(random_.below(4)), random_.uniform(0.5, 2), random_.uniform(0.5, 2)};
+    scene_.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2), random_.uniform(0.5, 2)};
     if (scene_.filter.kind == PixelFilter::Kind::gaussian) scene_.filter.sigma = 0.4;
     if (scene_.filter.kind == PixelFilter::Kind::mitchell) scene_.filter.b = 0.2, scene_.filter.c = 0.4;
-    scene_.film = {64,  48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200,
-                   0.7, 12.5, static_cast<ColorSpace>(random_.below(4))};
+    if (scene_.filter.kind == PixelFilter::Kind::sinc) scene_.filter.tau = 2.5;
+    scene_.film = {64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7,
+                   12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
     scene_.sampler = {1 + static_cast<int>(random_.below(1000)), static_cast<std::uint32_t>(0xfffffff0u + random_.below(9))};
     scene_.integrator.max_depth = static_cast<int>(random_.below(20));
     scene_.automatic_camera = random_.one_in(2);

@@ -361,7 +361,7 @@ def figures(program, scenes, out):
         shown.script("document.querySelector('aside').scrollTo(0, 250)")
         shot("viewer")
         width, height, _ = shown.pixels()
-        shown.mouse(int(0.93 * width), int(0.8 * height)).click().perform()  # the glass chain
+        shown.mouse(int(0.7 * width), int(0.62 * height)).click().perform()  # through the glass lens
         shown.until("the crossings", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#table tbody tr")) > 2)
         shown.script("document.querySelector('#inspector').scrollIntoView()")
         shot("viewer-inspector")

@@ -25,14 +25,16 @@ function stretches(crossings) {
 
 function diagram(node, crossings) {
   node.replaceChildren();
-  const rows = stretches(crossings).slice(0, 60), height = 16, last = crossings.length ? crossings.at(-1).t : 1;
+  const rows = stretches(crossings).slice(0, 60), height = 16, last = crossings.at(-1)?.t ?? 1, within = rows.some((row) => row.from === 0);
+  const near = within ? 0 : (crossings[0]?.t ?? 0) - 0.02 * (last - (crossings[0]?.t ?? 0)), width = last - near || 1;
   node.setAttribute("height", rows.length * height + 4);
   node.setAttribute("aria-label", texts.intervals(crossings.length));
-  const place = (t) => `${2 + 96 * t / (last || 1)}%`, colors = ["#e8743b", "#3b8ee8", "#5aa83c", "#b358c9", "#c9a227", "#2aa198"];
+  const place = (t) => `${2 + 96 * (t - near) / width}%`, colors = ["#e8743b", "#3b8ee8", "#5aa83c", "#b358c9", "#c9a227", "#2aa198"];
   rows.forEach((row, i) => {
     const y = i * height + 2, end = row.to ?? last;
-    node.append(svg("rect", { x: place(row.from), y, width: `${Math.max(0.4, 96 * (end - row.from) / (last || 1))}%`, height: height - 4, rx: 3, fill: colors[i % colors.length] }));
-    const label = svg("text", { x: place(row.from), y: y + height - 6, "font-size": 10, fill: "currentColor" });
+    node.append(svg("rect", { x: place(row.from), y, width: `${Math.max(0.4, 96 * (end - row.from) / width)}%`, height: height - 4, rx: 3, fill: colors[i % colors.length] }));
+    const late = row.from - near > 0.7 * width;
+    const label = svg("text", { x: place(row.from), dx: late ? -3 : 3, y: y + height - 6, "font-size": 10, "text-anchor": late ? "end" : "start", fill: "currentColor" });
     label.textContent = row.name;
     node.append(label);
   });
