@@ -197,7 +197,8 @@ Statement shape_statement(const Shape& shape, const ShapeReferences& references,
 #define GEOMETRY(Type, row) #row,
 #include "scene/geometries.def"
   };
-  Statement out = std::visit([&](const auto& own) { return writer.write(own, types[geometry.index()]); }, geometry);
+  const char* const type = types[geometry.index()];  // no lambda takes a structured binding in clang 14
+  Statement out = std::visit([&](const auto& own) { return writer.write(own, type); }, geometry);
   if (!name.empty()) out.text("name", name);
   if (!materials.empty()) {
     std::vector<std::string> all;

@@ -2,9 +2,10 @@
 // Copyright Caplet authors
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <numbers>
@@ -124,11 +125,19 @@ double degrees_below(double degrees, double radians) {
   return about(near(read(less)), read(less), read);
 }
 
+/// Zeros with their signs.
+bool is_same(const glm::dmat4& a, const glm::dmat4& b) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (std::bit_cast<std::uint64_t>(a[column][row]) != std::bit_cast<std::uint64_t>(b[column][row])) return false;
+  return true;
+}
+
 std::string inverse_text(const glm::dmat4& inverse) {
   const glm::dmat4 matrix = glm::inverse(inverse);
   const auto is_it = [&](const glm::dmat4& candidate) {
     const glm::dmat4 turned = glm::inverse(candidate);
-    return is_affine(candidate) && has_inverse(candidate) && std::memcmp(&turned, &inverse, sizeof turned) == 0;
+    return is_affine(candidate) && has_inverse(candidate) && is_same(turned, inverse);
   };
   for (int digits = 6; digits <= 17; ++digits)
     for (const bool keeps_signs : {false, true}) {  // of zeros

@@ -138,7 +138,7 @@ struct FillTexture {
   void place(glm::dmat4& of) { of = random.transform(); }
   void direction(const char*, glm::dvec3& of) { of = random.direction(); }
   void count(const char*, int& value, int low, int high) {
-    value = low + 1 + static_cast<int>(random.below(std::min(high - low, 6)));
+    value = low + 1 + static_cast<int>(random.below(static_cast<std::size_t>(std::min(high - low, 6))));
   }
   void only(bool floats) { fits = fits && floats == is_float; }
   void colors() {}

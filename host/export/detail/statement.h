@@ -57,7 +57,7 @@ class Statement {
   void list(const char* type, const std::string& name, std::size_t count, std::function<void(Text&, std::size_t)> write,
             std::optional<ColorSpace> space = {});
   /// The statement stands in a block, after this line.
-  void within(std::string line) { before_ += std::move(line); }
+  void within(const std::string& line) { before_ += line; }
 
   const SourceLocation& where() const { return where_; }
   void write(Stream& stream);
