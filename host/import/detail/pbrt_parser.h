@@ -40,7 +40,7 @@ class Parser {
   };
   struct State {
     glm::dmat4 ctm{1};
-    std::optional<Flat> flat;  // the first transform in it that has no inverse, and is not in ctm
+    std::optional<Flat> flat;           // the first transform in it that has no inverse, and is not in ctm
     std::optional<glm::dmat4> inverse;  // of ctm, where the file states that: it is not to be computed from ctm
     bool reverse_orientation = false;
     ColorSpace space = ColorSpace::srgb;
