@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "scene/spectrum.h"
@@ -18,7 +17,7 @@ struct ImageEncoding {
   double gamma = 1;  // the exponent that makes values linear
 
   bool operator==(const ImageEncoding&) const = default;
-  bool operator<(const ImageEncoding& other) const { return std::tie(kind, gamma) < std::tie(other.kind, other.gamma); }
+  auto operator<=>(const ImageEncoding&) const = default;
 };
 
 /// An image that textures look up: rows from the top, `channels` values a texel. As bytes, or as linear floats.
