@@ -106,7 +106,9 @@ TextureTrial bilerp_texture_trial() {
 TextureTrial root_texture_trial() {
   RootTexture root;
   root.tex = operand_of(0);
-  return {{floats(board()), floats(root)}, {{0.5, 0.5, std::sqrt(0.5)}, {1.5, 0.5, std::sqrt(0.125)}}};
+  TextureTrial out{{floats(board()), floats(root)}, {{0.5, 0.5, std::sqrt(0.5)}, {1.5, 0.5, std::sqrt(0.125)}}};
+  out.of_spectra = false;
+  return out;
 }
 
 // k of reflectances 0.5 and 0.125: 2 sqrt(r / (1 - r)).
