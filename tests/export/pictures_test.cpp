@@ -26,17 +26,8 @@ std::vector<std::uint64_t> film_of(Scene scene) {
 }
 
 void expect_same_pictures(const fs::path& folder) {
-  std::size_t count = 0;
-  for (const fs::path& file : scene_files(folder)) {
-    const auto scene = readable_scene(file);
-    if (!scene) continue;
-    SCOPED_TRACE(file);
-    ++count;
-    const fs::path target = temporary_folder() / "scene.pbrt";
-    write_scene(*scene, target);
-    EXPECT_TRUE(film_of(*scene) == film_of(import_scene(target, FileImageReader())));
-  }
-  EXPECT_GT(count, 0u);
+  each_written_again(
+      folder, [](const Scene& scene, const Scene& read, const fs::path&) { EXPECT_TRUE(film_of(scene) == film_of(read)); });
 }
 
 TEST(WrittenPictures, OfExampleScenes) { expect_same_pictures(source_folder() / "scenes"); }

@@ -2,22 +2,21 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "export/export.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "support/data.h"
 
 namespace caplet::test {
 
-/// Scene files of a folder, those that can be read.
-struct SceneFile {
-  std::filesystem::path path;
-  Scene scene;
-};
 inline std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> out;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -35,6 +34,23 @@ inline std::optional<Scene> readable_scene(const std::filesystem::path& file) {
   } catch (const InputError&) {
     return std::nullopt;
   }
+}
+
+/// Every scene file of a folder that can be read, written and read again: `check` gets the scene, what was read and the file
+/// between. Fails where there is none.
+template <class Check>
+void each_written_again(const std::filesystem::path& folder, const Check& check) {
+  std::size_t count = 0;
+  for (const std::filesystem::path& file : scene_files(folder)) {
+    const std::optional<Scene> scene = readable_scene(file);
+    if (!scene) continue;
+    SCOPED_TRACE(file);
+    ++count;
+    const std::filesystem::path target = temporary_folder() / "scene.pbrt";
+    write_scene(*scene, target);
+    check(*scene, import_scene(target, FileImageReader()), target);
+  }
+  EXPECT_GT(count, 0u);
 }
 
 }  // namespace caplet::test

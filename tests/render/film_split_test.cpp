@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <random>
+#include <stdexcept>
 #include <string>
 
 #include "film/develop.h"
@@ -178,6 +179,21 @@ TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
   EXPECT_TRUE(same(other.film(), whole()));
   Session bare(model().flat, model().view, {test_device()}, {.layers = Layers::none()});
   EXPECT_THROW(bare.resume(film), InputError);
+}
+
+TEST(FilmSplit, WhatProgressThrowsEndsTheRenderAfterABatch) {
+  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::all(), .batch_paths = 1u << 8});
+  int told = 0;
+  EXPECT_THROW(session.render(samples,
+                              [&](const SessionProgress&) {
+                                ++told;
+                                throw std::range_error("enough");
+                              }),
+               std::range_error);
+  EXPECT_EQ(told, 1);
+  EXPECT_LT(session.rays().camera, 2u << 8);
+  EXPECT_TRUE(session.film().parts().empty());
+  EXPECT_EQ(session.render(1), 1u);
 }
 
 TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
