@@ -62,4 +62,12 @@ static inline int shape_is_rare(uint shape) {
 }
 #endif
 
+// The same of every shape, rare ones too.
+static inline real_mask any_shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+#if CAPLET_REAL_WIDTH == 1
+  if (shape_is_rare(shape)) return rare_hit(shape, ray, block, lane, t, side);
+#endif
+  return shape_hit(shape, ray, block, lane, t, side);
+}
+
 #endif

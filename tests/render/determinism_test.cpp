@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // Samples are addressed, not streamed: batches, passes and crops cannot change a bit; both traversals find the same things.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -116,6 +117,50 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   const Picture wide = picture_of(develop(a.film, scene, Layers::all())),
                 single = picture_of(develop(b.film, scene, Layers::all()));
   EXPECT_LT(std::abs(compare(wide, single).mean), 2e-3);
+  if (test_device().is_pocl()) {
+    EXPECT_TRUE(same_bits(a.film, b.film));
+  }
+}
+
+// Lamps of every shape, turned and mirrored ones in an instance: each has a way of its own to be sampled.
+TEST(Encodings, LampsOfEveryShapeLightTheSame) {
+  const std::string lamp = "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] \"bool twosided\" true\n";
+  const char* const shapes[] = {
+      R"(Shape "sphere" "float radius" .3)",
+      R"(Shape "sphere" "float radius" .3 "float zmax" .1)",
+      R"(Shape "capsule" "point3 p0" [0 0 -.2] "point3 p1" [0 .1 .2] "float radius" .2)",
+      R"(Shape "capsule" "point3 p0" [0 0 -.2] "point3 p1" [0 .1 .2] "float radius" [.2 .1])",
+      R"(Shape "cylinder" "point3 p0" [0 0 -.2] "point3 p1" [0 .1 .2] "float radius" .2)",
+      R"(Shape "cylinder" "float radius" .2 "float zmin" -.2 "float zmax" .2)",
+      R"(Shape "cone" "point3 p0" [0 0 -.2] "point3 p1" [0 .1 .2] "float radius" [.3 .1])",
+      R"(Shape "box" "point3 p0" [-.2 -.2 -.2] "point3 p1" [.2 .2 .2])",
+      R"(Shape "disk" "float radius" .3)",
+      R"(Shape "polyhedron" "point3 P" [.2 0 0 -.2 0 0 0 .2 0 0 -.2 0 0 0 .2 0 0 -.2] "normal N" [1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1])",
+      R"(Shape "trianglemesh" "point3 P" [-.3 -.3 0 .3 -.3 0 0 .3 .1] "integer indices" [0 1 2])",
+      R"(Shape "bilinearmesh" "point3 P" [-.3 -.3 0 .3 -.3 0 -.3 .3 .1 .3 .3 0])",
+      R"(Shape "csg" "string operation" "difference" "string operands" ["block" "hole"])",
+  };
+  std::string world =
+      "ObjectBegin \"block\" Shape \"box\" \"point3 p0\" [-.2 -.2 -.2] \"point3 p1\" [.2 .2 .2] ObjectEnd\n"
+      "ObjectBegin \"hole\" Translate .1 .1 0 Shape \"sphere\" \"float radius\" .2 ObjectEnd\n"
+      "Material \"diffuse\"\nAttributeBegin\nTranslate 0 0 -1\nShape \"disk\" \"float radius\" 9\nAttributeEnd\n";
+  for (std::size_t i = 0; i < std::size(shapes); ++i)
+    world += fmt::format("AttributeBegin\nTranslate {} {} {}\nRotate {} 1 2 3\n{}{}\nAttributeEnd\n",
+                         1.5 * static_cast<double>(i % 4) - 2, 1.5 * static_cast<double>(i / 4) - 2, 0.1 * static_cast<double>(i),
+                         20 * i, lamp, shapes[i]);
+  const Scene scene = scene_of_text(
+      "Integrator \"path\" \"integer maxdepth\" 2\nLookAt 0 -6 4  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 50\n"
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nWorldBegin\n" +
+      world);
+  RenderOptions options;
+  options.samples_per_pixel = 64;
+  const FlatScene flat = lower(scene);
+  const FlatView view = lower_view(scene);
+  const RenderResult a = render(flat, view, test_device(Encoding::wide), options, {});
+  const RenderResult b = render(flat, view, test_device(Encoding::single), options, {});
+  const Mean wide = mean_of(develop(a.film, scene, Layers::all()), "G"),
+             single = mean_of(develop(b.film, scene, Layers::all()), "G");
+  EXPECT_NEAR(wide.value, single.value, 1e-3 * wide.value);
   if (test_device().is_pocl()) {
     EXPECT_TRUE(same_bits(a.film, b.film));
   }
