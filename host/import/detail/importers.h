@@ -12,7 +12,8 @@
 
 namespace caplet {
 
-#define IMPORTER(function, name, ...) Scene function(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
+#define IMPORTER(function, name, ...) \
+  Scene function(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
 #include "import/importers.def"
 #undef IMPORTER
 

@@ -12,7 +12,6 @@
 #include <gemmi/mmcif.hpp>
 #include <gemmi/mmread.hpp>
 #include <gemmi/pdb.hpp>
-#include <gemmi/polyheur.hpp>
 #include <gemmi/resinfo.hpp>
 #include <gemmi/select.hpp>
 #include <unordered_map>
