@@ -26,6 +26,7 @@ class OneTexel : public test::NoImages {
     image.width = image.height = 1;
     image.channels = 3;
     image.bytes = {10, 20, 30};
+    for (std::size_t i = 0; i < image.decoded.size(); ++i) image.decoded.at(i) = static_cast<float>(i) / 255.0F;
     image.file = path.string();
     image.encoding = encoding;
     return image;
@@ -90,7 +91,6 @@ TEST(Obj, MaterialsAreThoseOfTheLibrary) {
   EXPECT_EQ(std::get<ConstantSpectrum>(scene.shapes[4].alpha->value).value, 0.5);
   // Ns 30: alpha^2 = 2 / 32, so alpha = 1/4 and the roughness 1/2.
   EXPECT_NEAR(std::get<PrincipledMaterial>(material(5).model).roughness, 0.5, 1e-12);
-  EXPECT_TRUE(scene.lights.empty());  // a file with lamps of its own needs no others
   EXPECT_TRUE(scene.automatic_camera);
 }
 
@@ -147,6 +147,115 @@ TEST(Ply, IsASceneOfItsOwn) {
   EXPECT_FALSE(scene.lights.empty());
 }
 
+/// A triangle (0 0 0, 1 0 0, 0 1 0) with uvs and indices of bytes, as a base64 buffer by Python's base64 module.
+std::string gltf_text(const std::string& nodes, const std::string& more = "", const std::string& material = "") {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+         R"(,"meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2)" + material +
+         R"(}]}],"buffers":[{"byteLength":63,"uri":"data:application/octet-stream;base64,)"
+         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAEC"
+         R"("}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},{"buffer":0,"byteOffset":60,"byteLength":3}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},)"
+         R"({"bufferView":2,"componentType":5121,"count":3,"type":"SCALAR"}])" +
+         more + "}";
+}
+
+TEST(Gltf, NodesPlaceMeshes) {
+  // 90 degrees about z, then moved: x goes to y.
+  const Scene one = scene_of(
+      "n.gltf",
+      gltf_text(
+          R"([{"mesh":0,"name":"here","translation":[1,2,3],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,1,1]}])"));
+  ASSERT_EQ(one.shapes.size(), 1u);
+  EXPECT_EQ(one.shapes[0].name, "here");
+  EXPECT_EQ(mesh_of(one.shapes[0]).triangles, (Triangles{{0, 1, 2}}));
+  EXPECT_EQ(mesh_of(one.shapes[0]).positions[1], glm::vec3(1, 0, 0));
+  EXPECT_EQ(mesh_of(one.shapes[0]).uvs[2], glm::vec2(0, 0));  // (0, 1) from the top
+  EXPECT_LT(glm::length(glm::dvec3(one.shapes[0].world_from_object * glm::dvec4(1, 0, 0, 1)) - glm::dvec3(1, 4, 3)), 1e-12);
+  // A parent's matrix, by columns; two nodes of one mesh are instances.
+  const Scene two = scene_of(
+      "t.gltf",
+      gltf_text(
+          R"([{"children":[1,2],"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,5,0,0,1]},{"mesh":0,"translation":[1,0,0]},{"mesh":0}])"));
+  ASSERT_EQ(two.instances.size(), 2u);
+  EXPECT_EQ(glm::dvec3(two.instances[0].world_from_object * glm::dvec4(0, 0, 0, 1)), glm::dvec3(5, 1, 0));
+  EXPECT_EQ(glm::dvec3(two.instances[1].world_from_object * glm::dvec4(1, 0, 0, 1)), glm::dvec3(5, 1, 0));
+}
+
+TEST(Gltf, MaterialsCamerasAndLights) {
+  const Scene scene = scene_of(
+      "m.gltf",
+      gltf_text(
+          R"([{"mesh":0,"children":[1,2]},{"camera":0,"translation":[0,0,4]},{"extensions":{"KHR_lights_punctual":{"light":0}},"translation":[0,3,0]}])",
+          R"(,"materials":[{"name":"gold","pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,0.75],"metallicFactor":0.9,"roughnessFactor":0.2},)"
+          R"("alphaMode":"BLEND","emissiveFactor":[0.1,0.2,0.3],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":10},)"
+          R"("KHR_materials_ior":{"ior":1.33},"KHR_materials_clearcoat":{"clearcoatFactor":0.5}}}],)"
+          R"("cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],)"
+          R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":683,"color":[1,0.5,0]}]}})",
+          R"(,"material":0)"));
+  const auto& gold = std::get<PrincipledMaterial>(scene.materials.at(scene.shapes.at(0).material).model);
+  EXPECT_EQ(std::get<RgbSpectrum>(gold.base_color).rgb, glm::dvec3(1, 0.5, 0.25));
+  EXPECT_EQ(gold.metallic, 0.9);
+  EXPECT_EQ(gold.roughness, 0.2);
+  EXPECT_EQ(gold.eta, 1.33);
+  EXPECT_EQ(gold.coat, 0.5);
+  EXPECT_EQ(std::get<ConstantSpectrum>(scene.shapes[0].alpha.value().value).value, 0.75);
+  EXPECT_LT(glm::length(std::get<RgbSpectrum>(scene.shapes[0].emission.value().radiance).rgb - glm::dvec3(1, 2, 3)), 1e-12);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].scale, 1);
+  EXPECT_EQ(std::get<PointLight>(scene.lights[0].model).position, glm::dvec3(0, 3, 0));
+  EXPECT_EQ(scene.camera.fov, 0.5);
+  EXPECT_FALSE(scene.automatic_camera);
+  // It looks along -z, y up, x right.
+  EXPECT_EQ(glm::dvec3(scene.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)), glm::dvec3(1, 2, 1));
+}
+
+TEST(Gltf, TexturesOfChannels) {
+  const Scene scene = scene_of(
+      "x.gltf",
+      gltf_text(
+          R"([{"mesh":0}])",
+          R"(,"images":[{"uri":"a%20b.png"}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"roughnessFactor":0.5,)"
+          R"("metallicRoughnessTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[2,4],"offset":[0.25,0.5]}}},"baseColorTexture":{"index":0}}}])",
+          R"(,"material":0)"));
+  const Material& material = scene.materials.at(scene.shapes.at(0).material);
+  const auto map = [&](const char* field) {
+    return std::get<ImagemapTexture>(scene.textures.at(*texture_of(material, field)).model);
+  };
+  EXPECT_EQ(std::filesystem::path(map("base_color").image->file).filename(), "a b.png");
+  EXPECT_EQ(map("base_color").image->encoding.kind, ImageEncoding::Kind::srgb);
+  // The one texel is 10, 20, 30 of 255.
+  EXPECT_EQ(map("roughness").image->channels, 1);
+  EXPECT_EQ(map("roughness").image->floats, (std::vector<float>{0.5F * (20.0F / 255.0F)}));
+  EXPECT_EQ(map("metallic").image->floats, (std::vector<float>{30.0F / 255.0F}));
+  EXPECT_EQ(map("metallic").mapping.uscale, 2);
+  EXPECT_EQ(map("metallic").mapping.udelta, 0.25);
+  // v from the bottom is 1 - (4 (1 - v) + 0.5).
+  EXPECT_EQ(map("metallic").mapping.vscale, 4);
+  EXPECT_EQ(map("metallic").mapping.vdelta, -3.5);
+}
+
+TEST(Gltf, BinaryFiles) {
+  std::string json =
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":5}]}],)"
+      R"("buffers":[{"byteLength":48}],"bufferViews":[{"buffer":0,"byteLength":48}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}]})";
+  while (json.size() % 4 != 0) json += ' ';
+  const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+  std::string out = "glTF";
+  const auto put = [&](std::uint32_t value) { out.append(reinterpret_cast<const char*>(&value), 4); };
+  put(2);
+  put(static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + sizeof points));
+  put(static_cast<std::uint32_t>(json.size()));
+  put(0x4e4f534a);
+  out += json;
+  put(sizeof points);
+  put(0x004e4942);
+  out.append(reinterpret_cast<const char*>(points), sizeof points);
+  const Scene scene = scene_of("b.glb", out);
+  EXPECT_EQ(mesh_of(scene.shapes.at(0)).triangles, (Triangles{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_THAT(complaint([&] { scene_of("b.glb", out.substr(0, out.size() - 4)); }),
+              AllOf(HasSubstr("b.glb"), HasSubstr("bytes are announced")));
+}
+
 // Counts by trimesh.
 TEST(SharedMeshes, HaveTheCountsOfOthers) {
   CAPLET_NEEDS_DATA();
@@ -158,6 +267,11 @@ TEST(SharedMeshes, HaveTheCountsOfOthers) {
   };
   EXPECT_EQ(primitives("spot/spot.obj"), 5856u);
   EXPECT_EQ(primitives("trimesh/unit_sphere.STL"), 1280u);
+  EXPECT_EQ(primitives("bevy_small/CornellBox.glb"), 36u);
+  EXPECT_EQ(primitives("bevy_small/sphere.gltf"), 3968u);
+  EXPECT_EQ(primitives("bevy_small/torus.gltf"), 3072u);
+  EXPECT_EQ(count_primitives(import_scene(test::data_folder() / "meshes/2CylinderEngine/2CylinderEngine.glb", OneTexel())),
+            (std::map<std::string, std::uint64_t>{{"triangle", 121496}}));
 }
 
 struct Bad {
@@ -171,19 +285,27 @@ TEST_P(BadMesh, IsRefusedAtItsPlace) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, BadMesh,
-    testing::Values(Bad{"a.obj", "v 0 0 0\n", "no faces"}, Bad{"b.obj", "v 0 0\n", ":1:6: a number is missing"},
-                    Bad{"c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ":4:7: '4': there are 3"},
-                    Bad{"d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", ":4:"},
-                    Bad{"e.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 0 2\n", ":4:5:"},
-                    Bad{"f.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/1 3/1\n", ":4:3:"}, Bad{"g.obj", "v 0 nan 0\n", ":1:5:"},
-                    Bad{"h.obj", "v 0 0 0\nf 1 1/2/3/4 1\n", ":2:5:"}, Bad{"a.stl", "hello\n", ":1:1:"},
-                    Bad{"b.stl", "solid x\nfacet\nvertex 0 0 0\n", ":3:1: a vertex outside"},
-                    Bad{"c.stl", "solid x\nouter loop\nvertex 0 0 0\n", "ends within"},
-                    Bad{"d.stl", "solid x\nouter loop\nvertex 0 0 0\nendloop\n", ":4:1:"},
-                    Bad{"e.stl", "solid x\nendsolid x\n", "no faces"}, Bad{"f.stl", "solid x\nbox 1 2\n", ":2:1: 'box'"},
-                    Bad{"a.off", "OFF\n1000000000 1 0\n0 0 0\n", ":3:"}, Bad{"b.off", "PLY\n", ":1:"},
-                    Bad{"c.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1: there are 1"},
-                    Bad{"d.off", "OFF\n1 -1 0\n", ":2:"}, Bad{"a.ply", "ply\n", "a.ply"}),
+    testing::Values(
+        Bad{"a.obj", "v 0 0 0\n", "no faces"}, Bad{"b.obj", "v 0 0\n", ":1:6: a number is missing"},
+        Bad{"c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ":4:7: '4': there are 3"},
+        Bad{"d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", ":4:"}, Bad{"e.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 0 2\n", ":4:5:"},
+        Bad{"f.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/1 3/1\n", ":4:3:"}, Bad{"g.obj", "v 0 nan 0\n", ":1:5:"},
+        Bad{"h.obj", "v 0 0 0\nf 1 1/2/3/4 1\n", ":2:5:"}, Bad{"a.stl", "hello\n", ":1:1:"},
+        Bad{"b.stl", "solid x\nfacet\nvertex 0 0 0\n", ":3:1: a vertex outside"},
+        Bad{"c.stl", "solid x\nouter loop\nvertex 0 0 0\n", "ends within"},
+        Bad{"d.stl", "solid x\nouter loop\nvertex 0 0 0\nendloop\n", ":4:1:"}, Bad{"e.stl", "solid x\nendsolid x\n", "no faces"},
+        Bad{"f.stl", "solid x\nbox 1 2\n", ":2:1: 'box'"}, Bad{"a.off", "OFF\n1000000000 1 0\n0 0 0\n", ":3:"},
+        Bad{"b.off", "PLY\n", ":1:"}, Bad{"c.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1: there are 1"},
+        Bad{"d.off", "OFF\n1 -1 0\n", ":2:"}, Bad{"a.gltf", "{\n  \"asset\": }", ":2:12:"}, Bad{"b.gltf", "{}", "glTF 2.0"},
+        Bad{"c.gltf", R"({"asset":{"version":"2.0"}})", "no triangles"},
+        Bad{"d.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"children":[0]}]})", "cycles"},
+        Bad{"e.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"mesh":3}]})", "mesh 3: there are 0"},
+        Bad{"f.gltf", R"({"asset":{"version":"2.0"},"nodes":{"mesh":3}})", "nodes is no list"},
+        Bad{"g.gltf", R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})", "KHR_draco"},
+        Bad{"h.gltf",
+            R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":1000000000,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":3}],"buffers":[{"byteLength":3,"uri":"data:;base64,AAAA"}]})",
+            "1000000000 elements beyond its 3 bytes"},
+        Bad{"a.ply", "ply\n", "a.ply"}),
     [](const auto& of) {
       std::string name = of.param.name;
       name[1] = '_';

@@ -200,9 +200,7 @@ class ObjReader {
       scene_.shapes.push_back(std::move(shape));
     }
     if (scene_.shapes.empty()) throw InputError({scene_.source, 0, 0}, "holds no faces");
-    const bool lit = std::ranges::any_of(scene_.shapes, [](const Shape& shape) { return shape.emission.has_value(); });
-    if (!lit) add_presentation(scene_);
-    if (lit) frame_camera(scene_);
+    add_presentation(scene_);
   }
 
   const std::filesystem::path& path_;
