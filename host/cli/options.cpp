@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
+#include "import/import.h"
 #include "present/film_window.h"
 
 namespace caplet::cli {
@@ -130,6 +131,28 @@ void apply(const Overrides& overrides, Scene& scene) {
   if (overrides.seed) scene.sampler.seed = *overrides.seed;
   if (overrides.clamp) scene.film.max_component_value = *overrides.clamp;
   if (overrides.max_depth) scene.integrator.max_depth = *overrides.max_depth;
+}
+
+void add_import_options(CLI::App& command, ImportOptions& options) {
+  for (const ImportOptionRow& row : import_option_rows()) {
+    std::string formats_of_it;
+    for (const Format& format : formats())
+      if (std::ranges::find(format.options, row.name) != format.options.end())
+        formats_of_it += (formats_of_it.empty() ? "" : ", ") + format.name;
+    command
+        .add_option_function<std::string>(
+            "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
+            row.help + " (" + formats_of_it + ")")
+        ->type_name(row.values)
+        ->group("Files of other fields");
+  }
+}
+
+std::string scene_extensions() {
+  std::string out;
+  for (const Format& format : formats())
+    for (const std::string& extension : format.extensions) out += (out.empty() ? "" : " ") + extension;
+  return out;
 }
 
 }  // namespace caplet::cli

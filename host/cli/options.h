@@ -14,6 +14,7 @@
 
 #include "device/device.h"
 #include "film/layers.h"
+#include "import/import_options.h"
 #include "scene/scene.h"
 #include "table/ray_file.h"
 
@@ -41,6 +42,12 @@ RayNumbers parse_ray(const std::string& text);
 /// The layers to write: what every picture has where there is no `list`; "all", "none", or some of layer_rows' options between
 /// commas. And the variance, when asked for. Throws InputError naming --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
+
+/// Adds an option --NAME for each of import_option_rows, which goes into `options` where it is given. SCENE is the option before.
+void add_import_options(CLI::App& command, ImportOptions& options);
+
+/// The extensions of all scene formats, for help: ".pbrt, .swc, ...".
+std::string scene_extensions();
 
 /// What `work` does; what it throws as InputError names `flag`.
 template <class Work>

@@ -38,6 +38,7 @@ constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, 
 struct Options {
   Encoding encoding = Encoding::automatic;
   std::string scene, pixel, ray, rays, out, device, size, crop;
+  ImportOptions import_options;
   std::size_t limit = 256;
   bool all = false, json = false, reference = false, quiet = false;
 };
@@ -177,7 +178,7 @@ void run_pick(const Options& options, bool has_limit) {
     install_interrupt_handlers();
   }
   const Device device = choose_device(options.device, options.encoding);
-  Scene scene = import_scene(options.scene, FileImageReader());
+  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
   outputs.check_inputs();
   apply(overrides, scene);
   if (pixel) {
@@ -199,7 +200,7 @@ void add_pick(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("pick", "Tell what a pixel shows or rays hit: name, surface, material, point, normal, uv");
-  command->add_option("SCENE", o->scene, "Scene file")->required();
+  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
   command->add_option("--pixel", o->pixel, "The ray through the middle of this pixel, from the top left")->type_name("X,Y");
   command->add_option("--ray", o->ray, "This ray: origin and direction (of any length; t counts in its lengths)")
       ->type_name("ox,oy,oz,dx,dy,dz");
@@ -220,6 +221,7 @@ void add_pick(CLI::App& app) {
   command->add_option("--size", o->size, "Picture size that --pixel counts in, as in `render`")->type_name("WxH");
   command->add_option("--crop", o->crop, "Pixels that may be picked, as in `render`")->type_name("x0,y0,x1,y1");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  add_import_options(*command, o->import_options);
   command->callback([o, limit] { run_pick(*o, limit->count() > 0); });
 }
 

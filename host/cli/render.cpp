@@ -41,6 +41,7 @@ namespace {
 struct Options {
   Encoding encoding = Encoding::automatic;
   std::string scene, output, preview, stats, device, size, crop;
+  ImportOptions import_options;
   std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
@@ -259,7 +260,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
 
   phase.lap();
-  Scene scene = import_scene(options.scene, FileImageReader());
+  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
   apply(overrides, scene);
   check_outputs(options, scene, layers, files);
   seconds.load = phase.lap();
@@ -298,7 +299,7 @@ void run_render(const Options& options, const Invocation& invocation) {
 void add_render(CLI::App& app, const Invocation& invocation) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a scene file to an OpenEXR picture");
-  command->add_option("SCENE", o->scene, "Scene file: .pbrt (pbrt-v4), .capsules or .swc")->required();
+  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
   command->add_option("-o,--output", o->output, "Picture to write, .exr (default: the scene's own name, here); none: no picture")
       ->type_name("OUT.exr|none");
   command->add_option("--preview", o->preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
@@ -351,6 +352,7 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_option("--stats", o->stats, "Write times, ray counts and memory as JSON; -: to stdout")->type_name("FILE.json");
   command->add_flag("-q,--quiet", o->quiet, "No progress, only warnings and errors");
   command->add_option("--batch", o->batch_paths, "Paths a batch (the picture does not depend on it)")->group("");
+  add_import_options(*command, o->import_options);
   command->footer(
       "Options override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at once.\n"
       "The picture is scene-linear, with layers albedo, N, P, Z, object.id and primitive.id.");

@@ -35,6 +35,7 @@ constexpr int exit_disagreed = 3;
 struct Options {
   Encoding encoding = Encoding::automatic;
   std::string scene, device, heatmap, failures, replay, size;
+  ImportOptions import_options;
   std::uint64_t rays = 1'000'000, seed = 0;
   bool all_devices = false, json = false, quiet = false;
 };
@@ -119,7 +120,7 @@ void run_verify(const Options& o) {
   Overrides overrides;
   if (!o.size.empty()) overrides.size = parse_size(o.size);
   std::optional<Scene> scene;
-  if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader());
+  if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader(), o.import_options);
   outputs.check_inputs();
   if (!o.heatmap.empty()) {
     const FilmSettings film = scene ? scene->film : verify::torture_scene(o.seed, 0).film;
@@ -172,7 +173,7 @@ void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");
-  command->add_option("SCENE", o->scene, "Scene file; none: a built-in torture set of all shapes");
+  command->add_option("SCENE", o->scene, "Scene file (" + scene_extensions() + "); none: a built-in torture set of all shapes");
   command->add_option("--rays", o->rays, "How many rays")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str()
@@ -190,6 +191,7 @@ void add_verify(CLI::App& app) {
       ->type_name("DIR");
   command->add_option("--replay", o->replay, "Ask saved rays again: one file, or a folder of them")->type_name("FILE|DIR");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  add_import_options(*command, o->import_options);
   command->callback([o] { run_verify(*o); });
 }
 

@@ -32,6 +32,7 @@ namespace {
 struct Options {
   Encoding encoding = Encoding::automatic;
   std::string scene, device, size, host = "127.0.0.1";
+  ImportOptions import_options;
   std::uint16_t port = 0;
   int samples = 0;
   bool no_browser = false, read_only = false, quiet = false;
@@ -58,7 +59,7 @@ void run_view(const Options& options) {
   if (!options.size.empty()) overrides.size = parse_size(options.size);
   install_interrupt_handlers();
   const Device device = choose_device(options.device, options.encoding);
-  Scene scene = import_scene(options.scene, FileImageReader());
+  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
   apply(overrides, scene);
   LiveScene live(std::move(scene));
   try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true});
@@ -83,7 +84,7 @@ void run_view(const Options& options) {
 void add_view(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
-  command->add_option("SCENE", o->scene, "Scene file")->required();
+  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
   command->add_option("--host", o->host, "Address to listen at; others than this machine's own are open to its network")
       ->capture_default_str()
       ->type_name("ADDRESS");
@@ -98,6 +99,7 @@ void add_view(CLI::App& app) {
       ->type_name("D");
   add_encoding(*command, o->encoding);
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
+  add_import_options(*command, o->import_options);
   command->footer("Whoever knows the address sees the scene; its first part is drawn anew at each start.");
   command->callback([o] { run_view(*o); });
 }

@@ -271,7 +271,7 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
   return all;
 }
 
-Scene import_capsules_file(const std::filesystem::path& path, const ImageReader&) {
+Scene import_capsules_file(const std::filesystem::path& path, const ImageReader&, const ImportOptions&) {
   Scene scene;
   scene.source = path.string();
   const auto add_material = [&scene](const std::string& name, const SourceLocation& where) {

@@ -38,11 +38,24 @@ void check_readable(const fs::path& path) {
   if (fs::file_size(path, error) == 0 && !error) throw InputError({path.string()}, "the file is empty");
 }
 
+void check_known(const ImportOptions& options, const Format& format) {
+  for (const auto& [name, value] : options.values()) {
+    if (std::ranges::find(format.options, name) != format.options.end()) continue;
+    std::string who;
+    for (const Format& other : formats())
+      if (std::ranges::find(other.options, name) != other.options.end()) who += (who.empty() ? "" : ", ") + other.name;
+    throw InputError({"--" + name},
+                     "says nothing to files of the format " + format.name + (who.empty() ? "" : " (it does to: " + who + ")"));
+  }
+}
+
 }  // namespace
 
-Scene import_scene(const fs::path& path, const ImageReader& images) {
+Scene import_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
   check_readable(path);
-  Scene scene = format_of(path).import(path, images);
+  const Format& format = format_of(path);
+  check_known(options, format);
+  Scene scene = format.import(path, images, options);
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();

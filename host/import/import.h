@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "import/import_options.h"
 #include "scene/image_reader.h"
 #include "scene/scene.h"
 
@@ -17,14 +18,15 @@ namespace caplet {
 struct Format {
   std::string name;                     // "pbrt-v4"
   std::vector<std::string> extensions;  // ".pbrt"
+  std::vector<std::string> options;     // names of those in import_options.def that it knows
   /// Throws InputError.
-  Scene (*import)(const std::filesystem::path& path, const ImageReader& images);
+  Scene (*import)(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options);
 };
 
 const std::vector<Format>& formats();
 
 /// Imports by extension. The scene is validated; a file that says nothing of camera, light or material has good ones.
-/// Throws InputError for a missing, unreadable or wrong file, or an unknown extension.
-Scene import_scene(const std::filesystem::path& path, const ImageReader& images);
+/// Throws InputError for a missing, unreadable or wrong file, an unknown extension, or an option that says nothing to its format.
+Scene import_scene(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
 
 }  // namespace caplet

@@ -13,7 +13,7 @@ Scene pbrt::import_text(const std::string& file, std::string text, const ImageRe
   return Parser(file, images).parse(std::move(text));
 }
 
-Scene import_pbrt(const std::filesystem::path& path, const ImageReader& images) {
+Scene import_pbrt(const std::filesystem::path& path, const ImageReader& images, const ImportOptions&) {
   return pbrt::import_text(path.string(), read_text(path, {}), images);
 }
 

@@ -7,9 +7,12 @@ namespace caplet {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> rows = {
-#define IMPORTER(function, name, ...) {name, {__VA_ARGS__}, &function},
+#define OPTIONS(...) \
+  { __VA_ARGS__ }
+#define IMPORTER(function, name, options, ...) {name, {__VA_ARGS__}, options, &function},
 #include "import/importers.def"
 #undef IMPORTER
+#undef OPTIONS
   };
   return rows;
 }

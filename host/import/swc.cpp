@@ -361,7 +361,7 @@ class TypeMaterials {
 
 std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
 
-Scene import_swc(const std::filesystem::path& path, const ImageReader&) {
+Scene import_swc(const std::filesystem::path& path, const ImageReader&, const ImportOptions&) {
   Scene scene;
   scene.source = path.string();
   std::vector<SwcSample> samples = parse_swc(TextFile(path).text(), scene.source);

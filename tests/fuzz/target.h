@@ -112,11 +112,11 @@ inline void check_scene(const Scene& scene) {
 
 /// The target of an importer of geometry alone: it refuses a file with its places, or its scene is one that validation has
 /// nothing to say about.
-inline int fuzz_importer(Scene (*import)(const std::filesystem::path&, const ImageReader&), const std::uint8_t* data,
-                         std::size_t size) {
+using Importer = Scene (*)(const std::filesystem::path&, const ImageReader&, const ImportOptions&);
+inline int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {}) {
   const MemoryFile file(data, size);
   return run_target([&] {
-    const Scene scene = import(file.path(), OnePixel());
+    const Scene scene = import(file.path(), OnePixel(), options);
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     require(!diagnostics.has_errors());

@@ -10,7 +10,7 @@
 #include <tbb/global_control.h>
 
 #include "import/detail/importers.h"
-#include "neuron_files.h"
+#include "support/import_files.h"
 
 namespace caplet {
 namespace {

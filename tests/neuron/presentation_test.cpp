@@ -14,7 +14,7 @@
 #include <random>
 
 #include "import/detail/importers.h"
-#include "neuron_files.h"
+#include "support/import_files.h"
 
 namespace caplet {
 namespace {

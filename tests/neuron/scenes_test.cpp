@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "import/import.h"
-#include "neuron_files.h"
+#include "support/import_files.h"
 
 namespace caplet {
 namespace {

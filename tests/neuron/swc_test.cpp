@@ -11,7 +11,7 @@
 #include <set>
 
 #include "import/detail/importers.h"
-#include "neuron_files.h"
+#include "support/import_files.h"
 
 namespace caplet {
 namespace {

@@ -6,12 +6,14 @@
 
 #include <filesystem>
 
+#include "import/import_options.h"
 #include "scene/image_reader.h"
 #include "scene/scene.h"
 
 namespace caplet {
 
-#define IMPORTER(function, name, ...) Scene function(const std::filesystem::path& path, const ImageReader& images);
+#define IMPORTER(function, name, ...) \
+  Scene function(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
 #include "import/importers.def"
 #undef IMPORTER
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/detail/color_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace caplet {
+
+namespace {
+
+/// Every 32nd of matplotlib's 256 colours, sRGB; between them, lines.
+const std::array<glm::dvec3, 9> knots = {{{0.267004, 0.004874, 0.329415},
+                                          {0.278826, 0.175490, 0.483397},
+                                          {0.229739, 0.322361, 0.545706},
+                                          {0.172719, 0.448791, 0.557885},
+                                          {0.127568, 0.566949, 0.550556},
+                                          {0.157851, 0.683765, 0.501686},
+                                          {0.369214, 0.788888, 0.382914},
+                                          {0.678489, 0.863742, 0.189503},
+                                          {0.993248, 0.906157, 0.143936}}};
+
+double linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+
+}  // namespace
+
+glm::dvec3 viridis(double part) {
+  const double at = std::clamp(part, 0.0, 1.0) * (knots.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), knots.size() - 2);
+  const double f = at - static_cast<double>(i);
+  const glm::dvec3 c = knots.at(i) * (1 - f) + knots.at(i + 1) * f;
+  return {linear(c.x), linear(c.y), linear(c.z)};
+}
+
+}  // namespace caplet

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// A glTF 2.0 file: its JSON with checked access, its buffers, its materials (Khronos, "glTF 2.0 Specification").
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet::gltf {
+
+/// Text or GLB. Members that are missing have the value that is given; those of another type, out of range or not finite throw
+/// InputError.
+class File {
+ public:
+  using Json = nlohmann::json;
+  /// Parses `bytes`. Throws InputError with line and column for what is no JSON.
+  File(std::filesystem::path path, std::string bytes);
+
+  std::filesystem::path path;
+  Json json;
+
+  [[noreturn]] void fail(const std::string& message) const;
+  void check_version() const;
+
+  /// A list of the root, or of an object; empty where there is none.
+  const Json& list(const char* name) const { return list_of(json, name); }
+  const Json& list_of(const Json& object, const char* name) const;
+  const Json& object(const Json& of, const char* name) const;
+  const Json& extension(const Json& of, const char* name) const { return object(object(of, "extensions"), name); }
+  std::string text(const Json& of, const char* name, const std::string& otherwise) const;
+  double number(const Json& of, const char* name, double otherwise) const;
+  bool flag(const Json& of, const char* name, bool otherwise) const;
+  template <class Vector>
+  Vector vector(const Json& of, const char* name, Vector otherwise) const {
+    const Json& values = list_of(of, name);
+    if (values.empty()) return otherwise;
+    if (values.size() != static_cast<std::size_t>(Vector::length()))
+      fail(std::string(name) + " has another number of components");
+    for (glm::length_t k = 0; k < Vector::length(); ++k) otherwise[k] = number_value(values[static_cast<std::size_t>(k)], name);
+    return otherwise;
+  }
+  double number_value(const Json& value, const char* what) const;
+  /// An index below `count`.
+  std::size_t index_value(const Json& value, std::size_t count, const char* what) const;
+  std::optional<std::size_t> index(const Json& of, const char* name, std::size_t count, const char* what) const;
+  /// `matrix`, or translation, rotation and scale.
+  glm::dmat4 transform_of(const Json& node) const;
+
+  /// What an accessor says, of 1 to 4 components of any type; finite.
+  template <class Vector>
+  std::vector<Vector> vectors(std::size_t accessor);
+  std::vector<std::uint32_t> indices(std::size_t accessor);
+  /// The bytes of a buffer view.
+  std::string_view view(std::size_t index);
+  /// The bytes of "data:...;base64,...", or none where it is no such address.
+  std::optional<std::string> data_uri(const std::string& uri) const;
+  /// The file that an address names, beside this one.
+  std::filesystem::path beside(const std::string& uri) const;
+
+ private:
+  struct Elements;
+  Elements elements(std::size_t accessor);
+  std::string_view buffer(std::size_t index);
+
+  std::string bytes_;
+  std::string_view binary_;  // GLB's chunk
+  std::map<std::size_t, std::string> buffers_;
+};
+
+/// What a shape of a glTF material has.
+struct Look {
+  std::uint32_t material = 0;
+  std::optional<AreaEmission> emission;
+  std::optional<TextureOperand> alpha;
+};
+
+class Materials {
+ public:
+  Materials(File& file, Scene& scene, const ImageReader& reader) : file_(file), scene_(scene), reader_(reader) {}
+  /// Made when first asked for; none: the plain one.
+  const Look& look(std::optional<std::size_t> material);
+
+ private:
+  using Json = nlohmann::json;
+  struct Sampler {
+    int wrap = 0;
+    TextureMapping mapping;
+  };
+  Look make(const Json& material);
+  std::shared_ptr<const TextureImage> image(std::size_t index, bool is_srgb);
+  /// Which image a texture's reference names, and how it lies; none where there is no texture.
+  std::optional<std::pair<std::size_t, Sampler>> lookup(const Json& of, const char* name);
+  std::uint32_t add_texture(std::shared_ptr<const TextureImage> image, const Sampler& sampler, bool is_float);
+
+  File& file_;
+  Scene& scene_;
+  const ImageReader& reader_;
+  std::map<std::optional<std::size_t>, Look> looks_;
+  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const TextureImage>> images_;
+};
+
+}  // namespace caplet::gltf

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What files of meshes alone share: words of lines with their places, an axis that is up, materials and images by name.
+// Conventions: docs/formats/meshes.md.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "import/import_options.h"
+#include "scene/image_reader.h"
+#include "scene/scene.h"
+
+namespace caplet {
+
+/// The words of a line, with what they say and errors that name their place.
+class LineWords {
+ public:
+  /// Words end at blanks; from `comment` on there are none.
+  LineWords(std::string_view line, const std::string& file, int number, char comment = '#');
+
+  std::size_t count() const { return words_.size(); }
+  std::string_view word(std::size_t i) const { return words_[i]; }
+  /// From word i to the end of the line (file names with blanks).
+  std::string_view rest(std::size_t i) const;
+  float number(std::size_t i) const;
+  /// In 0 to `below`, or InputError.
+  std::int64_t whole(std::size_t i) const;
+  [[noreturn]] void fail(std::size_t i, const std::string& message) const;
+
+ private:
+  std::string_view line_;
+  const std::string& file_;
+  int number_;
+  std::vector<std::string_view> words_;
+};
+
+/// Turns the axis that --up says (x, y or z; `usual` where it is not given) to y, the presentation's.
+glm::dmat4 world_from_file(const ImportOptions& options, const char* usual);
+
+/// Images by path and encoding, each read once. Throws InputError at `where`.
+class MeshImages {
+ public:
+  MeshImages(Scene& scene, const ImageReader& reader) : scene_(scene), reader_(reader) {}
+  /// The texture of an image over uv, as spectra or (the red or only channel) as floats: its index in Scene::textures.
+  std::uint32_t texture(const std::filesystem::path& path, bool is_float, bool is_srgb, const SourceLocation& where);
+
+ private:
+  Scene& scene_;
+  const ImageReader& reader_;
+  std::map<std::pair<std::string, bool>, std::shared_ptr<const TextureImage>> images_;
+  std::map<std::pair<std::string, int>, std::uint32_t> textures_;
+};
+
+/// Adds the material that shapes without one have; its index.
+std::uint32_t add_plain_material(Scene& scene);
+
+/// A mesh's shape, with its material.
+Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
+
+/// The materials of an MTL file by name; `lights` of those that emit.
+struct MtlMaterial {
+  std::uint32_t material = 0;
+  std::optional<AreaEmission> emission;
+  std::optional<TextureOperand> alpha;
+};
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, const SourceLocation& named_at, Scene& scene,
+                                            MeshImages& images);
+
+}  // namespace caplet

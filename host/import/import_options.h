@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What a user asks of an importer beside the file: options by name (import_options.def), as text.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace caplet {
+
+struct ImportOptionRow {
+  std::string name, values, help;
+};
+
+const std::vector<ImportOptionRow>& import_option_rows();
+
+class ImportOptions {
+ public:
+  ImportOptions() = default;
+  ImportOptions(std::map<std::string, std::string> values) : values_(std::move(values)) {}
+
+  const std::map<std::string, std::string>& values() const { return values_; }
+  void set(const std::string& name, const std::string& value) { values_[name] = value; }
+
+  std::optional<std::string> text(const std::string& name) const;
+  /// Which of `choices` the option says; `otherwise` where it is not given. Throws InputError naming the option.
+  std::size_t choice(const std::string& name, std::initializer_list<const char*> choices, std::size_t otherwise) const;
+  bool yes(const std::string& name, bool otherwise) const;
+  /// A whole number from 1. Throws InputError naming the option.
+  std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+}  // namespace caplet

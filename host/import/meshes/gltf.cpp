@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// glTF 2.0 and GLB: nodes, meshes (instanced where nodes share them), metallic-roughness materials, cameras, lights.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/check.h"
+#include "import/detail/gltf.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/mesh_file.h"
+#include "present/present.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::size_t kDeepest = 256;           // nodes within nodes
+constexpr std::size_t kMostNodes = 10'000'000;  // placed: shared children count each time
+constexpr double kLumensPerWatt = 683;          // as Blender's exporter
+
+using Json = nlohmann::json;
+
+class GltfReader {
+ public:
+  GltfReader(gltf::File file, const ImageReader& reader, const ImportOptions& options)
+      : file_(std::move(file)), json_(file_.json), options_(options), materials_(file_, scene_, reader) {
+    scene_.source = file_.path.string();
+  }
+
+  Scene read() {
+    file_.check_version();
+    const Json& nodes = file_.list("nodes");
+    std::vector<std::size_t> roots;
+    const Json& scenes = file_.list("scenes");
+    if (!scenes.empty()) {
+      const std::size_t which = file_.index(json_, "scene", scenes.size(), "scene").value_or(0);
+      for (const Json& root : file_.list_of(scenes[which], "nodes"))
+        roots.push_back(file_.index_value(root, nodes.size(), "node"));
+    } else {
+      for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
+    }
+    const glm::dmat4 world = world_from_file(options_, "y");
+    for (const std::size_t root : roots) visit(root, world, 0);
+    place_meshes();
+    if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");
+    if (scene_.lights.empty() && !(emits_ && camera_))
+      add_presentation(scene_);
+    else
+      frame_camera(scene_);
+    if (camera_) {
+      scene_.camera = *camera_;
+      scene_.automatic_camera = false;
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  void visit(std::size_t index, const glm::dmat4& parent, std::size_t depth) {
+    if (depth > kDeepest) file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index, kDeepest));
+    if (++visited_ > kMostNodes) file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
+    const Json& node = file_.list("nodes")[index];
+    const glm::dmat4 world = parent * file_.transform_of(node);
+    const std::string name = file_.text(node, "name", "");
+    if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh")) placed_[*mesh].push_back({world, name});
+    if (const auto camera = file_.index(node, "camera", file_.list("cameras").size(), "camera"); camera && !camera_)
+      add_camera(file_.list("cameras")[*camera], world);
+    add_light(node, world);
+    for (const Json& child : file_.list_of(node, "children"))
+      visit(file_.index_value(child, file_.list("nodes").size(), "node"), world, depth + 1);
+  }
+
+  void add_camera(const Json& camera, const glm::dmat4& world) {
+    if (file_.text(camera, "type", "") != "perspective") {
+      Diagnostics().warning({scene_.source, 0, 0}, "an orthographic camera is left out");
+      return;
+    }
+    Camera out = scene_.camera;
+    const Json& perspective = file_.object(camera, "perspective");
+    out.fov = file_.number(perspective, "yfov", 0.8);
+    if (!(out.fov > 0 && out.fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
+    // It looks along -z; ours along +z.
+    glm::dmat4 rigid(1);
+    for (int k = 0; k < 3; ++k) rigid[k] = glm::dvec4(glm::normalize(glm::dvec3(world[k])), 0);
+    rigid[3] = world[3];
+    out.world_from_camera = glm::scale(rigid, glm::dvec3(1, 1, -1));
+    camera_ = out;
+  }
+
+  void add_light(const Json& node, const glm::dmat4& world) {
+    const Json& of_node = file_.extension(node, "KHR_lights_punctual");
+    const Json& all = file_.list_of(file_.extension(json_, "KHR_lights_punctual"), "lights");
+    const auto index = file_.index(of_node, "light", all.size(), "light");
+    if (!index) return;
+    const Json& from = all[*index];
+    const double intensity = file_.number(from, "intensity", 1) / kLumensPerWatt;
+    const RgbSpectrum color{file_.vector(from, "color", glm::dvec3(1))};
+    const glm::dvec3 position(world[3]), direction(glm::normalize(glm::dvec3(-world[2])));
+    Light light;
+    light.where = {scene_.source, 0, 0};
+    light.scale = intensity;
+    const std::string type = file_.text(from, "type", "");
+    if (type == "point") {
+      light.model = PointLight{color, position};
+    } else if (type == "directional") {
+      light.model = DistantLight{color, direction};
+    } else if (type == "spot") {
+      const Json& spot = file_.object(from, "spot");
+      SpotLight model;
+      model.intensity = color;
+      model.position = position;
+      model.direction = direction;
+      model.total_angle = std::clamp(file_.number(spot, "outerConeAngle", 0.7853981633974483), 1e-3, 1.5707);
+      model.falloff_start_angle = std::clamp(file_.number(spot, "innerConeAngle", 0), 0.0, model.total_angle);
+      light.model = model;
+    } else {
+      file_.fail("a light of type '" + type + "'");
+    }
+    scene_.lights.push_back(std::move(light));
+  }
+
+  struct Placed {
+    glm::dmat4 world;
+    std::string name;
+  };
+
+  void place_meshes() {
+    for (auto& [mesh, places] : placed_) {
+      std::vector<Shape> shapes = shapes_of(mesh);
+      if (shapes.empty()) continue;
+      for (const Shape& shape : shapes) emits_ |= shape.emission.has_value();
+      if (places.size() == 1) {
+        for (Shape& shape : shapes) {
+          shape.world_from_object = places[0].world;
+          if (!places[0].name.empty()) shape.name = places[0].name;
+          scene_.shapes.push_back(std::move(shape));
+        }
+        continue;
+      }
+      Object object;
+      object.name = shapes[0].name;
+      object.where = {scene_.source, 0, 0};
+      object.shapes = std::move(shapes);
+      for (const Placed& place : places)
+        scene_.instances.push_back({narrow<std::uint32_t>(scene_.objects.size()), place.world, object.where});
+      scene_.objects.push_back(std::move(object));
+    }
+  }
+
+  std::vector<Shape> shapes_of(std::size_t index) {
+    const Json& mesh = file_.list("meshes")[index];
+    std::vector<Shape> out;
+    for (const Json& primitive : file_.list_of(mesh, "primitives")) {
+      TriangleMeshShape triangles = mesh_of(primitive);
+      if (triangles.triangles.empty()) continue;
+      const gltf::Look look = materials_.look(file_.index(primitive, "material", file_.list("materials").size(), "material"));
+      Shape shape = mesh_shape(std::move(triangles), file_.text(mesh, "name", fmt::format("mesh {}", index)), look.material,
+                               {scene_.source, 0, 0});
+      shape.emission = look.emission;
+      shape.alpha = look.alpha;
+      out.push_back(std::move(shape));
+    }
+    return out;
+  }
+
+  TriangleMeshShape mesh_of(const Json& primitive) {
+    TriangleMeshShape mesh;
+    const Json& attributes = file_.object(primitive, "attributes");
+    const std::size_t accessors = file_.list("accessors").size();
+    const auto positions = file_.index(attributes, "POSITION", accessors, "accessor");
+    const double mode = file_.number(primitive, "mode", 4);
+    if (!positions) return mesh;
+    if (mode < 4) {
+      Diagnostics().warning({scene_.source, 0, 0}, "points and lines of a mesh are left out");
+      return mesh;
+    }
+    mesh.positions = file_.vectors<glm::vec3>(*positions);
+    const std::size_t count = mesh.positions.size();
+    if (const auto normals = file_.index(attributes, "NORMAL", accessors, "accessor"))
+      mesh.normals = file_.vectors<glm::vec3>(*normals);
+    if (const auto uvs = file_.index(attributes, "TEXCOORD_0", accessors, "accessor")) mesh.uvs = file_.vectors<glm::vec2>(*uvs);
+    for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // from the top there
+    if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
+      file_.fail("a mesh has another number of normals or texture coordinates than of positions");
+    std::vector<std::uint32_t> indices;
+    if (const auto accessor = file_.index(primitive, "indices", accessors, "accessor"))
+      indices = file_.indices(*accessor);
+    else
+      for (std::uint32_t i = 0; i < count; ++i) indices.push_back(i);
+    for (const std::uint32_t i : indices)
+      if (i >= count) file_.fail(fmt::format("a mesh has the index {}, but {} vertices", i, count));
+    add_triangles(indices, mode, mesh);
+    return mesh;
+  }
+
+  static void add_triangles(const std::vector<std::uint32_t>& indices, double mode, TriangleMeshShape& mesh) {
+    if (mode == 4)
+      for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+        mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    else if (mode == 5)
+      for (std::size_t i = 0; i + 2 < indices.size(); ++i)
+        mesh.triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+    else
+      for (std::size_t i = 1; i + 1 < indices.size(); ++i) mesh.triangles.push_back({indices[0], indices[i], indices[i + 1]});
+  }
+
+  gltf::File file_;
+  const Json& json_;
+  const ImportOptions& options_;
+  Scene scene_;
+  gltf::Materials materials_;
+  std::optional<Camera> camera_;
+  std::map<std::size_t, std::vector<Placed>> placed_;
+  std::size_t visited_ = 0;
+  bool emits_ = false;
+};
+
+}  // namespace
+
+Scene import_gltf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+  return GltfReader(gltf::File(path, read_file(path, {})), images, options).read();
+}
+
+}  // namespace caplet

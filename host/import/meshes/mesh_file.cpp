@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/detail/mesh_file.h"
+
+#include <charconv>
+
+#include "base/check.h"
+#include "import/detail/text_file.h"
+
+namespace caplet {
+
+LineWords::LineWords(std::string_view line, const std::string& file, int number, char comment)
+    : line_(line.substr(0, line.find(comment))), file_(file), number_(number) {
+  std::size_t i = 0;
+  for (;;) {
+    while (i < line_.size() && is_blank(line_[i])) ++i;
+    if (i == line_.size()) return;
+    const std::size_t begin = i;
+    while (i < line_.size() && !is_blank(line_[i])) ++i;
+    words_.push_back(line_.substr(begin, i - begin));
+  }
+}
+
+std::string_view LineWords::rest(std::size_t i) const {
+  if (i >= words_.size()) return {};
+  std::string_view out = line_.substr(static_cast<std::size_t>(words_[i].data() - line_.data()));
+  while (!out.empty() && is_blank(out.back())) out.remove_suffix(1);
+  return out;
+}
+
+float LineWords::number(std::size_t i) const {
+  if (i >= words_.size()) fail(i, "a number is missing");
+  float value = 0;
+  const NumberError error = parse_float(words_[i], value);
+  if (error != NumberError::none) fail(i, describe(error, words_[i]));
+  return value;
+}
+
+std::int64_t LineWords::whole(std::size_t i) const {
+  if (i >= words_.size()) fail(i, "a whole number is missing");
+  const std::string_view text = words_[i];
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) fail(i, quoted(text) + " is no whole number");
+  return value;
+}
+
+void LineWords::fail(std::size_t i, const std::string& message) const {
+  const std::size_t column = i < words_.size() ? static_cast<std::size_t>(words_[i].data() - line_.data()) + 1 : line_.size() + 1;
+  throw InputError({file_, number_, static_cast<int>(column)}, message);
+}
+
+glm::dmat4 world_from_file(const ImportOptions& options, const char* usual) {
+  const std::string up = options.text("up").value_or(usual);
+  const glm::dvec4 x(1, 0, 0, 0), y(0, 1, 0, 0), z(0, 0, 1, 0), w(0, 0, 0, 1);
+  if (up == "y") return glm::dmat4(1);
+  if (up == "z") return {x, -z, y, w};  // columns: z goes to y, y to -z
+  if (up == "x") return {y, -x, z, w};  // x goes to y, y to -x
+  throw InputError({"--up"}, "'" + up + "' is none of: x, y, z");
+}
+
+std::uint32_t MeshImages::texture(const std::filesystem::path& path, bool is_float, bool is_srgb, const SourceLocation& where) {
+  const auto [known, fresh] = textures_.try_emplace({path.string(), (is_float ? 1 : 0) + (is_srgb ? 2 : 0)},
+                                                    narrow<std::uint32_t>(scene_.textures.size()));
+  if (!fresh) return known->second;
+  std::shared_ptr<const TextureImage>& image = images_[{path.string(), is_srgb}];
+  if (!image) {
+    const ImageEncoding encoding{is_srgb ? ImageEncoding::Kind::srgb : ImageEncoding::Kind::linear, 1};
+    try {
+      image = std::make_shared<const TextureImage>(reader_.read_texture(path, encoding));
+    } catch (const InputError& error) {
+      throw InputError(where, error.what());
+    }
+  }
+  ImagemapTexture model;
+  model.image = image;
+  scene_.textures.push_back({model, is_float, path.filename().string(), where});
+  return known->second;
+}
+
+std::uint32_t add_plain_material(Scene& scene) {
+  constexpr double kGrey = 0.6;
+  scene.materials.push_back({DiffuseMaterial{ConstantSpectrum{kGrey}}, "default", {scene.source, 0, 0}});
+  return narrow<std::uint32_t>(scene.materials.size() - 1);
+}
+
+Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where) {
+  Shape shape;
+  shape.geometry = std::move(mesh);
+  shape.name = std::move(name);
+  shape.material = material;
+  shape.where = where;
+  return shape;
+}
+
+}  // namespace caplet

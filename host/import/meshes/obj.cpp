@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Wavefront OBJ: polygons with normals and texture coordinates, groups, materials of MTL files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <unordered_map>
+
+#include "base/check.h"
+#include "base/log.h"
+#include "import/detail/importers.h"
+#include "import/detail/mesh_file.h"
+#include "import/detail/text_file.h"
+#include "present/present.h"
+
+namespace caplet {
+
+namespace {
+
+/// Indices of one corner, from 0; -1: not given.
+struct Corner {
+  std::int64_t position = -1, uv = -1, normal = -1;
+  bool operator==(const Corner&) const = default;
+};
+struct CornerHash {
+  std::size_t operator()(const Corner& c) const {
+    std::uint64_t h = static_cast<std::uint64_t>(c.position) * 0x9e3779b97f4a7c15U;
+    h = (h ^ static_cast<std::uint64_t>(c.uv + 1)) * 0xbf58476d1ce4e5b9U;
+    h = (h ^ static_cast<std::uint64_t>(c.normal + 1)) * 0x94d049bb133111ebU;
+    return h ^ h >> 31;
+  }
+};
+
+struct Part {
+  TriangleMeshShape mesh;
+  std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+  bool all_uvs = true, all_normals = true;
+  std::string name, material;
+  int line = 0;
+};
+
+class ObjReader {
+ public:
+  ObjReader(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options)
+      : path_(path), options_(options), images_(scene_, images) {
+    scene_.source = path.string();
+  }
+
+  Scene read() {
+    const TextFile file(path_);
+    std::string_view text = file.text();
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    std::string joined;
+    for (line_ = 1; !text.empty(); ++line_) {
+      std::string_view line = take_line(text);
+      // A line that ends in a backslash goes on.
+      int more = 0;
+      while (line.ends_with('\\') && !text.empty()) {
+        joined.assign(line.substr(0, line.size() - 1));
+        joined += ' ';
+        joined += take_line(text);
+        kept_.push_back(std::move(joined));
+        line = kept_.back();
+        ++more;
+      }
+      statement(LineWords(line, scene_.source, line_));
+      line_ += more;
+      kept_.clear();
+    }
+    if (left_out_ > 0)
+      Diagnostics().warning({scene_.source, first_left_out_, 0},
+                            fmt::format("{} statements of points, lines, curves and surfaces are left out", left_out_));
+    finish();
+    return std::move(scene_);
+  }
+
+ private:
+  void statement(const LineWords& words) {
+    if (words.count() == 0) return;
+    const std::string_view what = words.word(0);
+    if (what == "v")
+      positions_.emplace_back(words.number(1), words.number(2), words.number(3));
+    else if (what == "vt")
+      uvs_.emplace_back(words.number(1), words.count() > 2 ? words.number(2) : 0);
+    else if (what == "vn")
+      normals_.emplace_back(words.number(1), words.number(2), words.number(3));
+    else if (what == "f")
+      face(words);
+    else if (what == "o" || what == "g")
+      start(std::string(words.rest(1)), material_);
+    else if (what == "usemtl")
+      start(name_, std::string(words.rest(1)));
+    else if (what == "mtllib")
+      library(words);
+    else if (what == "p" || what == "l" || what == "curv" || what == "curv2" || what == "surf" || what == "cstype") {
+      if (left_out_++ == 0) first_left_out_ = line_;
+    }
+  }
+
+  void start(std::string name, std::string material) {
+    name_ = std::move(name);
+    material_ = std::move(material);
+    current_ = nullptr;
+  }
+
+  Part& part() {
+    if (current_) return *current_;
+    const auto [found, fresh] = part_index_.try_emplace({name_, material_}, parts_.size());
+    if (fresh) {
+      parts_.push_back(std::make_unique<Part>());
+      parts_.back()->name = name_;
+      parts_.back()->material = material_;
+      parts_.back()->line = line_;
+    }
+    return *(current_ = parts_[found->second].get());
+  }
+
+  /// "7", "7/3", "7//2" or "7/3/2"; from 1, or from -1 backwards.
+  Corner corner(const LineWords& words, std::size_t i) const {
+    Corner out;
+    std::string_view text = words.word(i);
+    const std::size_t counts[] = {positions_.size(), uvs_.size(), normals_.size()};
+    std::int64_t* const fields[] = {&out.position, &out.uv, &out.normal};
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t slash = std::min(text.find('/'), text.size());
+      const std::string_view field = text.substr(0, slash);
+      if (!field.empty()) {
+        std::int64_t value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        const auto count = static_cast<std::int64_t>(counts[k]);
+        if (error != std::errc() || end != field.data() + field.size()) words.fail(i, quoted(words.word(i)) + " is no corner");
+        if (value == 0 || value > count || value < -count)
+          words.fail(i, fmt::format("{}: there are {} before this line", quoted(words.word(i)), count));
+        *fields[k] = value > 0 ? value - 1 : count + value;
+      } else if (k == 0) {
+        words.fail(i, quoted(words.word(i)) + " is no corner");
+      }
+      if (slash == text.size()) return out;
+      text.remove_prefix(slash + 1);
+    }
+    words.fail(i, quoted(words.word(i)) + " is no corner");
+  }
+
+  std::uint32_t vertex(Part& part, const Corner& c) {
+    const auto [entry, fresh] = part.vertices.try_emplace(c, narrow<std::uint32_t>(part.mesh.positions.size()));
+    if (fresh) {
+      part.mesh.positions.push_back(positions_[static_cast<std::size_t>(c.position)]);
+      part.mesh.uvs.push_back(c.uv >= 0 ? uvs_[static_cast<std::size_t>(c.uv)] : glm::vec2(0));
+      part.mesh.normals.push_back(c.normal >= 0 ? normals_[static_cast<std::size_t>(c.normal)] : glm::vec3(0));
+      part.all_uvs &= c.uv >= 0;
+      part.all_normals &= c.normal >= 0;
+    }
+    return entry->second;
+  }
+
+  void face(const LineWords& words) {
+    if (words.count() < 4) words.fail(words.count(), "a face has three corners or more");
+    Part& to = part();
+    const std::uint32_t first = vertex(to, corner(words, 1));
+    std::uint32_t before = vertex(to, corner(words, 2));
+    for (std::size_t i = 3; i < words.count(); ++i) {
+      const std::uint32_t next = vertex(to, corner(words, i));
+      to.mesh.triangles.push_back({first, before, next});
+      before = next;
+    }
+  }
+
+  void library(const LineWords& words) {
+    const SourceLocation here{scene_.source, line_, 0};
+    const std::filesystem::path file = path_.parent_path() / std::filesystem::path(std::string(words.rest(1)));
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+      Diagnostics().warning(here, "the materials of '" + file.string() + "' cannot be had: there is no such file");
+      return;
+    }
+    for (auto& [name, material] : read_mtl(file, here, scene_, images_)) materials_.insert_or_assign(name, material);
+  }
+
+  void finish() {
+    std::optional<std::uint32_t> plain;
+    const glm::dmat4 world = world_from_file(options_, "y");
+    for (const std::unique_ptr<Part>& part : parts_) {
+      if (!part->all_uvs) part->mesh.uvs.clear();
+      if (!part->all_normals) part->mesh.normals.clear();
+      const SourceLocation where{scene_.source, part->line, 0};
+      const auto material = materials_.find(part->material);
+      if (material == materials_.end() && !part->material.empty() && unknown_.insert_or_assign(part->material, true).second)
+        Diagnostics().warning(where, "the material " + caplet::quoted(part->material) + " is in no mtllib: it is grey");
+      if (material == materials_.end() && !plain) plain = add_plain_material(scene_);
+      std::string name = part->name.empty() ? path_.stem().string() : part->name;
+      Shape shape = mesh_shape(std::move(part->mesh), std::move(name),
+                               material == materials_.end() ? *plain : material->second.material, where);
+      if (material != materials_.end()) {
+        shape.emission = material->second.emission;
+        shape.alpha = material->second.alpha;
+      }
+      shape.world_from_object = world;
+      scene_.shapes.push_back(std::move(shape));
+    }
+    if (scene_.shapes.empty()) throw InputError({scene_.source, 0, 0}, "holds no faces");
+    add_presentation(scene_);
+  }
+
+  const std::filesystem::path& path_;
+  const ImportOptions& options_;
+  Scene scene_;
+  MeshImages images_;
+  int line_ = 0, first_left_out_ = 0;
+  std::size_t left_out_ = 0;
+  std::vector<std::string> kept_;
+  std::vector<glm::vec3> positions_, normals_;
+  std::vector<glm::vec2> uvs_;
+  std::string name_, material_;
+  Part* current_ = nullptr;
+  std::map<std::pair<std::string, std::string>, std::size_t> part_index_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::map<std::string, MtlMaterial> materials_;
+  std::map<std::string, bool> unknown_;
+};
+
+}  // namespace
+
+Scene import_obj(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+  return ObjReader(path, images, options).read();
+}
+
+}  // namespace caplet

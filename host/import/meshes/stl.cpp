@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// STL of both kinds, and OFF.
+#include <fmt/format.h>
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+#include "base/check.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/mesh_file.h"
+#include "import/detail/ply.h"
+#include "import/detail/text_file.h"
+#include "present/present.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of binary files
+
+/// Corners at the same place are one vertex, so that meshes that enclose a volume are known to.
+class Welder {
+ public:
+  explicit Welder(TriangleMeshShape& mesh) : mesh_(mesh) {}
+  std::uint32_t operator()(const glm::vec3& p) {
+    const glm::vec3 q = p + glm::vec3(0);  // -0 is 0
+    std::uint64_t h = 0;
+    for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint32_t>(q[k])) * 0x9e3779b97f4a7c15U;
+    for (auto [at, end] = index_.equal_range(h); at != end; ++at)
+      if (mesh_.positions[at->second] == q) return at->second;
+    const auto i = narrow<std::uint32_t>(mesh_.positions.size());
+    index_.emplace(h, i);
+    mesh_.positions.push_back(q);
+    return i;
+  }
+
+ private:
+  TriangleMeshShape& mesh_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> index_;
+};
+
+TriangleMeshShape binary_stl(std::string_view bytes, const std::string& file, std::uint32_t count) {
+  TriangleMeshShape mesh;
+  Welder vertex(mesh);
+  mesh.triangles.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* at = bytes.data() + kHeader + i * kFacet + sizeof(glm::vec3);  // after the normal, which the corners say
+    std::array<glm::vec3, 3> corners;
+    static_assert(sizeof corners == 36);
+    std::memcpy(corners.data(), at, sizeof corners);
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(corners[k][axis]) <= largest_number))
+          throw InputError({file, 0, 0}, fmt::format("corner {} of facet {} is not finite or out of range", k + 1, i + 1));
+      triangle[k] = vertex(corners[k]);
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+TriangleMeshShape text_stl(std::string_view text, const std::string& file) {
+  TriangleMeshShape mesh;
+  Welder vertex(mesh);
+  std::vector<std::uint32_t> loop;
+  int number = 1;
+  bool open = false;
+  for (; !text.empty(); ++number) {
+    const LineWords words(take_line(text), file, number, '\0');
+    if (words.count() == 0) continue;
+    if (words.word(0) == "outer") {
+      loop.clear();
+      open = true;
+    } else if (words.word(0) == "vertex") {
+      if (!open) words.fail(0, "a vertex outside a loop");
+      loop.push_back(vertex({words.number(1), words.number(2), words.number(3)}));
+    } else if (words.word(0) == "endloop") {
+      if (loop.size() < 3) words.fail(0, "a facet has three corners");
+      for (std::size_t i = 2; i < loop.size(); ++i) mesh.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+      open = false;
+    } else if (words.word(0) != "solid" && words.word(0) != "facet" && words.word(0) != "endfacet" &&
+               words.word(0) != "endsolid") {
+      words.fail(0, quoted(words.word(0)) + " is no statement of an STL file");
+    }
+  }
+  if (open) throw InputError({file, number, 0}, "the file ends within a facet");
+  return mesh;
+}
+
+TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) {
+  if (bytes.size() >= kHeader) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
+    const std::uint64_t announced = kHeader + std::uint64_t{count} * kFacet;
+    if (announced == bytes.size()) return binary_stl(bytes, file, count);
+    const bool text = bytes.starts_with("solid") && bytes.substr(0, 1024).find("facet") != std::string_view::npos;
+    if (!text)
+      throw InputError({file, 0, 0}, fmt::format("{} facets are announced, which take {} bytes; the file has {}", count,
+                                                 announced, bytes.size()));
+  }
+  if (!bytes.starts_with("solid"))
+    throw InputError({file, 1, 1}, "is no STL file: it neither begins with 'solid' nor has a header");
+  return text_stl(bytes, file);
+}
+
+/// Words of a file across its lines.
+class OffReader {
+ public:
+  OffReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  TriangleMeshShape read() {
+    std::string kind(word());
+    if (!kind.ends_with("OFF")) fail("is no OFF file");
+    kind.resize(kind.size() - 3);
+    if (kind.find_first_of("4n") != std::string::npos) fail("points of other than three coordinates are not read");
+    // Colours are left out, normals and texture coordinates read over.
+    const std::size_t extra = (kind.find('N') != std::string::npos ? 3U : 0U) + (kind.find("ST") != std::string::npos ? 2U : 0U);
+    const std::int64_t vertices = whole(), faces = whole();
+    whole();
+    if (vertices < 0 || faces < 0) fail("a count is negative");
+    TriangleMeshShape mesh;
+    for (std::int64_t i = 0; i < vertices; ++i) {
+      glm::vec3 p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = number();
+      for (std::size_t k = 0; k < extra; ++k) number();
+      mesh.positions.push_back(p);
+      end_line();
+    }
+    for (std::int64_t i = 0; i < faces; ++i) {
+      const std::int64_t corners = whole();
+      if (corners < 0) fail("a count is negative");
+      std::uint32_t first = 0, before = 0;
+      for (std::int64_t k = 0; k < corners; ++k) {
+        const std::int64_t index = whole();
+        if (index < 0 || index >= vertices) fail(fmt::format("vertex {}: there are {}", index, vertices));
+        const auto at = static_cast<std::uint32_t>(index);
+        if (k == 0) first = at;
+        if (k >= 2) mesh.triangles.push_back({first, before, at});
+        before = at;
+      }
+      end_line();
+    }
+    return mesh;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, line_, 0}, message); }
+  std::string_view word() {
+    while (rest_.empty()) {
+      if (text_.empty()) fail("the file ends before what it announces");
+      rest_ = take_line(text_);
+      ++line_;
+      rest_ = rest_.substr(0, rest_.find('#'));
+      skip();
+    }
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_blank(rest_[end])) ++end;
+    const std::string_view out = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    skip();
+    return out;
+  }
+  void skip() {
+    while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
+  }
+  void end_line() { rest_ = {}; }
+  float number() {
+    const std::string_view text = word();
+    float value = 0;
+    const NumberError error = parse_float(text, value);
+    if (error != NumberError::none) fail(describe(error, text));
+    return value;
+  }
+  std::int64_t whole() {
+    const std::string_view text = word();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) fail(quoted(text) + " is no whole number");
+    return value;
+  }
+  std::string_view text_, rest_;
+  const std::string& file_;
+  int line_ = 0;
+};
+
+Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const ImportOptions& options, const char* usual_up) {
+  Scene scene;
+  scene.source = path.string();
+  if (mesh.triangles.empty()) throw InputError({scene.source, 0, 0}, "holds no faces");
+  Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene), {scene.source, 0, 0});
+  shape.world_from_object = world_from_file(options, usual_up);
+  scene.shapes.push_back(std::move(shape));
+  add_presentation(scene);
+  return scene;
+}
+
+}  // namespace
+
+Scene import_stl(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return scene_of(parse_stl(read_file(path, {}), path.string()), path, options, "z");
+}
+Scene import_off(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return scene_of(OffReader(TextFile(path).text(), path.string()).read(), path, options, "y");
+}
+Scene import_ply(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return scene_of(read_ply(path, {}), path, options, "y");
+}
+
+}  // namespace caplet

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What of a molecule is drawn, and how: spheres are capsules of no length, bonds capsules halved by the atoms' colours, traces
+// tapered capsules along a Catmull-Rom curve.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "import/detail/color_map.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/importers.h"
+#include "import/detail/molecule.h"
+#include "present/present.h"
+
+namespace caplet {
+
+namespace {
+
+enum class Style { ball_and_stick, spheres, sticks, trace };
+enum class ColorBy { element, chain, residue, bfactor };
+
+constexpr std::size_t kMostInDetail = 2000;  // atoms that are drawn as balls and sticks unless a style is asked for
+constexpr float kBall = 0.25F;               // of the van der Waals radius
+constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
+constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;                          // of least and most b factor
+constexpr int kTraceSteps = 6;                                                   // capsules from one residue to the next
+constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // what is further apart has something missing between
+constexpr int kMapSteps = 64;
+
+class Painter {
+ public:
+  Painter(Scene& scene, const Molecule& molecule, ColorBy by) : scene_(scene), molecule_(molecule), by_(by) {
+    if (by == ColorBy::bfactor) {
+      low_ = high_ = molecule.atoms.front().b_factor;
+      for (const Atom& atom : molecule.atoms) {
+        low_ = std::min(low_, atom.b_factor);
+        high_ = std::max(high_, atom.b_factor);
+      }
+    }
+  }
+
+  /// Of the range of b factors, 0 to 1.
+  float part(const Atom& atom) const { return high_ > low_ ? (atom.b_factor - low_) / (high_ - low_) : 0.5F; }
+
+  std::uint32_t material(const Atom& atom) {
+    const Residue& residue = molecule_.residues[atom.residue];
+    switch (by_) {
+      case ColorBy::element:
+        return named(element_name(atom.element), [&] { return element_color(atom.element); });
+      case ColorBy::chain:
+        return named("chain " + molecule_.chains[residue.chain], [&] { return palette_color(residue.chain); });
+      case ColorBy::residue:
+        return named(residue.name.empty() ? "residue" : residue.name, [&] { return palette_color(index_.size()); });
+      case ColorBy::bfactor: {
+        const int step = static_cast<int>(part(atom) * (kMapSteps - 1) + 0.5F);
+        return named(fmt::format("bfactor {:.4g}", low_ + (high_ - low_) * static_cast<float>(step) / (kMapSteps - 1)),
+                     [&] { return viridis(static_cast<double>(step) / (kMapSteps - 1)); });
+      }
+    }
+    return 0;
+  }
+
+  std::uint32_t of_element(const Atom& atom) {
+    return named(element_name(atom.element), [&] { return element_color(atom.element); });
+  }
+  ColorBy by() const { return by_; }
+
+ private:
+  std::uint32_t named(const std::string& name, const std::function<glm::dvec3()>& color) {
+    const auto [entry, fresh] = index_.try_emplace(name, narrow<std::uint32_t>(scene_.materials.size()));
+    if (fresh) scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{color()}}, name, {scene_.source, 0, 0}});
+    return entry->second;
+  }
+
+  Scene& scene_;
+  const Molecule& molecule_;
+  ColorBy by_;
+  float low_ = 0, high_ = 0;
+  std::map<std::string, std::uint32_t> index_;
+};
+
+/// The capsules of a chain, of one kind: one shape.
+struct Part {
+  CapsulesShape capsules;
+  bool tapered = false;
+  void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material) {
+    capsules.p0.push_back(p0);
+    capsules.p1.push_back(p1);
+    capsules.radius0.push_back(r0);
+    capsules.radius1.push_back(r1);
+    capsules.materials.push_back(material);
+    tapered |= r0 != r1;
+  }
+};
+
+class Drawing {
+ public:
+  Drawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style, Painter& painter)
+      : molecule_(molecule), bonds_(bonds), style_(style), painter_(painter) {}
+
+  /// The shapes of the residues that `kept` says.
+  std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept) {
+    parts_.clear();
+    for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
+      const Atom& atom = molecule_.atoms[i];
+      if (!kept[atom.residue] || !in_detail(atom)) continue;
+      const float radius = ball_radius(atom);
+      part(atom, " atoms").add(atom.position, atom.position, radius, radius, color_of(atom));
+    }
+    if (style_ != Style::spheres)
+      for (const auto& [i, j] : bonds_) {
+        const Atom &a = molecule_.atoms[i], &b = molecule_.atoms[j];
+        if (kept[a.residue] && kept[b.residue] && in_detail(a) && in_detail(b)) add_bond(a, b);
+      }
+    if (style_ == Style::trace) add_traces(kept);
+    std::vector<Shape> out;
+    for (auto& [name, part] : parts_) {
+      if (!part.tapered) part.capsules.radius1 = {};
+      Shape shape;
+      shape.name = name;
+      shape.where = {scene.source, 0, 0};
+      shape.geometry = std::move(part.capsules);
+      out.push_back(std::move(shape));
+    }
+    return out;
+  }
+
+ private:
+  /// In the style trace, what has no trace is drawn as sticks.
+  bool in_detail(const Atom& atom) const {
+    if (style_ != Style::trace) return true;
+    const Residue& residue = molecule_.residues[atom.residue];
+    return residue.trace_atom < 0 && residue.kind == ResidueKind::other;
+  }
+  float ball_radius(const Atom& atom) const {
+    switch (style_) {
+      case Style::spheres:
+        return van_der_waals_radius(atom.element);
+      case Style::ball_and_stick:
+        return kBall * van_der_waals_radius(atom.element);
+      default:
+        return kStickRadius;
+    }
+  }
+  float bond_radius() const { return style_ == Style::ball_and_stick ? kBondRadius : kStickRadius; }
+  std::uint32_t color_of(const Atom& atom) const {
+    return style_ == Style::trace ? painter_.of_element(atom) : painter_.material(atom);
+  }
+  Part& part(const Atom& atom, const char* what) {
+    const std::string& chain = molecule_.chains[molecule_.residues[atom.residue].chain];
+    return parts_[(chain.empty() ? "molecule" : "chain " + chain) + what];
+  }
+
+  void add_bond(const Atom& a, const Atom& b) {
+    const std::uint32_t color_a = color_of(a), color_b = color_of(b);
+    const float radius = bond_radius();
+    Part& out = part(a, " bonds");
+    if (color_a == color_b) {
+      out.add(a.position, b.position, radius, radius, color_a);
+      return;
+    }
+    const glm::vec3 middle = 0.5F * a.position + 0.5F * b.position;
+    out.add(a.position, middle, radius, radius, color_a);
+    out.add(middle, b.position, radius, radius, color_b);
+  }
+
+  void add_traces(const std::vector<bool>& kept) {
+    std::vector<const Atom*> run;
+    std::optional<std::pair<std::uint32_t, ResidueKind>> last;
+    const auto finish = [&] {
+      add_tube(run);
+      run.clear();
+    };
+    for (std::size_t r = 0; r < molecule_.residues.size(); ++r) {
+      const Residue& residue = molecule_.residues[r];
+      if (!kept[r] || residue.trace_atom < 0) continue;
+      const Atom& atom = molecule_.atoms[static_cast<std::size_t>(residue.trace_atom)];
+      const float gap = residue.kind == ResidueKind::amino_acid ? kCalphaGap : kPhosphorusGap;
+      const std::pair now{residue.chain, residue.kind};
+      if (!run.empty() && (last != now || glm::length(atom.position - run.back()->position) > gap)) finish();
+      run.push_back(&atom);
+      last = now;
+    }
+    finish();
+  }
+
+  float tube_radius(const Atom& atom) const {
+    return painter_.by() == ColorBy::bfactor ? kThinTrace + (kThickTrace - kThinTrace) * painter_.part(atom) : kTraceRadius;
+  }
+
+  void add_tube(const std::vector<const Atom*>& run) {
+    if (run.empty()) return;
+    if (run.size() == 1) {
+      const float radius = tube_radius(*run[0]);
+      part(*run[0], " trace").add(run[0]->position, run[0]->position, radius, radius, painter_.material(*run[0]));
+      return;
+    }
+    const auto at = [&run](std::ptrdiff_t i) {
+      return run[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(run) - 1))]->position;
+    };
+    for (std::ptrdiff_t i = 0; i + 1 < std::ssize(run); ++i) {
+      const Atom &a = *run[static_cast<std::size_t>(i)], &b = *run[static_cast<std::size_t>(i) + 1];
+      const glm::vec3 p0 = at(i - 1), p1 = at(i), p2 = at(i + 1), p3 = at(i + 2);
+      const float r1 = tube_radius(a), r2 = tube_radius(b);
+      glm::vec3 before = p1;
+      float radius_before = r1;
+      for (int step = 1; step <= kTraceSteps; ++step) {
+        const float t = static_cast<float>(step) / kTraceSteps;
+        // Catmull and Rom 1974.
+        const glm::vec3 on_curve = 0.5F * (2.0F * p1 + (p2 - p0) * t + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (t * t) +
+                                           (3.0F * p1 - p0 - 3.0F * p2 + p3) * (t * t * t));
+        const glm::vec3 p = step == kTraceSteps ? p2 : on_curve;
+        const float radius = r1 + (r2 - r1) * t;
+        part(a, " trace").add(before, p, radius_before, radius, painter_.material(2 * step <= kTraceSteps ? a : b));
+        before = p;
+        radius_before = radius;
+      }
+    }
+  }
+
+  const Molecule& molecule_;
+  const std::vector<Bond>& bonds_;
+  Style style_;
+  Painter& painter_;
+  std::map<std::string, Part> parts_;
+};
+
+void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name, Drawing& drawing) {
+  const auto found = molecule.assemblies.find(name);
+  if (found == molecule.assemblies.end()) {
+    std::string known;
+    for (const auto& [other, parts] : molecule.assemblies) known += (known.empty() ? "" : ", ") + other;
+    throw InputError({"--assembly"}, "'" + name + "' is none of the file (" + (known.empty() ? "it has none" : known) + ")");
+  }
+  for (const AssemblyPart& part : found->second) {
+    const std::set<std::string> chains(part.chains.begin(), part.chains.end()), parts(part.parts.begin(), part.parts.end());
+    std::vector<bool> kept(molecule.residues.size());
+    for (std::size_t r = 0; r < kept.size(); ++r)
+      kept[r] = parts.empty() ? chains.contains(molecule.chains[molecule.residues[r].chain])
+                              : parts.contains(molecule.residues[r].part);
+    Object object;
+    object.name = fmt::format("assembly {}, part {}", name, scene.objects.size() + 1);
+    object.where = {scene.source, 0, 0};
+    object.shapes = drawing.shapes(scene, kept);
+    if (object.shapes.empty()) continue;
+    for (const glm::dmat4& placed : part.operators)
+      scene.instances.push_back({narrow<std::uint32_t>(scene.objects.size()), placed, object.where});
+    scene.objects.push_back(std::move(object));
+  }
+  if (scene.instances.empty()) throw InputError({"--assembly"}, "'" + name + "' holds none of the atoms");
+}
+
+using Reader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
+
+Scene import_molecule(const std::filesystem::path& path, const ImportOptions& options, Reader reader) {
+  Scene scene;
+  scene.source = path.string();
+  Molecule molecule = reader(read_text(path, {}), scene.source, options);
+  if (const std::optional<std::string> file = options.text("components"))
+    for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
+      molecule.components.insert_or_assign(name, std::move(bonds));
+  const std::size_t automatic =
+      static_cast<std::size_t>(molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
+  const auto style = static_cast<Style>(options.choice("style", {"ball-and-stick", "spheres", "sticks", "trace"}, automatic));
+  const std::size_t usual = static_cast<std::size_t>(style == Style::trace ? ColorBy::chain : ColorBy::element);
+  const auto by = static_cast<ColorBy>(options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
+  if (by == ColorBy::bfactor && !molecule.has_b_factors) throw InputError({"--color"}, "the file has no b factors");
+  if (style == Style::trace && std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
+    throw InputError({"--style"}, "trace: the file has neither alpha carbons nor phosphorus of a polymer");
+  const std::vector<Bond> bonds = style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
+  Painter painter(scene, molecule, by);
+  Drawing drawing(molecule, bonds, style, painter);
+  const std::optional<std::string> assembly = options.text("assembly");
+  if (assembly && *assembly != "none")
+    add_assembly(scene, molecule, *assembly, drawing);
+  else
+    scene.shapes = drawing.shapes(scene, std::vector<bool>(molecule.residues.size(), true));
+  scene.has_no_up = true;
+  add_presentation(scene);
+  return scene;
+}
+
+}  // namespace
+
+Scene import_pdb(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return import_molecule(path, options, read_pdb);
+}
+Scene import_mmcif(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return import_molecule(path, options, read_mmcif);
+}
+Scene import_sdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return import_molecule(path, options, read_sdf);
+}
+Scene import_xyz(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  return import_molecule(path, options, read_xyz);
+}
+
+}  // namespace caplet

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// PDB and mmCIF, read by gemmi.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <gemmi/chemcomp_xyz.hpp>
+#include <gemmi/cif.hpp>
+#include <gemmi/mmcif.hpp>
+#include <gemmi/mmread.hpp>
+#include <gemmi/pdb.hpp>
+#include <gemmi/resinfo.hpp>
+#include <gemmi/select.hpp>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "import/detail/molecule.h"
+#include "import/detail/text_file.h"
+
+namespace caplet {
+
+namespace {
+
+/// gemmi names lines as "PATH:LINE:COLUMN(BYTE): ..." or "Problem in line LINE: ...".
+[[noreturn]] void refuse(const std::string& path, std::string message) {
+  SourceLocation where{path, 0, 0};
+  const auto number = [&message](std::size_t& at) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(message.data() + at, message.data() + message.size(), value);
+    at = static_cast<std::size_t>(end - message.data());
+    return error == std::errc() ? value : 0;
+  };
+  const std::string problem = "Problem in line ";
+  std::size_t at = 0;
+  if (message.starts_with(path + ":")) {
+    at = path.size() + 1;
+    where.line = number(at);
+    if (at < message.size() && message[at] == ':') where.column = number(++at);
+    at = message.find(": ", at);
+    if (at != std::string::npos) message.erase(0, at + 2);
+  } else if (message.starts_with(problem)) {
+    at = problem.size();
+    where.line = number(at);
+    message.erase(0, std::min(message.size(), at + 2));
+  }
+  throw InputError(where, message);
+}
+
+ResidueKind kind_of(const std::string& name) {
+  const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(name);
+  if (info.is_water()) return ResidueKind::water;
+  if (info.is_amino_acid()) return ResidueKind::amino_acid;
+  return info.is_nucleic_acid() ? ResidueKind::nucleotide : ResidueKind::other;
+}
+
+/// Which alternative place of a residue's atoms is kept: '*' all of them, '\0' those without any alone.
+char kept_altloc(const gemmi::Residue& residue, const std::string& asked) {
+  if (asked == "all") return '*';
+  if (asked != "first") return asked[0];
+  for (const gemmi::Atom& atom : residue.atoms)
+    if (atom.altloc != '\0') return atom.altloc;
+  return '\0';
+}
+
+std::string address_key(const std::string& chain, const std::string& residue, const std::string& atom) {
+  return chain + '\n' + residue + '\n' + atom;
+}
+
+class Builder {
+ public:
+  Builder(gemmi::Structure& structure, const std::string& path, const ImportOptions& options)
+      : structure_(structure), path_(path), options_(options) {}
+
+  Molecule build() {
+    gemmi::Model& model = chosen_model();
+    if (const std::optional<std::string> select = options_.text("select")) keep_selected(model, *select);
+    const std::string altloc = options_.text("altloc").value_or("first");
+    if (altloc != "first" && altloc != "all" && altloc.size() != 1)
+      throw InputError({"--altloc"}, "'" + altloc + "' is neither first nor all nor one letter");
+    const bool hydrogens = options_.yes("hydrogens", true), water = options_.yes("water", true);
+    for (const gemmi::Chain& chain : model.chains) add_chain(chain, altloc, hydrogens, water);
+    if (out_.atoms.empty()) throw InputError({path_, 0, 0}, "holds no atoms that are asked for");
+    add_connections();
+    add_assemblies();
+    out_.name = structure_.name;
+    return std::move(out_);
+  }
+
+ private:
+  gemmi::Model& chosen_model() {
+    if (structure_.models.empty()) throw InputError({path_, 0, 0}, "holds no atoms");
+    const std::uint32_t number = options_.number("model", 1);
+    if (number > structure_.models.size())
+      throw InputError({"--model"}, fmt::format("{}: the file has {} models", number, structure_.models.size()));
+    return structure_.models[number - 1];
+  }
+
+  static void keep_selected(gemmi::Model& model, const std::string& text) {
+    try {
+      const gemmi::Selection selection(text);
+      selection.remove_not_selected(model);
+    } catch (const std::exception& error) {
+      throw InputError({"--select"}, "'" + text + "': " + error.what());
+    }
+  }
+
+  std::uint32_t chain_index(const std::string& name) {
+    const auto [entry, fresh] = chains_.try_emplace(name, static_cast<std::uint32_t>(out_.chains.size()));
+    if (fresh) out_.chains.push_back(name);
+    return entry->second;
+  }
+
+  void add_chain(const gemmi::Chain& chain, const std::string& altloc, bool hydrogens, bool water) {
+    for (const gemmi::Residue& source : chain.residues) {
+      Residue residue;
+      residue.kind = kind_of(source.name);
+      if (residue.kind == ResidueKind::water && !water) continue;
+      residue.name = source.name;
+      residue.part = source.subchain;
+      residue.first_atom = static_cast<std::uint32_t>(out_.atoms.size());
+      const char kept = kept_altloc(source, altloc);
+      for (const gemmi::Atom& atom : source.atoms) {
+        if (atom.altloc != '\0' && kept != '*' && atom.altloc != kept) continue;
+        if (atom.is_hydrogen() && !hydrogens) continue;
+        add_atom(atom, chain, source, residue);
+      }
+      residue.atom_count = static_cast<std::uint32_t>(out_.atoms.size()) - residue.first_atom;
+      if (residue.atom_count == 0) continue;
+      residue.chain = chain_index(chain.name);
+      out_.residues.push_back(std::move(residue));
+    }
+  }
+
+  void add_atom(const gemmi::Atom& atom, const gemmi::Chain& chain, const gemmi::Residue& source, Residue& residue) {
+    Atom one;
+    one.position = {static_cast<float>(atom.pos.x), static_cast<float>(atom.pos.y), static_cast<float>(atom.pos.z)};
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(one.position[axis]) <= largest_number))
+        throw InputError({path_, 0, 0}, fmt::format("atom {} ({} of {} {}) has no finite place", atom.serial, atom.name,
+                                                    source.name, source.seqid.str()));
+    one.b_factor = std::isfinite(atom.b_iso) ? atom.b_iso : 0;
+    one.residue = static_cast<std::uint32_t>(out_.residues.size());
+    one.serial = atom.serial;
+    one.altloc = atom.altloc;
+    one.element = element_of(atom.element.name());
+    if (one.element == 0) one.element = element_of(atom.name);
+    const auto index = static_cast<std::uint32_t>(out_.atoms.size());
+    const char* trace = residue.kind == ResidueKind::amino_acid ? "CA" : "P";
+    if (residue.trace_atom < 0 && (residue.kind == ResidueKind::amino_acid || residue.kind == ResidueKind::nucleotide) &&
+        atom.name == trace)
+      residue.trace_atom = static_cast<std::int32_t>(index);
+    if (!structure_.connections.empty())
+      by_address_.try_emplace(address_key(chain.name, source.seqid.str() + source.name, atom.name), index);
+    out_.has_b_factors |= one.b_factor != 0;
+    out_.atoms.push_back(one);
+    out_.atom_names.push_back(atom.name);
+  }
+
+  void add_connections() {
+    const auto index_of = [this](const gemmi::AtomAddress& a) -> std::int64_t {
+      const auto found = by_address_.find(address_key(a.chain_name, a.res_id.seqid.str() + a.res_id.name, a.atom_name));
+      return found == by_address_.end() ? -1 : static_cast<std::int64_t>(found->second);
+    };
+    for (const gemmi::Connection& connection : structure_.connections) {
+      if (connection.type == gemmi::Connection::Hydrog || connection.asu == gemmi::Asu::Different) continue;
+      const std::int64_t a = index_of(connection.partner1), b = index_of(connection.partner2);
+      if (a >= 0 && b >= 0 && a != b)
+        out_.bonds.emplace_back(static_cast<std::uint32_t>(std::min(a, b)), static_cast<std::uint32_t>(std::max(a, b)));
+    }
+  }
+
+  void add_assemblies() {
+    for (const gemmi::Assembly& assembly : structure_.assemblies) {
+      std::vector<AssemblyPart>& parts = out_.assemblies[assembly.name];
+      for (const gemmi::Assembly::Gen& gen : assembly.generators) {
+        AssemblyPart part{gen.chains, gen.subchains, {}};
+        for (const gemmi::Assembly::Operator& op : gen.operators) {
+          glm::dmat4 m(1);
+          for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) m[column][row] = op.transform.mat[row][column];
+            m[3][row] = op.transform.vec.at(row);
+          }
+          part.operators.push_back(m);
+        }
+        parts.push_back(std::move(part));
+      }
+    }
+  }
+
+  gemmi::Structure& structure_;
+  const std::string& path_;
+  const ImportOptions& options_;
+  Molecule out_;
+  std::unordered_map<std::string, std::uint32_t> chains_, by_address_;
+};
+
+template <class Work>
+auto read_by_gemmi(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    refuse(path, error.what());
+  }
+}
+
+/// CONECT: columns 7-11 an atom, then up to four others of five columns each.
+void add_conect(std::string_view text, Molecule& out) {
+  std::unordered_map<std::int32_t, std::uint32_t> by_serial;
+  const auto serial_at = [](std::string_view line, std::size_t column) {
+    std::int32_t value = 0;
+    if (line.size() <= column) return value;
+    std::string_view field = line.substr(column, 5);
+    while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
+    std::from_chars(field.data(), field.data() + field.size(), value);
+    return value;
+  };
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
+    if (!line.starts_with("CONECT")) continue;
+    if (by_serial.empty())
+      for (std::uint32_t i = 0; i < out.atoms.size(); ++i) by_serial.try_emplace(out.atoms[i].serial, i);
+    const auto from = by_serial.find(serial_at(line, 6));
+    if (from == by_serial.end()) continue;
+    for (const std::size_t column : {11U, 16U, 21U, 26U}) {
+      const auto to = by_serial.find(serial_at(line, column));
+      if (to != by_serial.end() && to->second != from->second)
+        out.bonds.emplace_back(std::min(from->second, to->second), std::max(from->second, to->second));
+    }
+  }
+}
+
+/// REMARK 350 by its words: beyond 999 copies the columns move, and gemmi 0.5 reads other numbers.
+std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::string_view text, const std::string& path) {
+  std::map<std::string, std::vector<AssemblyPart>> out;
+  std::vector<AssemblyPart>* parts = nullptr;
+  bool listing = false;
+  glm::dmat4 m(1);
+  for (int number = 1; !text.empty(); ++number) {
+    std::string_view line = take_line(text);
+    if (line.starts_with("ATOM")) break;
+    const std::string_view remark = "REMARK 350";
+    if (!line.starts_with(remark)) continue;
+    line.remove_prefix(remark.size());
+    const std::vector<std::string> words = gemmi::split_str_multi(std::string(line), " ,\t");
+    const auto chains_from = [&](std::size_t first) {
+      for (std::size_t i = first; i < words.size(); ++i) parts->back().chains.push_back(words[i]);
+    };
+    if (words.size() >= 2 && words[0] == "BIOMOLECULE:") {
+      parts = &out[words[1]];
+      listing = false;
+    } else if (parts && words.size() > 5 && words[0] == "APPLY" && words[4] == "CHAINS:") {
+      parts->emplace_back();
+      chains_from(5);
+      listing = true;
+    } else if (listing && words.size() > 2 && words[0] == "AND" && words[1] == "CHAINS:") {
+      chains_from(2);
+    } else if (listing && words.size() == 6 && words[0].size() == 6 && words[0].starts_with("BIOMT")) {
+      const int row = words[0][5] - '1';
+      if (row < 0 || row > 2) continue;
+      for (int column = 0; column < 4; ++column) {
+        const std::string& word = words[static_cast<std::size_t>(column) + 2];
+        double value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+          throw InputError({path, number, 0}, caplet::quoted(word) + " is no number of an operator");
+        m[column][row] = value;
+      }
+      if (row == 2) parts->back().operators.push_back(m);
+    }
+  }
+  return out;
+}
+
+gemmi::cif::Document document_of(std::string_view text, const std::string& path) {
+  return gemmi::cif::read_memory(text.data(), text.size(), path.c_str());
+}
+
+void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
+  // A const table of gemmi 0.5 is not to be had.
+  auto& table_of = const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  for (const auto row : table_of.find("_chem_comp_bond.", {"comp_id", "atom_id_1", "atom_id_2"}))
+    out[row.str(0)].emplace_back(row.str(1), row.str(2));
+}
+
+}  // namespace
+
+Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options) {
+  return read_by_gemmi(path, [&] {
+    gemmi::Structure structure = gemmi::read_pdb_from_memory(text.data(), text.size(), path);
+    Molecule out = Builder(structure, path, options).build();
+    add_conect(text, out);
+    out.assemblies = assemblies_of_remarks(text, path);
+    return out;
+  });
+}
+
+Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
+  return read_by_gemmi(path, [&] {
+    const gemmi::cif::Document document = document_of(text, path);
+    gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
+    Molecule out = Builder(structure, path, options).build();
+    for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out.components);
+    return out;
+  });
+}
+
+ComponentBonds component_bonds_of(std::string_view text, const std::string& path) {
+  return read_by_gemmi(path, [&] {
+    const gemmi::cif::Document document = document_of(text, path);
+    ComponentBonds out;
+    for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out);
+    return out;
+  });
+}
+
+}  // namespace caplet

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// MDL molfiles and SD files: connection tables of V2000 (fixed columns) and V3000 (free ones), as BIOVIA's "CTfile formats" has
+// them.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "import/detail/molecule.h"
+#include "import/detail/text_file.h"
+
+namespace caplet {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& path, const ImportOptions& options)
+      : text_(text), path_(path), options_(options) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  }
+
+  Molecule read() {
+    skip_records(options_.number("model", 1));
+    out_.chains = {""};
+    out_.name = std::string(trimmed(line()));
+    line();  // program and date
+    line();  // comment
+    const std::string_view counts = line();
+    if (counts.find("V3000") != std::string_view::npos)
+      read_v3000();
+    else
+      read_v2000(counts);
+    if (out_.atoms.empty()) fail(0, "holds no atoms");
+    Residue all;
+    all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
+    out_.residues.push_back(all);
+    out_.bonds_are_complete = true;
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t column, const std::string& message) const {
+    throw InputError({path_, line_, static_cast<int>(column)}, message);
+  }
+
+  std::string_view line() {
+    ++line_;
+    if (text_.empty()) fail(0, "the file ends before its connection table does");
+    return take_line(text_);
+  }
+
+  void skip_records(std::uint32_t number) {
+    for (std::uint32_t record = 1; record < number; ++record) {
+      do {
+        if (text_.empty()) throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
+      } while (line() != "$$$$");
+      if (trimmed(text_).empty()) throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
+    }
+  }
+
+  /// A field of fixed columns, from 0.
+  template <class Number>
+  Number fixed(std::string_view text, std::size_t begin, std::size_t size, const char* what) const {
+    const std::string_view field = text.size() > begin ? trimmed(text.substr(begin, size)) : std::string_view();
+    Number value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (field.empty() || error != std::errc() || end != field.data() + field.size())
+      fail(begin + 1, fmt::format("{}: {} is no number", what, quoted(field)));
+    return value;
+  }
+
+  void add_atom(glm::dvec3 p, std::string_view symbol, std::size_t column) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(p[axis]) <= static_cast<double>(largest_number))) fail(column, "the place is not finite or out of range");
+    Atom atom;
+    atom.position = p;
+    atom.element = element_of(symbol);
+    atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
+    out_.atoms.push_back(atom);
+  }
+
+  void add_bond(std::uint32_t a, std::uint32_t b, std::size_t column) {
+    const std::size_t count = out_.atoms.size();
+    if (a < 1 || b < 1 || a > count || b > count || a == b)
+      fail(column, fmt::format("a bond of atoms {} and {}: there are {}", a, b, count));
+    out_.bonds.emplace_back(std::min(a, b) - 1, std::max(a, b) - 1);
+  }
+
+  void read_v2000(std::string_view counts) {
+    const auto atoms = fixed<std::uint32_t>(counts, 0, 3, "number of atoms");
+    const auto bonds = fixed<std::uint32_t>(counts, 3, 3, "number of bonds");
+    for (std::uint32_t i = 0; i < atoms; ++i) {
+      const std::string_view text = line();
+      glm::dvec3 p(0);
+      for (int axis = 0; axis < 3; ++axis) p[axis] = fixed<double>(text, 10 * static_cast<std::size_t>(axis), 10, "coordinate");
+      add_atom(p, text.size() > 31 ? trimmed(text.substr(31, 3)) : std::string_view(), 1);
+    }
+    for (std::uint32_t i = 0; i < bonds; ++i) {
+      const std::string_view text = line();
+      add_bond(fixed<std::uint32_t>(text, 0, 3, "first atom"), fixed<std::uint32_t>(text, 3, 3, "second atom"), 1);
+    }
+  }
+
+  /// A line "M  V30 ..." without that, and with those after it where it ends in "-".
+  std::string v30() {
+    std::string out;
+    for (;;) {
+      std::string_view text = trimmed(line());
+      if (text == "M  END") return "END CTAB";
+      if (!text.starts_with("M  V30")) fail(1, "expected 'M  V30'");
+      text = trimmed(text.substr(6));
+      const bool goes_on = text.ends_with('-');
+      if (goes_on) text.remove_suffix(1);
+      out += text;
+      if (out.size() > 1U << 20) fail(0, "a statement of more than a million letters");
+      if (!goes_on) return out;
+    }
+  }
+
+  void read_v3000() {
+    enum class Block { none, atoms, bonds } block = Block::none;
+    std::unordered_map<std::uint32_t, std::uint32_t> by_number;
+    for (;;) {
+      const std::string text = v30();
+      if (text == "END CTAB") return;
+      if (text == "BEGIN ATOM") block = Block::atoms;
+      if (text == "BEGIN BOND") block = Block::bonds;
+      if (text.starts_with("END ")) block = Block::none;
+      if (block == Block::none || text.starts_with("BEGIN ")) continue;
+      const std::vector<std::string_view> words = words_of(text);
+      if (block == Block::atoms) {
+        if (words.size() < 5) fail(1, "an atom is number, symbol, x, y, z");
+        by_number[number<std::uint32_t>(words[0])] = static_cast<std::uint32_t>(out_.atoms.size());
+        add_atom({number<double>(words[2]), number<double>(words[3]), number<double>(words[4])}, words[1], 1);
+      } else {
+        if (words.size() < 4) fail(1, "a bond is number, type and two atoms");
+        const auto a = by_number.find(number<std::uint32_t>(words[2])), b = by_number.find(number<std::uint32_t>(words[3]));
+        if (a == by_number.end() || b == by_number.end()) fail(1, "a bond of an atom that there is not");
+        add_bond(a->second + 1, b->second + 1, 1);
+      }
+    }
+  }
+
+  static std::vector<std::string_view> words_of(std::string_view text) {
+    std::vector<std::string_view> out;
+    while (!(text = trimmed(text)).empty()) {
+      std::size_t end = 0;
+      while (end < text.size() && !is_blank(text[end])) ++end;
+      out.push_back(text.substr(0, end));
+      text.remove_prefix(end);
+    }
+    return out;
+  }
+
+  template <class Number>
+  Number number(std::string_view word) const {
+    Number value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) fail(1, quoted(word) + " is no number");
+    return value;
+  }
+
+  std::string_view text_;
+  const std::string& path_;
+  const ImportOptions& options_;
+  int line_ = 0;
+  Molecule out_;
+};
+
+}  // namespace
+
+Molecule read_sdf(std::string_view text, const std::string& path, const ImportOptions& options) {
+  return Reader(text, path, options).read();
+}
+
+}  // namespace caplet

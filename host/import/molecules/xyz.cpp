@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// XYZ: frames of a count, a comment, and a line an atom. Extended XYZ says in its comment ("Properties=...") which columns are
+// what.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "base/error.h"
+#include "import/detail/molecule.h"
+#include "import/detail/text_file.h"
+
+namespace caplet {
+
+namespace {
+
+struct Columns {
+  std::size_t species = 0, position = 1;
+};
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> out;
+  std::size_t i = 0;
+  for (;;) {
+    while (i < text.size() && is_blank(text[i])) ++i;
+    if (i == text.size()) return out;
+    const std::size_t begin = i;
+    while (i < text.size() && !is_blank(text[i])) ++i;
+    out.push_back(text.substr(begin, i - begin));
+  }
+}
+
+/// Of "Properties=species:S:1:pos:R:3:...": a name, a kind and a number of columns each.
+Columns columns_of(std::string_view comment) {
+  Columns columns;
+  const std::string_view key = "Properties=";
+  const std::size_t at = comment.find(key);
+  if (at == std::string_view::npos) return columns;
+  std::string_view rest = comment.substr(at + key.size());
+  rest = rest.substr(0, rest.find_first_of(" \t"));
+  std::vector<std::string_view> fields;
+  while (!rest.empty()) {
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    fields.push_back(rest.substr(0, colon));
+    rest.remove_prefix(std::min(rest.size(), colon + 1));
+  }
+  std::size_t column = 0;
+  for (std::size_t i = 0; i + 2 < fields.size(); i += 3) {
+    if (fields[i] == "species") columns.species = column;
+    if (fields[i] == "pos") columns.position = column;
+    std::size_t count = 0;
+    std::from_chars(fields[i + 2].data(), fields[i + 2].data() + fields[i + 2].size(), count);
+    column += std::min<std::size_t>(count, 1000);
+  }
+  return columns;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& path, const ImportOptions& options)
+      : text_(text), path_(path), options_(options) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  }
+
+  Molecule read() {
+    const std::uint32_t wanted = options_.number("model", 1);
+    for (std::uint32_t frame = 1;; ++frame) {
+      while (!text_.empty() && words_of(next_line_peeked()).empty()) line();
+      if (text_.empty() && frame > 1) throw InputError({"--model"}, fmt::format("{}: the file has {} frames", wanted, frame - 1));
+      const std::uint64_t count = count_of(line());
+      const Columns columns = columns_of(line());
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const std::string_view text = line();
+        if (frame == wanted) add_atom(text, columns);
+      }
+      if (frame == wanted) break;
+    }
+    if (out_.atoms.empty()) throw InputError({path_, line_, 0}, "holds no atoms that are asked for");
+    out_.chains = {""};
+    Residue all;
+    all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
+    out_.residues.push_back(all);
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, line_, 0}, message); }
+
+  std::string_view next_line_peeked() const {
+    std::string_view rest = text_;
+    return take_line(rest);
+  }
+  std::string_view line() {
+    ++line_;
+    if (text_.empty()) fail("the file ends where a line of it is missing");
+    return take_line(text_);
+  }
+
+  std::uint64_t count_of(std::string_view text) const {
+    const std::vector<std::string_view> words = words_of(text);
+    std::uint64_t count = 0;
+    if (words.empty()) fail("the number of atoms is missing");
+    const auto [end, error] = std::from_chars(words[0].data(), words[0].data() + words[0].size(), count);
+    if (words.size() != 1 || error != std::errc() || end != words[0].data() + words[0].size())
+      fail(quoted(words[0]) + " is no number of atoms");
+    return count;
+  }
+
+  void add_atom(std::string_view text, const Columns& columns) {
+    const std::vector<std::string_view> words = words_of(text);
+    if (words.size() < columns.position + 3 || words.size() <= columns.species)
+      fail(fmt::format("{} columns: an atom is a symbol and three coordinates", words.size()));
+    Atom atom;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view word = words[columns.position + static_cast<std::size_t>(axis)];
+      const NumberError error = parse_float(word, atom.position[axis]);
+      if (error != NumberError::none) fail(describe(error, word));
+    }
+    atom.element = element_of(words[columns.species]);
+    atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
+    if (atom.hydrogen() && !options_.yes("hydrogens", true)) return;
+    out_.atoms.push_back(atom);
+  }
+
+  std::string_view text_;
+  const std::string& path_;
+  const ImportOptions& options_;
+  int line_ = 0;
+  Molecule out_;
+};
+
+}  // namespace
+
+Molecule read_xyz(std::string_view text, const std::string& path, const ImportOptions& options) {
+  return Reader(text, path, options).read();
+}
+
+}  // namespace caplet

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Hair and streamlines: the conventions of docs/formats/fibres.md, the shared files, and bad input.
+#include "import/detail/fibres.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "import/import.h"
+#include "support/data.h"
+#include "support/import_files.h"
+
+namespace caplet {
+namespace {
+
+using test::complaint;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Bytes of numbers, one after the other.
+class Writer {
+ public:
+  explicit Writer(bool swapped = false) : swapped_(swapped) {}
+  template <class Number>
+  Writer& put(Number value) {
+    std::array<char, sizeof(Number)> bytes{};
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (swapped_) std::reverse(bytes.begin(), bytes.end());
+    out_.append(bytes.data(), bytes.size());
+    return *this;
+  }
+  template <class Number>
+  Writer& put_at(std::size_t at, Number value) {
+    const std::string before = out_.substr(at + sizeof value);
+    out_.resize(at);
+    put(value);
+    out_ += before;
+    return *this;
+  }
+  Writer& fill(std::size_t size) {
+    out_.resize(size, '\0');
+    return *this;
+  }
+  Writer& text(const std::string& text) {
+    out_ += text;
+    return *this;
+  }
+  const std::string& bytes() const { return out_; }
+
+ private:
+  bool swapped_;
+  std::string out_;
+};
+
+Scene scene_of(const std::string& name, const std::string& bytes, const ImportOptions& options = {}) {
+  return import_scene(test::write_file(name, bytes), test::NoImages(), options);
+}
+
+std::string hair_file(std::uint32_t strands, std::uint32_t points, std::uint32_t flags, const Writer& arrays) {
+  Writer out;
+  out.text("HAIR")
+      .put(strands)
+      .put(points)
+      .put(flags)
+      .put(std::uint32_t{1})
+      .put(0.5F)
+      .put(0.0F)
+      .put(0.9F)
+      .put(0.5F)
+      .put(0.25F)
+      .fill(128);
+  return out.bytes() + arrays.bytes();
+}
+
+TEST(Hair, SegmentsThicknessAndColours) {
+  Writer arrays;
+  arrays.put(std::uint16_t{2}).put(std::uint16_t{1});
+  for (int i = 0; i < 5; ++i) arrays.put(static_cast<float>(i)).put(0.0F).put(-1.0F);
+  for (int i = 0; i < 5; ++i) arrays.put(0.2F * static_cast<float>(i + 1));
+  for (int i = 0; i < 5; ++i) arrays.put(0.0F);  // transparency
+  for (int i = 0; i < 5; ++i) arrays.put(1.0F).put(0.5F).put(0.0F);
+  const Fibres all = read_hair(hair_file(2, 5, 31, arrays), "a.hair");
+  EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{3, 5}));
+  EXPECT_EQ(all.points[4], glm::vec3(4, 0, -1));
+  EXPECT_FLOAT_EQ(all.radii[4], 0.5F);  // thickness is a width
+  EXPECT_EQ(all.colors[2], glm::vec3(1, 0.5F, 0));
+
+  const Scene scene = scene_of("a.hair", hair_file(2, 5, 31, arrays));
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  ASSERT_EQ(capsules.p0.size(), 3u);  // two and one
+  EXPECT_EQ(capsules.p1[2], glm::vec3(4, 0, -1));
+  EXPECT_FLOAT_EQ(capsules.radius0[2], 0.4F);
+  EXPECT_FLOAT_EQ(capsules.radius1[2], 0.5F);
+  EXPECT_TRUE(std::holds_alternative<HairMaterial>(scene.materials.at(0).model));
+  const Scene colored = scene_of("a.hair", hair_file(2, 5, 31, arrays), {{{"color", "file"}, {"radius", "2"}}});
+  EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(colored.materials.at(0).model).reflectance).rgb.x, 1);
+  EXPECT_EQ(std::get<CapsulesShape>(colored.shapes.at(0).geometry).radius0[1], 2.0F);
+}
+
+TEST(Hair, DefaultsOfTheHeader) {
+  Writer arrays;
+  for (int i = 0; i < 4; ++i) arrays.put(static_cast<float>(i)).put(0.0F).put(0.0F);
+  const Fibres two = read_hair(hair_file(2, 4, 2, arrays), "b.hair");
+  EXPECT_EQ(two.ends, (std::vector<std::uint64_t>{2, 4}));
+  EXPECT_EQ(two.radii, (std::vector<float>{0.25F}));
+  EXPECT_EQ(two.colors, (std::vector<glm::vec3>{{0.9F, 0.5F, 0.25F}}));
+}
+
+TEST(Tressfx, StrandsOfEqualLength) {
+  Writer file;
+  file.put(4.0F).put(std::uint32_t{2}).put(std::uint32_t{3}).put(std::uint32_t{160}).fill(160);
+  for (int i = 0; i < 6; ++i) file.put(static_cast<float>(i)).put(1.0F).put(2.0F).put(0.0F);
+  const Fibres all = read_tressfx(file.bytes(), "a.tfx");
+  EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{3, 6}));
+  EXPECT_EQ(all.points[5], glm::vec3(5, 1, 2));
+  EXPECT_EQ(std::get<CapsulesShape>(scene_of("a.tfx", file.bytes()).shapes.at(0).geometry).p0.size(), 4u);
+}
+
+/// One track of a point at the millimetres `p`, of a grid of 10 x 20 x 30 voxels of 2 x 3 x 4 mm.
+std::string trk_file(glm::vec3 p, const std::string& order, const std::array<float, 16>& matrix, bool swapped) {
+  Writer out(swapped);
+  out.text("TRACK")
+      .fill(6)
+      .put(std::int16_t{10})
+      .put(std::int16_t{20})
+      .put(std::int16_t{30})
+      .put(2.0F)
+      .put(3.0F)
+      .put(4.0F)
+      .fill(36);
+  out.put(std::int16_t{1}).fill(238).put(std::int16_t{2}).fill(440);
+  for (const float value : matrix) out.put(value);
+  out.fill(948).text(order).fill(992).put(std::int32_t{2}).put(std::int32_t{1000});
+  for (int track = 0; track < 2; ++track) {
+    out.put(std::int32_t{1 + track});
+    for (int i = 0; i <= track; ++i) out.put(p.x).put(p.y).put(p.z).put(7.0F);
+    out.put(1.0F).put(1.0F);
+  }
+  return out.bytes();
+}
+
+TEST(Trk, PointsAreInTheWorld) {
+  // Millimetres (5, 7.5, 14) are the voxel (2.5, 2.5, 3.5) from the corner, (2, 2, 3) from the first middle.
+  const std::array<float, 16> identity = {2, 0, 0, 100, 0, 3, 0, 200, 0, 0, 4, 300, 0, 0, 0, 1};
+  for (const bool swapped : {false, true}) {
+    const Fibres all = read_trk(trk_file({5, 7.5F, 14}, "RAS", identity, swapped), "a.trk");
+    EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{1, 3}));
+    EXPECT_EQ(all.points[2], glm::vec3(104, 206, 312));
+  }
+  // The same points counted from the other end of x: the voxel 9 - 2.
+  const Fibres flipped = read_trk(trk_file({5, 7.5F, 14}, "LAS", identity, false), "l.trk");
+  EXPECT_EQ(flipped.points[0], glm::vec3(100 + 2 * 7, 206, 312));
+  // A matrix whose first voxel axis runs left is "LAS" itself.
+  const std::array<float, 16> left = {-2, 0, 0, 100, 0, 3, 0, 200, 0, 0, 4, 300, 0, 0, 0, 1};
+  EXPECT_EQ(read_trk(trk_file({5, 7.5F, 14}, "LAS", left, false), "m.trk").points[0], glm::vec3(96, 206, 312));
+  // None at all: as they are.
+  EXPECT_EQ(read_trk(trk_file({5, 7.5F, 14}, "", {}, false), "n.trk").points[0], glm::vec3(5, 7.5F, 14));
+}
+
+TEST(Tck, OfBothByteOrdersAndWidths) {
+  for (const bool wide : {false, true})
+    for (const bool swapped : {false, true}) {
+      const std::string header = std::string("mrtrix tracks\ncount: 2\ndatatype: Float") + (wide ? "64" : "32") +
+                                 (swapped ? "BE" : "LE") + "\nfile: . 100\nEND\n";
+      Writer out(swapped);
+      out.text(header).fill(100);
+      const auto point = [&](double x, double y, double z) {
+        for (const double v : {x, y, z}) wide ? out.put(v) : out.put(static_cast<float>(v));
+      };
+      const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+      point(1, 2, 3);
+      point(4, 5, 6);
+      point(nan, nan, nan);
+      point(7, 8, 9);
+      point(nan, nan, nan);
+      point(inf, inf, inf);
+      const Fibres all = read_tck(out.bytes(), "a.tck");
+      EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{2, 3}));
+      EXPECT_EQ(all.points[2], glm::vec3(7, 8, 9));
+    }
+}
+
+TEST(Vtk, LinesAsTextAndBinary) {
+  const std::string head = "# vtk DataFile Version 3.0\nlines\n";
+  const Fibres text = read_vtk(
+      head + "ASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0\n1 1 0\nLINES 2 5\n2 0 1\n1 2\nPOINT_DATA 3\n", "a.vtk");
+  EXPECT_EQ(text.ends, (std::vector<std::uint64_t>{2, 3}));
+  EXPECT_EQ(text.points[2], glm::vec3(1, 1, 0));
+  Writer out(true);
+  out.text(head + "BINARY\nDATASET POLYDATA\nPOINTS 2 double\n");
+  for (const double v : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0}) out.put(v);
+  out.text("\nLINES 1 3\n").put(std::int32_t{2}).put(std::int32_t{1}).put(std::int32_t{0});
+  const Fibres binary = read_vtk(out.bytes(), "b.vtk");
+  EXPECT_EQ(binary.ends, (std::vector<std::uint64_t>{2}));
+  EXPECT_EQ(binary.points[0], glm::vec3(3, 4, 5));
+}
+
+TEST(Fibres, ColoursTellDirections) {
+  const Scene scene = scene_of(
+      "c.vtk",
+      "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 -2 0 0 -2 0 5\nLINES 1 4\n3 0 1 2\n");
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  ASSERT_EQ(capsules.materials.size(), 2u);
+  const auto color = [&](std::size_t i) {
+    return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials[capsules.materials[i]].model).reflectance).rgb;
+  };
+  EXPECT_LT(glm::length(color(0) - glm::dvec3(0.85, 0.05, 0.05)), 1e-12);
+  EXPECT_LT(glm::length(color(1) - glm::dvec3(0.05, 0.05, 0.85)), 1e-12);
+  // z is up.
+  EXPECT_EQ(glm::dvec3(scene.shapes[0].world_from_object * glm::dvec4(0, 0, 1, 0)), glm::dvec3(0, 1, 0));
+}
+
+// Numbers of points and tracks, and the extent, by nibabel 5.
+TEST(SharedFibres, AreThoseOfNibabel) {
+  CAPLET_NEEDS_DATA();
+  struct Case {
+    const char* file;
+    Fibres (*read)(std::string_view, const std::string&);
+    std::size_t tracks, points;
+    glm::vec3 low, high;
+  };
+  const Case cases[] = {
+      {"standard.trk", read_trk, 120, 360, {-0.5F, -1.5F, -1}, {3.5F, 13.5F, 13}},
+      {"standard.tck", read_tck, 120, 360, {-0.5F, -1.5F, -1}, {3.5F, 13.5F, 13}},
+      {"simple.tck", read_tck, 3, 8, {0, 1, 2}, {12, 13, 14}},
+      {"tracks300.trk", read_trk, 300, 14576, {64.02451F, 78.36036F, 61.47268F}, {115.55523F, 121.12667F, 91.91046F}}};
+  for (const Case& c : cases) {
+    std::ifstream stream(test::data_folder() / "fibres/streamlines" / c.file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    const Fibres all = c.read(bytes, c.file);
+    EXPECT_EQ(all.ends.size(), c.tracks) << c.file;
+    EXPECT_EQ(all.points.size(), c.points) << c.file;
+    glm::vec3 low(all.points.at(0)), high(low);
+    for (const glm::vec3& p : all.points) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    // nibabel says five digits after the point.
+    EXPECT_LT(glm::length(low - c.low), 2e-5F) << c.file;
+    EXPECT_LT(glm::length(high - c.high), 2e-5F) << c.file;
+  }
+}
+
+TEST(BadFibres, AreRefused) {
+  Writer one;
+  one.put(0.0F).put(0.0F).put(0.0F);
+  EXPECT_THAT(complaint([] { read_hair("BEAR", "x.hair"); }), HasSubstr("HAIR"));
+  EXPECT_THAT(complaint([&] { read_hair(hair_file(1, 1000000000, 2, one), "x.hair"); }),
+              AllOf(HasSubstr("x.hair"), HasSubstr("1000000000")));
+  EXPECT_THAT(complaint([&] { read_hair(hair_file(1, 1, 2, one), "x.hair"); }), HasSubstr("beyond the 1 points"));
+  EXPECT_THAT(complaint([&] { read_hair(hair_file(1, 1, 0, one), "x.hair"); }), HasSubstr("no points"));
+  EXPECT_THAT(complaint([] { read_tressfx(Writer().put(3.0F).fill(160).bytes(), "x.tfx"); }), HasSubstr("version 4"));
+  EXPECT_THAT(
+      complaint([] { read_tressfx(Writer().put(4.0F).put(9999999u).put(9999999u).put(160u).fill(160).bytes(), "x.tfx"); }),
+      HasSubstr("announced"));
+  EXPECT_THAT(complaint([] { read_tressfx(Writer().put(4.0F).put(1u).put(1u).put(160u).fill(200).bytes(), "x.tfx"); }),
+              HasSubstr("1 vertices"));
+  std::string trk = trk_file({1, 2, 3}, "RAS", {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1}, false);
+  EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, trk.size() - 20), "x.trk"); }), HasSubstr("x.trk"));
+  EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, 900), "x.trk"); }), HasSubstr("ends before"));
+  EXPECT_THAT(complaint([] { read_trk("nothing", "x.trk"); }), HasSubstr("TRACK"));
+  EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ncount: 1\n", "x.tck"); }), HasSubstr("x.tck:3"));
+  EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Int8\nEND\n", "x.tck"); }), HasSubstr("x.tck:2"));
+  EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Float32LE\nEND\nabc", "x.tck"); }), HasSubstr("infinite point"));
+  const std::string head = "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\n";
+  EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 0\nLINES 1 2\n1 4\n", "x.vtk"); }),
+              AllOf(HasSubstr("x.vtk:8"), HasSubstr("point 4")));
+  EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1000000000 float\n0 0 0\n", "x.vtk"); }), HasSubstr("ends early"));
+  EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 inf\n", "x.vtk"); }), HasSubstr("x.vtk:6"));
+  EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 0\nLINES 1 1\n1 0\n", "x.vtk"); }),
+              HasSubstr("more points than"));
+  EXPECT_THAT(complaint([&] { read_vtk(head, "x.vtk"); }), HasSubstr("no lines"));
+  EXPECT_THAT(complaint([&] { scene_of("r.tck", "mrtrix tracks\n", {{{"radius", "-1"}}}); }), HasSubstr("r.tck"));
+  EXPECT_THAT(complaint([&] {
+                scene_of("r.hair", hair_file(1, 2, 2, Writer().put(0.0F).put(0.0F).put(0.0F).put(1.0F).put(0.0F).put(0.0F)),
+                         {{{"radius", "-1"}}});
+              }),
+              AllOf(HasSubstr("--radius"), HasSubstr("not positive")));
+}
+
+}  // namespace
+}  // namespace caplet

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Molecules: the conventions of docs/formats/molecules.md, the shared files with counts by other programs, and bad input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "import/detail/importers.h"
+#include "import/detail/molecule.h"
+#include "import/import.h"
+#include "support/data.h"
+#include "support/import_files.h"
+
+namespace caplet {
+namespace {
+
+using test::complaint;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+Scene scene_of(const std::filesystem::path& path, const ImportOptions& options = {}) {
+  return import_scene(path, test::NoImages(), options);
+}
+Scene scene_of_text(const std::string& name, const std::string& text, const ImportOptions& options = {}) {
+  return scene_of(test::write_file(name, text), options);
+}
+
+/// Capsules of no length, and all others, of the shapes and objects.
+struct Counts {
+  std::size_t balls = 0, rods = 0;
+};
+Counts counts_of(const std::vector<Shape>& shapes) {
+  Counts out;
+  for (const Shape& shape : shapes) {
+    const auto& capsules = std::get<CapsulesShape>(shape.geometry);
+    for (std::size_t i = 0; i < capsules.p0.size(); ++i) ++(capsules.p0[i] == capsules.p1[i] ? out.balls : out.rods);
+  }
+  return out;
+}
+
+// --- The shared files ---
+
+struct FileCounts {
+  const char* file;
+  Molecule (*read)(std::string_view, const std::string&, const ImportOptions&);
+  std::size_t atoms, bonds, chains;
+};
+void PrintTo(const FileCounts& counts, std::ostream* out) { *out << counts.file; }
+
+class MoleculeFile : public testing::TestWithParam<FileCounts> {};
+
+TEST_P(MoleculeFile, HasTheAtomsAndBondsThatOthersCount) {
+  CAPLET_NEEDS_DATA();
+  const FileCounts& expected = GetParam();
+  const std::filesystem::path path = test::data_folder() / "mol" / expected.file;
+  const Molecule molecule = expected.read(bytes_of(path), path.string(), {});
+  EXPECT_EQ(molecule.atoms.size(), expected.atoms);
+  EXPECT_EQ(all_bonds(molecule, path.string()).size(), expected.bonds);
+  EXPECT_EQ(molecule.chains.size(), expected.chains);
+  const Counts counts = counts_of(scene_of(path, {{{"style", "ball-and-stick"}}}).shapes);
+  EXPECT_EQ(counts.balls, expected.atoms);
+  EXPECT_GE(counts.rods, expected.bonds);
+  EXPECT_LE(counts.rods, 2 * expected.bonds);
+  EXPECT_EQ(counts_of(scene_of(path, {{{"style", "spheres"}}}).shapes).balls, expected.atoms);
+}
+
+// Atoms: gemmi's Python package and the files' own count lines. Bonds: of PDB and XYZ by an independent script that compares all
+// pairs by the rule of the page (RDKit's own rule finds the same 337 and 310, and 25 of caffeine.xyz); of 4hhb.pdb five
+// more by CONECT records, as RDKit counts; of SD files and components the files' own.
+INSTANTIATE_TEST_SUITE_P(
+    Data, MoleculeFile,
+    testing::Values(FileCounts{"pdb/1crn.pdb", read_pdb, 327, 337, 1}, FileCounts{"pdb/1CRN.cif", read_mmcif, 327, 337, 1},
+                    FileCounts{"pdb/1l2y.pdb", read_pdb, 304, 310, 1}, FileCounts{"pdb/4hhb.cif", read_mmcif, 4779, 4631, 4},
+                    FileCounts{"pdb/4hhb.pdb", read_pdb, 4779, 4636, 4}, FileCounts{"sdf/aspirin.sdf", read_sdf, 21, 21, 1},
+                    FileCounts{"sdf/caffeine.sdf", read_sdf, 24, 25, 1}, FileCounts{"xyz/caffeine.xyz", read_xyz, 24, 25, 1},
+                    FileCounts{"xyz/extended.xyz", read_xyz, 192, 177, 1}, FileCounts{"xyz/helium.xyz", read_xyz, 125, 0, 1},
+                    FileCounts{"ccd/ATP.cif", read_mmcif, 47, 49, 1}, FileCounts{"ccd/HEM.cif", read_mmcif, 75, 82, 1},
+                    FileCounts{"ccd/TRP.cif", read_mmcif, 27, 28, 1}),
+    [](const auto& of) {
+      std::string name = of.param.file;
+      for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+      return name;
+    });
+
+TEST(Assemblies, AreInstancesOfTheirChains) {
+  CAPLET_NEEDS_DATA();
+  const Scene scene = scene_of(test::data_folder() / "mol/pdb/1M4X.pdb", {{{"assembly", "1"}}});
+  EXPECT_EQ(scene.shapes.size(), 0u);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_EQ(counts_of(scene.objects[0].shapes).balls, 9693u);
+  ASSERT_EQ(scene.instances.size(), 1680u);
+  // The last line of its kind in the file, whose columns have moved: BIOMT1 1680 -0.384039 -0.917901 -0.099862 -11.99060.
+  const glm::dmat4& last = scene.instances.back().world_from_object;
+  EXPECT_EQ(last[0][0], -0.384039);
+  EXPECT_EQ(last[1][0], -0.917901);
+  EXPECT_EQ(last[2][0], -0.099862);
+  EXPECT_EQ(last[3][0], -11.99060);
+  EXPECT_EQ(last[2][2], 0.789130);
+  EXPECT_THAT(complaint([&] {
+                scene_of(test::data_folder() / "mol/pdb/1crn.pdb", {{{"assembly", "7"}}});
+              }),
+              AllOf(HasSubstr("--assembly"), HasSubstr("(1)")));
+}
+
+TEST(Traces, GoThroughTheAlphaCarbons) {
+  CAPLET_NEEDS_DATA();
+  const Scene scene = scene_of(test::data_folder() / "mol/pdb/1crn.pdb", {{{"style", "trace"}}});
+  ASSERT_EQ(scene.shapes.size(), 1u);  // no ligands
+  const auto& tube = std::get<CapsulesShape>(scene.shapes[0].geometry);
+  // 46 residues, six capsules between two.
+  ASSERT_EQ(tube.p0.size(), 45u * 6);
+  // ATOM 2 CA THR A 1 and ATOM 324 CA ASN A 46 of the file.
+  EXPECT_EQ(tube.p0.front(), glm::vec3(16.967F, 12.784F, 4.338F));
+  for (std::size_t i = 1; i < tube.p0.size(); ++i) EXPECT_EQ(tube.p0[i], tube.p1[i - 1]);
+  const Molecule molecule = read_pdb(bytes_of(test::data_folder() / "mol/pdb/1crn.pdb"), "1crn.pdb", {});
+  for (std::size_t r = 0; r < 46; ++r) {
+    const glm::vec3 at = molecule.atoms[static_cast<std::size_t>(molecule.residues[r].trace_atom)].position;
+    const glm::vec3 on = r < 45 ? tube.p0[6 * r] : tube.p1.back();
+    EXPECT_LT(glm::length(at - on), 1e-4F) << r;
+  }
+}
+
+// --- Conventions, on texts by hand ---
+
+std::string atom_line(int serial, const char* name, char altloc, const char* residue, char chain, int number, double x, double y,
+                      double z, double b, const char* element, const char* record = "ATOM") {
+  char line[96];
+  std::snprintf(line, sizeof line, "%-6s%5d %-4s%c%3s %c%4d    %8.3f%8.3f%8.3f%6.2f%6.2f          %2s\n", record, serial, name,
+                altloc, residue, chain, number, x, y, z, 1.0, b, element);
+  return line;
+}
+
+TEST(Pdb, BlankElementsComeFromTheNames) {
+  const std::string text = atom_line(1, " CA ", ' ', "ALA", 'A', 1, 0, 0, 0, 1, "  ") +
+                           atom_line(2, "CA  ", ' ', " CA", 'A', 2, 9, 0, 0, 1, "  ", "HETATM");
+  const Molecule m = read_pdb(text, "two.pdb", {});
+  ASSERT_EQ(m.atoms.size(), 2u);
+  EXPECT_EQ(m.atoms[0].element, 6);   // the alpha carbon
+  EXPECT_EQ(m.atoms[1].element, 20);  // calcium
+}
+
+TEST(Pdb, OnlyTheFirstAlternativePlaceIsDrawn) {
+  const std::string text = atom_line(1, " CA ", ' ', "SER", 'A', 1, 0, 0, 0, 1, " C") +
+                           atom_line(2, " CB ", 'A', "SER", 'A', 1, 1.5, 0, 0, 1, " C") +
+                           atom_line(3, " CB ", 'B', "SER", 'A', 1, 0, 1.5, 0, 1, " C");
+  EXPECT_EQ(read_pdb(text, "a.pdb", {}).atoms.size(), 2u);
+  const Molecule all = read_pdb(text, "a.pdb", {{{"altloc", "all"}}});
+  EXPECT_EQ(all.atoms.size(), 3u);
+  EXPECT_EQ(all_bonds(all, "a.pdb"), (std::vector<Bond>{{0, 1}, {0, 2}}));
+  const Molecule b = read_pdb(text, "a.pdb", {{{"altloc", "B"}}});
+  ASSERT_EQ(b.atoms.size(), 2u);
+  EXPECT_EQ(b.atoms[1].position, glm::vec3(0, 1.5F, 0));
+}
+
+TEST(Pdb, WaterAndHydrogensAndSelections) {
+  const std::string text = atom_line(1, " CA ", ' ', "ALA", 'A', 1, 0, 0, 0, 1, " C") +
+                           atom_line(2, " HA ", ' ', "ALA", 'A', 1, 1, 0, 0, 1, " H") +
+                           atom_line(3, " O  ", ' ', "HOH", 'B', 9, 6, 0, 0, 1, " O", "HETATM");
+  EXPECT_EQ(read_pdb(text, "w.pdb", {}).atoms.size(), 3u);
+  EXPECT_EQ(read_pdb(text, "w.pdb", {{{"water", "no"}}}).atoms.size(), 2u);
+  EXPECT_EQ(read_pdb(text, "w.pdb", {{{"hydrogens", "no"}}}).atoms.size(), 2u);
+  EXPECT_EQ(read_pdb(text, "w.pdb", {{{"select", "//B"}}}).atoms.size(), 1u);
+  EXPECT_THAT(complaint([&] { read_pdb(text, "w.pdb", {{{"select", "//C"}}}); }), HasSubstr("no atoms"));
+  EXPECT_THAT(complaint([&] {
+                read_pdb(text, "w.pdb", {{{"water", "maybe"}}});
+              }),
+              AllOf(HasSubstr("--water"), HasSubstr("no, yes")));
+}
+
+TEST(Pdb, ConectAddsWhatDistanceDoesNot) {
+  const std::string text = atom_line(1, "FE  ", ' ', "HEM", 'A', 1, 0, 0, 0, 1, "FE", "HETATM") +
+                           atom_line(2, " O  ", ' ', "OXY", 'A', 2, 3.5, 0, 0, 1, " O", "HETATM") +
+                           "CONECT    1    2    2\nCONECT    2    1\nCONECT    2   77\n";
+  EXPECT_EQ(all_bonds(read_pdb(text, "c.pdb", {}), "c.pdb"), (std::vector<Bond>{{0, 1}}));
+}
+
+TEST(Components, AreTheBondsOfTheirResidues) {
+  // By distance the three would make a ring; the component has two bonds.
+  std::string text =
+      "data_x\nloop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_2\nLIG A1 A2\nLIG A2 A3\n";
+  const std::string pdb = atom_line(1, " A1 ", ' ', "LIG", 'A', 1, 0, 0, 0, 1, " C") +
+                          atom_line(2, " A2 ", ' ', "LIG", 'A', 1, 1.4, 0, 0, 1, " C") +
+                          atom_line(3, " A3 ", ' ', "LIG", 'A', 1, 0.7, 1.2, 0, 1, " C");
+  Molecule m = read_pdb(pdb, "l.pdb", {});
+  EXPECT_EQ(all_bonds(m, "l.pdb").size(), 3u);
+  m.components = component_bonds_of(text, "l.cif");
+  EXPECT_EQ(all_bonds(m, "l.pdb"), (std::vector<Bond>{{0, 1}, {1, 2}}));
+}
+
+// The rule, against all pairs, for a crowd of any elements in any places, far outliers among them.
+TEST(Bonds, AreThoseOfAllPairs) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 20; ++round) {
+    Molecule m;
+    m.chains = {""};
+    m.residues.resize(1);
+    std::uniform_real_distribution<float> place(-12, 12);
+    const std::uint8_t elements[] = {1, 6, 7, 8, 16, 26, 55};
+    for (int i = 0; i < 700; ++i) {
+      Atom atom;
+      atom.position = {place(random), place(random), place(random)};
+      if (i % 50 == 0) atom.position.x += 1e7F;
+      atom.element = elements[random() % (round < 10 ? 6 : 7)];
+      m.atoms.push_back(atom);
+    }
+    std::set<Bond> expected;
+    for (std::uint32_t i = 0; i < m.atoms.size(); ++i)
+      for (std::uint32_t j = i + 1; j < m.atoms.size(); ++j) {
+        const glm::vec3 d = m.atoms[i].position - m.atoms[j].position;
+        const float square = d.x * d.x + d.y * d.y + d.z * d.z;
+        const float reach = covalent_radius(m.atoms[i].element) + covalent_radius(m.atoms[j].element) + 0.45F;
+        if (square < reach * reach && square > 0.16F && !(m.atoms[i].hydrogen() && m.atoms[j].hydrogen()))
+          expected.insert({i, j});
+      }
+    ASSERT_GT(expected.size(), 100u);
+    EXPECT_EQ(all_bonds(m, "crowd"), std::vector<Bond>(expected.begin(), expected.end())) << round;
+  }
+}
+
+TEST(Elements, HaveRadiiAndColoursOfTheirTables) {
+  EXPECT_EQ(element_of("FE"), 26);
+  EXPECT_EQ(element_of("26"), 26);
+  EXPECT_EQ(element_of("C12"), 6);
+  EXPECT_EQ(element_of("D"), 1);
+  EXPECT_EQ(element_of("Xx"), 0);
+  EXPECT_EQ(element_of(""), 0);
+  EXPECT_FLOAT_EQ(covalent_radius(6), 0.76F);
+  EXPECT_FLOAT_EQ(covalent_radius(26), 1.32F);
+  EXPECT_FLOAT_EQ(van_der_waals_radius(7), 1.55F);
+  // Jmol's oxygen is ff0d0d: 13/255 is 0.0040 in linear light (IEC 61966-2-1).
+  EXPECT_NEAR(element_color(8).x, 1, 1e-12);
+  EXPECT_NEAR(element_color(8).y, 0.0040247, 1e-6);
+}
+
+TEST(Drawing, BondsAreHalvedByTheColoursOfTheirAtoms) {
+  const Scene scene = scene_of_text("co.xyz", "2\n\nC 0 0 0\nO 1.2 0 0\n");
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  const auto& atoms = std::get<CapsulesShape>(scene.shapes[0].geometry);
+  const auto& bonds = std::get<CapsulesShape>(scene.shapes[1].geometry);
+  ASSERT_EQ(atoms.p0.size(), 2u);
+  ASSERT_EQ(bonds.p0.size(), 2u);
+  EXPECT_FLOAT_EQ(atoms.radius0[0], 0.25F * 1.7F);
+  EXPECT_EQ(bonds.p1[0], glm::vec3(0.6F, 0, 0));
+  EXPECT_EQ(bonds.p0[1], glm::vec3(0.6F, 0, 0));
+  EXPECT_EQ(bonds.materials, atoms.materials);
+  EXPECT_EQ(scene.materials[atoms.materials[0]].name, "C");
+  EXPECT_EQ(scene.materials[atoms.materials[1]].name, "O");
+}
+
+TEST(Drawing, ColoursTellBFactors) {
+  const std::string text =
+      atom_line(1, " CA ", ' ', "ALA", 'A', 1, 0, 0, 0, 5, " C") + atom_line(2, " CA ", ' ', "ALA", 'A', 2, 3.8, 0, 0, 50, " C");
+  const Scene scene = scene_of_text("b.pdb", text, {{{"color", "bfactor"}, {"style", "trace"}}});
+  const auto& tube = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  EXPECT_EQ(scene.materials[tube.materials.front()].name, "bfactor 5");
+  EXPECT_EQ(scene.materials[tube.materials.back()].name, "bfactor 50");
+  ASSERT_FALSE(tube.radius1.empty());
+  EXPECT_LT(tube.radius0.front(), tube.radius1.back());
+}
+
+TEST(Xyz, FramesAndColumns) {
+  const std::string text = "1\nfirst\nHe 0 0 0\n2\nProperties=id:I:1:species:S:1:pos:R:3\n1 C 1 2 3\n2 O 1 2 4.2\n";
+  EXPECT_EQ(read_xyz(text, "f.xyz", {}).atoms.size(), 1u);
+  const Molecule second = read_xyz(text, "f.xyz", {{{"model", "2"}}});
+  ASSERT_EQ(second.atoms.size(), 2u);
+  EXPECT_EQ(second.atoms[0].element, 6);
+  EXPECT_EQ(second.atoms[1].position, glm::vec3(1, 2, 4.2F));
+  EXPECT_THAT(complaint([&] {
+                read_xyz(text, "f.xyz", {{{"model", "3"}}});
+              }),
+              AllOf(HasSubstr("--model"), HasSubstr("2 frames")));
+}
+
+TEST(Sdf, V3000) {
+  const std::string text =
+      "name\n\n\n  0  0  0     0  0            999 V3000\nM  V30 BEGIN CTAB\nM  V30 COUNTS 3 2 0 0 0\nM  V30 BEGIN ATOM\n"
+      "M  V30 1 O 0 0 0 0\nM  V30 7 H 0.9 -\nM  V30 0.1 0 0\nM  V30 3 H -0.3 0.9 0 0\nM  V30 END ATOM\nM  V30 BEGIN BOND\n"
+      "M  V30 1 1 1 7\nM  V30 2 1 1 3\nM  V30 END BOND\nM  V30 END CTAB\nM  END\n$$$$\n";
+  const Molecule m = read_sdf(text, "v.sdf", {});
+  ASSERT_EQ(m.atoms.size(), 3u);
+  EXPECT_EQ(m.atoms[1].position, glm::vec3(0.9F, 0.1F, 0));
+  EXPECT_EQ(all_bonds(m, "v.sdf"), (std::vector<Bond>{{0, 1}, {0, 2}}));
+  EXPECT_THAT(complaint([&] { read_sdf(text, "v.sdf", {{{"model", "2"}}}); }), HasSubstr("--model"));
+}
+
+// --- Bad input ---
+
+struct Bad {
+  const char *name, *text, *says;
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.says; }
+class BadMolecule : public testing::TestWithParam<Bad> {};
+TEST_P(BadMolecule, IsRefusedAtItsPlace) {
+  const Bad& bad = GetParam();
+  EXPECT_THAT(complaint([&] { scene_of_text(bad.name, bad.text); }), AllOf(HasSubstr(bad.name), HasSubstr(bad.says)));
+}
+INSTANTIATE_TEST_SUITE_P(All, BadMolecule,
+                         testing::Values(Bad{"a.xyz", "1000000000\n\nC 0 0 0\n", ":4:"}, Bad{"b.xyz", "two\n\n", ":1:"},
+                                         Bad{"c.xyz", "1\n\nC 0 0\n", ":3:"}, Bad{"d.xyz", "1\n\nC 0 nan 0\n", ":3:"},
+                                         Bad{"e.xyz", "0\n\n", "no atoms"},
+                                         Bad{"a.sdf", "x\n\n\n  2  1\n    0.0       0.0       0.0    C\n", ":6:"},
+                                         Bad{"b.sdf", "x\n\n\n  1  1\n    0.0       0.0       0.0    C\n  1  2  1\n",
+                                             ":6:1: a bond of atoms 1 and 2: there are 1"},
+                                         Bad{"c.sdf", "x\n\n\nabc  1\n", ":4:1: number of atoms"}, Bad{"d.sdf", "x\n", ":2:"},
+                                         Bad{"a.pdb", "HEADER    nothing here\nEND\n", "no atoms"},
+                                         Bad{"b.pdb", "ATOM      1  CA  ALA A   1\n", ":1:"},
+                                         Bad{"a.cif", "data_x\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n1\n", "a.cif"},
+                                         Bad{"b.cif", "this is no cif file\n", ":1:"},
+                                         Bad{"c.cif", "data_x\n_cell.length_a 3\n", "no atoms"}),
+                         [](const auto& of) {
+                           std::string name = of.param.name;
+                           name[1] = '_';
+                           return name;
+                         });
+
+TEST(Options, SayWhatTheyDoNotFit) {
+  EXPECT_THAT(complaint([] {
+                scene_of(test::source_folder() / "scenes/neuron.swc", {{{"style", "sticks"}}});
+              }),
+              AllOf(HasSubstr("--style"), HasSubstr("swc"), HasSubstr("pdb")));
+  EXPECT_THAT(complaint([] {
+                scene_of_text("x.xyz", "1\n\nC 0 0 0\n", {{{"style", "round"}}});
+              }),
+              AllOf(HasSubstr("--style"), HasSubstr("ball-and-stick")));
+  EXPECT_THAT(complaint([] { scene_of_text("x.xyz", "1\n\nC 0 0 0\n", {{{"style", "trace"}}}); }), HasSubstr("--style"));
+  EXPECT_THAT(complaint([] { scene_of_text("x.xyz", "1\n\nC 0 0 0\n", {{{"color", "bfactor"}}}); }), HasSubstr("--color"));
+  EXPECT_THAT(complaint([] { scene_of_text("x.xyz", "1\n\nC 0 0 0\n", {{{"model", "0"}}}); }), HasSubstr("--model"));
+}
+
+}  // namespace
+}  // namespace caplet
