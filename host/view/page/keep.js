@@ -57,9 +57,13 @@ export class Keep {
     if (keep.name !== before || !this.name.value) this.name.value = keep.name ?? "";
     this.discard.disabled = !keep.unsaved;
     this.title(keep.unsaved);
-    if (keep.unsaved) this.said.textContent = keep.kept ? words.unsaved : words.not_kept(keep.why);
-    else if (this.said.dataset.is !== "saved") this.said.textContent = "";
-    this.said.dataset.is = keep.unsaved ? "unsaved" : this.said.dataset.is ?? "";
+    const is = keep.unsaved ? keep.kept ? "unsaved" : "not kept" : "saved";
+    if (is !== this.is) {  // else what stands there may be why it could not be saved
+      if (keep.unsaved) this.said.textContent = keep.kept ? words.unsaved : words.not_kept(keep.why);
+      else if (!this.just_saved) this.said.textContent = "";
+    }
+    this.is = is;
+    this.just_saved = false;
     this.notice();
   }
 
@@ -79,7 +83,6 @@ export class Keep {
   save(name = this.name.value.trim(), replace = false, camera = this.camera.checked) {
     if (this.read_only) return;
     this.asked = true;
-    this.said.dataset.is = "";
     this.say({ type: "save", name: name || null, camera, replace });
   }
   drop() { if (window.confirm(words.discard_asks)) this.say({ type: "discard" }); }
@@ -91,7 +94,7 @@ export class Keep {
   saved({ name, file }) {
     this.asked = false;
     this.said.textContent = words.saved(file);
-    this.said.dataset.is = "saved";
+    this.just_saved = true;
     this.name.value = name;
     this.name.removeAttribute("aria-invalid");
   }
@@ -100,7 +103,6 @@ export class Keep {
     if (!this.asked) return;
     this.asked = false;
     this.said.textContent = text;
-    this.said.dataset.is = "error";
     if (text.startsWith("name")) this.name.setAttribute("aria-invalid", "true");
   }
 }
