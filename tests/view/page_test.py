@@ -6,9 +6,12 @@
 usage: page_test.py PROGRAM SCENES FOLDER [NAME...]   pictures of the page go to FOLDER. Exit status 77: no browser here.
 """
 import contextlib
+import csv
 import http.client
 import json
+import math
 import pathlib
+import random
 import re
 import shutil
 import signal
@@ -274,6 +277,68 @@ def picks(program, scenes, out):
         shown.picture(out / "picked.png")
         shown.find("search").send_keys("capsule 7")
         shown.until("one row", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")) == 1)
+
+
+ASK = """const [pixels, done] = arguments, told = [];
+const socket = new WebSocket(location.href.replace(/^http/, 'ws') + 'socket');
+let next = 0;
+const ask = () => { if (next < pixels.length) socket.send(JSON.stringify({ type: 'ask', number: next, x: pixels[next][0], y: pixels[next++][1], all: true, reference: false })); };
+socket.onmessage = ({ data }) => {
+  if (typeof data !== 'string') return;
+  const message = JSON.parse(data);
+  if (message.type !== 'answer') return;
+  told.push([message.number, message.pick]);
+  if (told.length === pixels.length) { socket.close(); done(told); } else setTimeout(ask, 8);  // below the rate that is allowed
+};
+socket.onopen = () => { for (let i = 0; i < 4; ++i) ask(); };"""
+
+
+def picks_everywhere(program, scenes, out):
+    """At 500 pixels of the gallery: the rays are a pinhole camera's, worked out here; what they cross is what `caplet pick` says."""
+    scene = scenes / "gallery.pbrt"
+    eye, target, up, fov, count = (0, -13, 6.4), (0, -0.3, 0.5), (0, 0, 1), math.radians(25), 500
+
+    def unit(v):
+        return [a / math.hypot(*v) for a in v]
+
+    def cross(a, b):
+        return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+    forward = unit([t - e for t, e in zip(target, eye)])
+    right = unit(cross(forward, up))  # the file mirrors x, as pbrt's own frame is left-handed
+    above = cross(right, forward)
+    with viewer(program, scene, "--spp", "1", "--read-only") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        width, height, _ = shown.pixels()
+        draw = random.Random(15)
+        pixels = [(draw.randrange(width), draw.randrange(height)) for _ in range(count)]
+        shown.driver.set_script_timeout(120)
+        told = [pick for _, pick in sorted(shown.driver.execute_async_script(ASK, pixels))]
+        per_pixel = 2 * math.tan(fov / 2) / min(width, height)
+        worst = 0
+        for (x, y), pick in zip(pixels, told):
+            wanted = unit([f + per_pixel * ((x + 0.5 - width / 2) * r - (y + 0.5 - height / 2) * a) for f, r, a in zip(forward, right, above)])
+            assert pick["pixel"] == [x, y]
+            worst = max(worst, *(abs(a - b) for a, b in zip(unit(pick["ray"]["direction"]), wanted)),
+                        *(abs(a - b) for a, b in zip(pick["ray"]["origin"], eye)))
+        assert worst < 2e-6, worst
+        rays, table = out / "rays.txt", out / "crossings.csv"
+        rays.write_text("".join(" ".join(repr(v) for v in pick["ray"]["origin"] + pick["ray"]["direction"]) + "\n" for pick in told))
+        subprocess.run([program, "pick", scene, "--rays", rays, "--all", "--out", table, "-q"], check=True)
+        theirs = [[] for _ in pixels]
+        with open(table, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                theirs[int(row["ray"])].append(row)
+        seen = set()
+        for pixel, pick, rows in zip(pixels, told, theirs):
+            assert len(rows) == len(pick["crossings"]), (pixel, rows, pick)
+            for row, crossing in zip(rows, pick["crossings"]):
+                assert float(row["t"]) == crossing["t"], (pixel, row, crossing)
+                for name in ("object", "primitive", "surface", "material"):
+                    assert row[name] == str(crossing[name]), (pixel, row, crossing)
+                assert (row["entering"] == "1") == crossing["entering"], (pixel, row, crossing)
+                seen.add(row["object"])
+        assert len(seen) >= 20, f"these pixels show {len(seen)} things alone"
 
 
 def keeps_strangers_out(program, scenes, out):
@@ -570,7 +635,7 @@ def figures(program, scenes, out):
         shot("viewer-neuron")
 
 
-CASES = [converges, camera, picks, edits, saves, keeps, asks_about_older_changes, asks_before_changes_are_lost, read_only, keeps_strangers_out, comes_back, two_pages]
+CASES = [converges, camera, picks, picks_everywhere, edits, saves, keeps, asks_about_older_changes, asks_before_changes_are_lost, read_only, keeps_strangers_out, comes_back, two_pages]
 
 
 def main(arguments):
