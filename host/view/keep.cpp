@@ -84,7 +84,8 @@ Keeper::Keeper(const fs::path& scene) : scene_(fs::absolute(scene).lexically_nor
       return;
     }
   }
-  scene_hash_ = std::async(std::launch::async, [file = scene_] { return file_hash(file); }).share();
+  // Of a large file that takes a while, and nobody asks before there is something to keep.
+  scene_hash_ = std::async(std::launch::deferred, [content = content_of(scene_)] { return hash_of(content); }).share();
   base_hash_ = scene_hash_;
   for (const fs::path& place : {journal_, elsewhere_})
     if (!place.empty()) find_left(place);
@@ -170,15 +171,34 @@ void Keeper::forget_old() {
 
 void Keeper::has_read(const std::vector<std::string>& files) {
   if (is_second_) return;
-  std::vector<std::string> names;
+  std::vector<Content> contents;
   std::error_code error;
   for (const std::string& file : files)
-    if (!fs::equivalent(file, base(), error)) names.push_back(fs::absolute(file).lexically_normal().string());
-  others_ = std::async(std::launch::async, [names = std::move(names)] {
+    if (!fs::equivalent(file, base(), error)) contents.push_back(content_of(fs::absolute(file).lexically_normal()));
+  others_ = std::async(std::launch::deferred, [contents = std::move(contents)] {
               Others out;
-              for (const std::string& name : names) out.emplace_back(name, file_hash(name));
+              for (const Content& content : contents) out.emplace_back(content.path, hash_of(content));
               return out;
             }).share();
+}
+
+Keeper::Content Keeper::content_of(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {file.string()};
+  return {file.string(), status.st_size, std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+std::string Keeper::hash_of(const Content& content) {
+  const Content now = content_of(content.path);
+  return now.bytes == content.bytes && now.written == content.written ? file_hash(content.path) : "unknown";
+}
+
+void Keeper::look_at_contents() {
+  if (looking_.valid()) return;
+  looking_ = std::async(std::launch::async, [scene = scene_hash_, others = others_] {
+    scene.wait();
+    if (others.valid()) others.wait();
+  });
 }
 
 void Keeper::has_made(std::size_t count) {

@@ -4,6 +4,7 @@
 // What outlives a session: the scene as it is saved, and changes that are not.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -38,6 +39,9 @@ class Keeper {
   const std::filesystem::path& base() const { return base_is_copy_ ? copy_ : scene_; }
   /// Other files that base() was read from. To be called once, when it has been.
   void has_read(const std::vector<std::string>& files);
+  /// To be called when nobody waits for the processor: from now on the files' contents are looked at, elsewhere. The first change
+  /// does it too, and waits.
+  void look_at_contents();
 
   /// Lines that an earlier session left of base(), oldest first, to be made again before any other.
   const std::vector<std::string>& lines() const { return lines_; }
@@ -91,9 +95,17 @@ class Keeper {
   std::vector<std::string> lines_;
   std::vector<Old> old_;
   Journal file_;
+  struct Content {
+    std::string path;
+    std::int64_t bytes = -1, written = 0;  // when it was read; another time since: the content is not known
+  };
+  static Content content_of(const std::filesystem::path& file);
+  static std::string hash_of(const Content& content);
+
   std::shared_future<std::string> scene_hash_;  // as it was read, or saved last
   std::shared_future<std::string> base_hash_;
   std::shared_future<Others> others_;
+  std::future<void> looking_;
   std::map<std::filesystem::path, std::string> written_;  // by this session
 };
 

@@ -344,6 +344,7 @@ class Viewer::State {
     paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
     samples_ += count;
     publish();
+    if (scale_ == 1) keeping_.pause();
   }
 
   void publish() {

@@ -31,6 +31,10 @@ class Keeping {
   /// Saves with the scene's own camera and film, or with that camera. A message: `saved`, or `save_asks` when the file holds what
   /// would be lost. Throws InputError and RunError.
   nlohmann::ordered_json save(const Save& save, const Look& look, const std::function<bool()>& cancelled);
+  /// A picture is there: the processor may do other things for a moment.
+  void pause() {
+    if (keeper_) keeper_->look_at_contents();
+  }
   /// What the page is told: whether there are unsaved changes, whether they are kept, what was there from an earlier session.
   nlohmann::ordered_json text() const;
   /// The camera and the size that the scene is saved with.
