@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -323,6 +324,21 @@ void note_input(const fs::path& path) {
   if (::stat(path.c_str(), &status) != 0 || !(S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode))) return;
   const std::lock_guard lock(inputs().mutex);
   if (inputs().keepers > 0) inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
+}
+
+void forget_input(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return;
+  const std::lock_guard lock(inputs().mutex);
+  inputs().names.erase({status.st_dev, status.st_ino});
+}
+
+std::vector<std::string> noted_inputs() {
+  const std::lock_guard lock(inputs().mutex);
+  std::vector<std::string> out;
+  for (const auto& [identity, name] : inputs().names) out.push_back(name);
+  std::ranges::sort(out);
+  return out;
 }
 
 NotedInputs::NotedInputs() {

@@ -52,6 +52,10 @@ class NotedInputs {
 
 /// To be called for each file that is read. A file that does not exist is ignored.
 void note_input(const std::filesystem::path& path);
+/// A file that has been read may be replaced from now on.
+void forget_input(const std::filesystem::path& path);
+/// The names of the files that are noted, sorted.
+std::vector<std::string> noted_inputs();
 
 /// The outputs of a run, by option. No two may be the same file, whatever their names and links, nor one that is read.
 class Outputs {

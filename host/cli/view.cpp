@@ -12,9 +12,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
+#include "base/atomic_file.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
@@ -59,7 +61,16 @@ void run_view(const Options& options) {
   if (!options.size.empty()) overrides.size = parse_size(options.size);
   install_interrupt_handlers();
   const Device device = choose_device(options.device, options.encoding);
-  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
+  std::unique_ptr<view::Keeper> keeper;
+  if (!options.read_only && std::filesystem::is_regular_file(options.scene))
+    keeper = std::make_unique<view::Keeper>(options.scene);
+  Scene scene =
+      import_scene(keeper ? keeper->base() : std::filesystem::path(options.scene), FileImageReader(), options.import_options);
+  if (keeper) {
+    scene.source = options.scene;
+    keeper->has_read(noted_inputs());
+    forget_input(options.scene);  // it may be saved over, the files that it names may not
+  }
   apply(overrides, scene);
   LiveScene live(std::move(scene));
   try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true});
@@ -67,16 +78,18 @@ void run_view(const Options& options) {
   view::ViewerOptions viewer_options;
   viewer_options.server.host = options.host;
   viewer_options.server.port = options.port;
-  viewer_options.server.token = view::random_token();
+  viewer_options.server.token = options.port ? view::kept_token(options.host, options.port, options.scene) : view::random_token();
   viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
-  view::Viewer viewer(std::move(live), device, viewer_options);
+  view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));
   SecondTry::driver_works();
   fmt::print("{}\n", viewer.address());
   std::fflush(stdout);
   log::info("{} is at the address above, on {}; Ctrl-C ends it", options.scene, device.info().name);
   if (!options.no_browser) open_browser(viewer.address());
   while (!interrupt_requested()) viewer.wait(0.1);
+  if (const auto kept = viewer.end())
+    log::info("changes that are not saved are kept in {}: the next `caplet view` of this scene has them again", kept->string());
 }
 
 }  // namespace
@@ -100,7 +113,10 @@ void add_view(CLI::App& app) {
   add_encoding(*command, o->encoding);
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer("Whoever knows the address sees the scene; its first part is drawn anew at each start.");
+  command->footer(
+      "Whoever knows the address sees the scene. Its first part is drawn anew at each start; with --port it stays, so that open\n"
+      "pages go on when the program is started again. Unsaved changes are kept beside the scene and are there at the next "
+      "start.");
   command->callback([o] { run_view(*o); });
 }
 

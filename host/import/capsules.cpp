@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -124,11 +123,15 @@ class LineReader {
     while (position_ < line_.size() && is_blank(line_[position_])) ++position_;
   }
 
-  std::string_view take_token(const char* stops) {
+  /// Up to a blank, a comment, a zero byte or one of `stops`.
+  std::string_view take_token(std::string_view stops) {
     const std::size_t begin = position_;
-    while (position_ < line_.size() && !is_blank(line_[position_]) && line_[position_] != '#' &&
-           std::strchr(stops, line_[position_]) == nullptr)
-      ++position_;
+    for (; position_ < line_.size(); ++position_) {
+      const char c = line_[position_];
+      // Most are of numbers; std::strchr for each of them took a third of the time that reading a file does.
+      if ((c >= '0' && c <= '9') || c == '.' || c == '-') continue;
+      if (is_blank(c) || c == '#' || c == '\0' || stops.find(c) != std::string_view::npos) break;
+    }
     return line_.substr(begin, position_ - begin);
   }
 

@@ -25,7 +25,7 @@ class Edges {
   }
   double open() const {
     std::size_t odd = 0;
-    for (const auto& [edge, faces] : faces_) odd += faces % 2;
+    for (const auto& [edge, faces] : faces_) odd += faces % 2 != 0;
     return faces_.empty() ? 1 : static_cast<double>(odd) / static_cast<double>(faces_.size());
   }
 

@@ -237,8 +237,19 @@ Editor::Step Editor::take(const Step& step) {
 void Editor::make(const Change& change, bool goes_on) {
   Step back = take(step_of(change));
   undone_.clear();
-  if (goes_on && !done_.empty() && have_same_places(done_.back(), back)) return;  // what is there takes back both
-  done_.push_back(std::move(back));
+  ++states_;
+  if (goes_on && !done_.empty() && have_same_places(done_.back().step, back))
+    done_.back().state = states_;  // what is there takes back both
+  else
+    done_.push_back({std::move(back), states_});
+}
+
+std::optional<bool> Editor::way_to(std::uint64_t state) const {
+  const auto has = [state](const std::vector<Done>& of) {
+    return std::ranges::any_of(of, [state](const Done& each) { return each.state == state; });
+  };
+  if (state == 0 || has(done_)) return false;
+  return has(undone_) ? std::optional(true) : std::nullopt;
 }
 
 bool Editor::have_same_places(const Step& a, const Step& b) {
@@ -248,9 +259,9 @@ bool Editor::have_same_places(const Step& a, const Step& b) {
          std::ranges::equal(*of_a, *of_b, [](const SceneEdit& x, const SceneEdit& y) { return place_of(x) == place_of(y); });
 }
 
-bool Editor::go(std::vector<Step>& from, std::vector<Step>& to) {
+bool Editor::go(std::vector<Done>& from, std::vector<Done>& to) {
   if (from.empty()) return false;
-  Step back = take(from.back());
+  Done back{take(from.back().step), from.back().state};
   from.pop_back();
   to.push_back(std::move(back));
   return true;

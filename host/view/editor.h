@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -26,6 +27,11 @@ class Editor {
   /// False when there is nothing to take back, or to make again.
   bool undo() { return go(done_, undone_); }
   bool redo() { return go(undone_, done_); }
+  /// Names the state that the scene is in: 0 in the beginning, and again the same number when what was changed since is taken
+  /// back.
+  std::uint64_t state() const { return done_.empty() ? 0 : done_.back().state; }
+  /// How that state is got to: by undo (false), by redo (true), or not any more.
+  std::optional<bool> way_to(std::uint64_t state) const;
   bool can_undo() const { return !done_.empty(); }
   bool can_redo() const { return !undone_.empty(); }
 
@@ -42,14 +48,19 @@ class Editor {
   };
   using Step = std::variant<InPlace, Rearrange>;
 
+  struct Done {
+    Step step;                // what takes back, or makes again
+    std::uint64_t state = 0;  // after the change
+  };
+
   Step step_of(const Change& change) const;
   Step take(const Step& step);
   static bool have_same_places(const Step& a, const Step& b);
-  bool go(std::vector<Step>& from, std::vector<Step>& to);
+  bool go(std::vector<Done>& from, std::vector<Done>& to);
 
   LiveScene& live_;
-  std::vector<Step> done_, undone_;  // what takes back, and what makes again
-  std::uint64_t rearrangements_ = 0, renumberings_ = 0;
+  std::vector<Done> done_, undone_;
+  std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0;
 };
 
 /// A shape of the world by its number. Throws InputError when it is none, or an instance.

@@ -124,6 +124,19 @@ Change change(const json& of) {
   refuse("what", "is none of move, reshape, paint, duplicate and delete");
 }
 
+Save save(const json& of) {
+  Save out;
+  const json& name = field(of, "name");
+  if (!name.is_null()) {
+    if (!name.is_string()) refuse("name", "is no text");
+    out.name = name.get<std::string>();
+    if (out.name->size() > longest_name) refuse("name", fmt::format("is longer than {} bytes", longest_name));
+  }
+  out.camera = truth(of, "camera");
+  out.replace = truth(of, "replace");
+  return out;
+}
+
 }  // namespace
 
 Message parse_message(std::string_view text) {
@@ -149,7 +162,10 @@ Message parse_message(std::string_view text) {
     return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"), id(message, "primitive")};
   if (type == "edit") return Edit{change(message), truth(message, "goes_on")};
   if (type == "undo") return Undo{truth(message, "again")};
-  refuse("type", "is none of look, seen, ask, snapshot, describe, edit and undo");
+  if (type == "save") return save(message);
+  if (type == "discard") return Discard{};
+  if (type == "kept") return Kept{truth(message, "restore")};
+  refuse("type", "is none of look, seen, ask, snapshot, describe, edit, undo, save, discard and kept");
 }
 
 }  // namespace caplet::view

@@ -78,7 +78,23 @@ struct Undo {
   bool again = false;
 };
 
-using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Edit, Undo>;
+/// The scene as pbrt text, in a file beside the scene's.
+struct Save {
+  std::optional<std::string> name;  // none: the one that it was saved to last, or the scene's own
+  bool camera = false;              // with the camera as it now is; else the scene keeps its own
+  bool replace = false;             // also what the session has not written itself
+};
+/// Takes all that is not saved back.
+struct Discard {};
+/// What to do with changes that an earlier session kept of another content of the scene's file.
+struct Kept {
+  bool restore = false;  // make them again, as far as they can be; else they are forgotten
+};
+
+using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Edit, Undo, Save, Discard, Kept>;
+
+/// Longest name of a file, in bytes.
+inline constexpr std::size_t longest_name = 200;
 
 /// Largest picture that the page may ask for, in pixels along a side.
 inline constexpr int most_page_pixels = 4096;

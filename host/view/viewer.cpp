@@ -25,6 +25,7 @@
 #include "render/query.h"
 #include "render/session.h"
 #include "report/pick_report.h"
+#include "view/detail/keeping.h"
 #include "view/detail/scene_text.h"
 #include "view/detail/snapshot.h"
 #include "view/editor.h"
@@ -54,13 +55,9 @@ std::string error_text(const std::string& what) { return nlohmann::ordered_json{
 
 class Viewer::State {
  public:
-  State(LiveScene scene, const Device& device, const ViewerOptions& options)
-      : options_(options),
-        live_(std::move(scene)),
-        editor_(live_),
-        device_(device),
-        full_(look_of(live_.scene())),
-        wanted_(full_) {
+  State(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper)
+      : options_(options), live_(std::move(scene)), editor_(live_), device_(device), keeping_(live_, editor_, std::move(keeper)) {
+    full_ = wanted_ = look_of(live_.scene());
     session_.emplace(live_.flat(), live_.view(), std::vector<Device>{device}, session_options());
     (void)live_.take_changes();
     query_.emplace(*session_->scene_on(0));
@@ -75,19 +72,25 @@ class Viewer::State {
     hello_ = scene_text(live_.scene(), device_.info().name, target());
     hello_["home"] = camera_text(full_);
     hello_["read_only"] = options.read_only;
-    hello_["can_undo"] = hello_["can_redo"] = false;
+    hello_["can_undo"] = editor_.can_undo();
+    hello_["can_redo"] = editor_.can_redo();
+    hello_["session"] = random_token();
+    hello_["keep"] = keeping_.text();
     server_.emplace(options.server, std::move(events));
     thread_ = std::thread([this] { run(); });
   }
 
-  ~State() {
+  ~State() { (void)end(); }
+
+  std::optional<std::filesystem::path> end() {
     {
       const std::lock_guard lock(mutex_);
       ended_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
     server_.reset();
+    return keeping_.end();
   }
 
   std::string address() const { return server_->address(); }
@@ -100,17 +103,17 @@ class Viewer::State {
 
  private:
   using Question = std::variant<Ask, Describe>;
+  struct Wish {
+    ClientId from = 0;
+    Message message;
+    std::string text;
+  };
   struct Client {
     bool seen = true;
     std::shared_ptr<const Picture> shown;
     std::deque<Question> asked;
     bool wants_snapshot = false;
   };
-
-  static Look look_of(const Scene& scene) {
-    return {scene.film.width, scene.film.height,        scene.camera.world_from_camera,
-            scene.camera.fov, scene.camera.lens_radius, scene.camera.focal_distance};
-  }
 
   SessionOptions session_options() const {
     SessionOptions out;
@@ -168,10 +171,7 @@ class Viewer::State {
       } else {
         if (options_.read_only) throw InputError("this scene is shown read-only");
         if (edits_.size() >= most_edits) throw InputError("too many changes at once");
-        if (const Edit* edit = std::get_if<Edit>(&message))
-          edits_.emplace_back(id, *edit);
-        else
-          edits_.emplace_back(id, std::get<Undo>(message));
+        edits_.push_back({id, message, text});
       }
     }
     changed_.notify_all();
@@ -246,40 +246,53 @@ class Viewer::State {
     return wanted_;
   }
 
-  /// Makes the changes that wait; whether the scene is another one now.
+  /// Makes the changes that wait, and saves; whether the scene is another one now.
   bool edit_all() {
-    std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits;
+    std::deque<Wish> wishes;
     {
       const std::lock_guard lock(mutex_);
-      edits.swap(edits_);
+      wishes.swap(edits_);
     }
-    if (edits.empty()) return false;
+    if (wishes.empty()) return false;
     const std::uint64_t before = editor_.rearrangements(), numbers = editor_.renumberings();
     bool edited = false;
-    for (const auto& [id, what] : edits) try {
-        if (const Edit* edit = std::get_if<Edit>(&what)) {
-          editor_.make(edit->change, edit->goes_on);
-          edited = true;
-        } else {
-          edited = (std::get<Undo>(what).again ? editor_.redo() : editor_.undo()) || edited;
-        }
-      } catch (const InputError& error) {
-        server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
+    for (const Wish& wish : wishes) try {
+        if (const Save* save = std::get_if<Save>(&wish.message))
+          tell(keeping_.save(*save, full_, [this] { return is_ending(); }), wish.from);
+        else
+          edited = keeping_.make(wish.message, wish.text) || edited;
+      } catch (const std::exception& error) {  // what is wrong with it, or a file that cannot be written
+        server_->send(wish.from, std::make_shared<const std::string>(error_text(error.what())));
       }
     nlohmann::ordered_json told{{"type", "edited"},
                                 {"can_undo", editor_.can_undo()},
                                 {"can_redo", editor_.can_redo()},
-                                {"renumbered", editor_.renumberings() != numbers}};
+                                {"renumbered", editor_.renumberings() != numbers},
+                                {"keep", keeping_.text()}};
     if (editor_.rearrangements() != before) told["scene"] = scene_text(live_.scene(), device_.info().name, target());
     {
       const std::lock_guard lock(mutex_);
-      hello_["can_undo"] = editor_.can_undo();
-      hello_["can_redo"] = editor_.can_redo();
+      for (const char* name : {"can_undo", "can_redo", "keep"}) hello_[name] = told[name];
       if (told.contains("scene"))
         for (const auto& [name, value] : told["scene"].items()) hello_[name] = value;
     }
     server_->send_to_all(text_of(told));
     return edited;
+  }
+
+  /// What came of saving: a question to the one who asked, else to all.
+  void tell(const nlohmann::ordered_json& told, ClientId asked) {
+    if (told["type"] != "saved") return server_->send(asked, text_of(told));
+    {
+      const std::lock_guard lock(mutex_);
+      hello_["home"] = camera_text(keeping_.own_look());
+    }
+    server_->send_to_all(text_of(told));
+  }
+
+  bool is_ending() {
+    const std::lock_guard lock(mutex_);
+    return ended_;
   }
 
   bool is_superseded() {
@@ -331,6 +344,7 @@ class Viewer::State {
     paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
     samples_ += count;
     publish();
+    if (scale_ == 1) keeping_.pause();
   }
 
   void publish() {
@@ -414,6 +428,7 @@ class Viewer::State {
   LiveScene live_;
   Editor editor_;
   Device device_;
+  Keeping keeping_;
   std::optional<Session> session_;
   std::optional<Query> query_;
   std::optional<Server> server_;
@@ -429,7 +444,7 @@ class Viewer::State {
   std::condition_variable changed_, failed_;
   Look wanted_;
   std::uint64_t wanted_number_ = 1;
-  std::deque<std::pair<ClientId, std::variant<Edit, Undo>>> edits_;
+  std::deque<Wish> edits_;
   std::map<ClientId, Client> clients_;
   std::shared_ptr<const Picture> picture_;
   nlohmann::ordered_json hello_;
@@ -439,10 +454,11 @@ class Viewer::State {
   std::thread thread_;
 };
 
-Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& options)
-    : state_(std::make_unique<State>(std::move(scene), device, options)) {}
+Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper)
+    : state_(std::make_unique<State>(std::move(scene), device, options, std::move(keeper))) {}
 Viewer::~Viewer() = default;
 std::string Viewer::address() const { return state_->address(); }
 void Viewer::wait(double seconds) { state_->wait(seconds); }
+std::optional<std::filesystem::path> Viewer::end() { return state_->end(); }
 
 }  // namespace caplet::view

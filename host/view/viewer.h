@@ -4,11 +4,14 @@
 // `caplet view`: a scene, live, for the pages of a server.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "device/device.h"
 #include "lower/live_scene.h"
+#include "view/keep.h"
 #include "view/server.h"
 
 namespace caplet::view {
@@ -26,8 +29,9 @@ struct ViewerOptions {
 /// it is done or nobody sees it. What pixels show is answered between batches of paths. A new view ends the picture under way.
 class Viewer {
  public:
-  /// Throws RunError when the device or the address is of no use.
-  Viewer(LiveScene scene, const Device& device, const ViewerOptions& options);
+  /// `keeper`: of the scene's file, from whose base() the scene is; null: nothing is saved or kept. Changes that it has of an
+  /// earlier session are made again. Throws RunError when the device or the address is of no use.
+  Viewer(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
@@ -35,6 +39,8 @@ class Viewer {
   std::string address() const;
   /// Waits a little, and throws what ended the rendering, if anything has.
   void wait(double seconds);
+  /// Ends the session. Where changes stay that are not saved: the file in which they are kept.
+  std::optional<std::filesystem::path> end();
 
  private:
   class State;

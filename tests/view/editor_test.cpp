@@ -12,61 +12,16 @@
 #include <random>
 
 #include "base/error.h"
-#include "import/import.h"
-#include "lower/lower.h"
-#include "render/renderer.h"
-#include "render_scene.h"
-#include "support/test_device.h"
+#include "live_pictures.h"
 
 namespace caplet::view {
 namespace {
 
+using test::fresh_picture_of;
+using test::picture_of;
+using test::some_scene;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-constexpr const char* text = R"(
-Integrator "path" "integer maxdepth" [ 3 ]
-LookAt 5 -7 4  0 0 0.3  0 0 1
-Camera "perspective" "float fov" [ 40 ]
-Film "rgb" "integer xresolution" [ 40 ] "integer yresolution" [ 30 ]
-WorldBegin
-LightSource "infinite" "rgb L" [ 0.2 0.25 0.3 ]
-LightSource "point" "rgb I" [ 6 5 4 ] "point3 from" [ 3 -3 5 ]
-MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [ 0.7 0.1 0.1 ]
-MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" [ "metal-Au-eta" ] "spectrum k" [ "metal-Au-k" ] "float roughness" [ 0.2 ]
-MakeNamedMaterial "glass" "string type" "dielectric"
-NamedMaterial "red"
-Shape "disk" "float radius" [ 8 ] "float height" [ -1 ]
-NamedMaterial "gold"
-Shape "sphere" "float radius" [ 0.6 ]
-Shape "box" "point3 p0" [ 1 1 0 ] "point3 p1" [ 2 2 1 ]
-Translate -1 0 0
-Shape "capsule" "point3 p0" [ 0 -1 0 ] "point3 p1" [ 0 1 0.5 ] "float radius" [ 0.3 ]
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [ 8 8 8 ]
-  Shape "cylinder" "float radius" [ 0.2 ] "float zmin" [ 1 ] "float zmax" [ 2 ]
-AttributeEnd
-ObjectBegin "twig"
-  NamedMaterial "glass"
-  Shape "capsule" "point3 p0" [ 0 0 0 ] "point3 p1" [ 0 0 1 ] "float radius" [ 0.2 ]
-ObjectEnd
-ObjectInstance "twig"
-Translate 0.5 -2 0
-ObjectInstance "twig"
-)";
-
-Scene some_scene() { return test::scene_of_text(text); }
-
-std::vector<std::uint64_t> picture_of(const FlatScene& flat, const FlatView& view) {
-  DeviceScene scene(test::test_device(), flat);
-  Renderer renderer(scene, view);
-  renderer.pass(renderer.layout().window, 0, 2, {});
-  const Film film = renderer.film().read();
-  return {film.words().begin(), film.words().end()};
-}
-
-std::vector<std::uint64_t> picture_of(const LiveScene& live) { return picture_of(live.flat(), live.view()); }
-std::vector<std::uint64_t> fresh_picture_of(const Scene& scene) { return picture_of(lower(scene), lower_view(scene)); }
 
 TEST(Editor, MovesShapesAndInstances) {
   LiveScene live(some_scene());

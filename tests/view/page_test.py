@@ -6,12 +6,16 @@
 usage: page_test.py PROGRAM SCENES FOLDER [NAME...]   pictures of the page go to FOLDER. Exit status 77: no browser here.
 """
 import contextlib
+import csv
 import http.client
 import json
+import math
 import pathlib
+import random
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -20,6 +24,7 @@ import urllib.parse
 
 try:
     from selenium import webdriver
+    from selenium.common.exceptions import NoAlertPresentException
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
@@ -95,7 +100,7 @@ class Page:
     def apart(self, other, count):
         """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
         samples, *now = self.driver.execute_script(
-            "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+            "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples || 0, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
         return mean_difference(other, now) if samples >= count else -1
 
     def script(self, text, *arguments):
@@ -105,6 +110,42 @@ class Page:
         """To a pixel of the picture, from the top left."""
         box = self.find("stage").rect
         return ActionChains(self.driver, duration=20).move_to_element_with_offset(self.find("stage"), x - box["width"] / 2, y - box["height"] / 2)
+
+    def choose(self, name):
+        """What has that name in the scene's tree, and waits until the page knows what it is."""
+        item = next(i for i in self.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+        self.script("arguments[0].scrollIntoView({block: 'center'})", item)
+        item.click()
+        self.until(f"what {name} is", lambda: self.find("edit").is_displayed() and len(self.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
+
+    def move(self, words):
+        edits = self.edits()
+        field = self.find("move")
+        field.clear()
+        field.send_keys(words, Keys.TAB)
+        self.until("the program's word", lambda: self.edits() > edits)
+
+    def edits(self):
+        return int(self.find("stage").get_attribute("data-edits") or 0)
+
+    def is_unsaved(self):
+        return self.driver.title.startswith("•")
+
+    def answer(self, yes):
+        """A question that the page asks; its words."""
+        alert = self.until("a question", lambda: self.alert())
+        text = alert.text
+        alert.accept() if yes else alert.dismiss()
+        return text
+
+    def alert(self):
+        try:
+            return self.driver.switch_to.alert
+        except NoAlertPresentException:
+            return None
+
+    def press_save(self):
+        ActionChains(self.driver).key_down(Keys.CONTROL).send_keys("s").key_up(Keys.CONTROL).perform()
 
     def errors(self):
         return [line for line in self.driver.get_log("browser") if line["level"] == "SEVERE"]
@@ -122,6 +163,19 @@ def page(address):
         assert not errors, errors
     finally:
         out.driver.quit()
+
+
+def editable(scene, out):
+    """A copy in a folder of its own: what is kept of unsaved changes stands beside it."""
+    folder = out / "scenes" / str(time.monotonic_ns())
+    folder.mkdir(parents=True)
+    return pathlib.Path(shutil.copy(scene, folder))
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
 
 
 def status_of(address, **headers):
@@ -225,6 +279,68 @@ def picks(program, scenes, out):
         shown.until("one row", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")) == 1)
 
 
+ASK = """const [pixels, done] = arguments, told = [];
+const socket = new WebSocket(location.href.replace(/^http/, 'ws') + 'socket');
+let next = 0;
+const ask = () => { if (next < pixels.length) socket.send(JSON.stringify({ type: 'ask', number: next, x: pixels[next][0], y: pixels[next++][1], all: true, reference: false })); };
+socket.onmessage = ({ data }) => {
+  if (typeof data !== 'string') return;
+  const message = JSON.parse(data);
+  if (message.type !== 'answer') return;
+  told.push([message.number, message.pick]);
+  if (told.length === pixels.length) { socket.close(); done(told); } else setTimeout(ask, 8);  // below the rate that is allowed
+};
+socket.onopen = () => { for (let i = 0; i < 4; ++i) ask(); };"""
+
+
+def picks_everywhere(program, scenes, out):
+    """At 500 pixels of the gallery: the rays are a pinhole camera's, worked out here; what they cross is what `caplet pick` says."""
+    scene = scenes / "gallery.pbrt"
+    eye, target, up, fov, count = (0, -13, 6.4), (0, -0.3, 0.5), (0, 0, 1), math.radians(25), 500
+
+    def unit(v):
+        return [a / math.hypot(*v) for a in v]
+
+    def cross(a, b):
+        return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+    forward = unit([t - e for t, e in zip(target, eye)])
+    right = unit(cross(forward, up))  # the file mirrors x, as pbrt's own frame is left-handed
+    above = cross(right, forward)
+    with viewer(program, scene, "--spp", "1", "--read-only") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        width, height, _ = shown.pixels()
+        draw = random.Random(15)
+        pixels = [(draw.randrange(width), draw.randrange(height)) for _ in range(count)]
+        shown.driver.set_script_timeout(120)
+        told = [pick for _, pick in sorted(shown.driver.execute_async_script(ASK, pixels))]
+        per_pixel = 2 * math.tan(fov / 2) / min(width, height)
+        worst = 0
+        for (x, y), pick in zip(pixels, told):
+            wanted = unit([f + per_pixel * ((x + 0.5 - width / 2) * r - (y + 0.5 - height / 2) * a) for f, r, a in zip(forward, right, above)])
+            assert pick["pixel"] == [x, y]
+            worst = max(worst, *(abs(a - b) for a, b in zip(unit(pick["ray"]["direction"]), wanted)),
+                        *(abs(a - b) for a, b in zip(pick["ray"]["origin"], eye)))
+        assert worst < 2e-6, worst
+        rays, table = out / "rays.txt", out / "crossings.csv"
+        rays.write_text("".join(" ".join(repr(v) for v in pick["ray"]["origin"] + pick["ray"]["direction"]) + "\n" for pick in told))
+        subprocess.run([program, "pick", scene, "--rays", rays, "--all", "--out", table, "-q"], check=True)
+        theirs = [[] for _ in pixels]
+        with open(table, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                theirs[int(row["ray"])].append(row)
+        seen = set()
+        for pixel, pick, rows in zip(pixels, told, theirs):
+            assert len(rows) == len(pick["crossings"]), (pixel, rows, pick)
+            for row, crossing in zip(rows, pick["crossings"]):
+                assert float(row["t"]) == crossing["t"], (pixel, row, crossing)
+                for name in ("object", "primitive", "surface", "material"):
+                    assert row[name] == str(crossing[name]), (pixel, row, crossing)
+                assert (row["entering"] == "1") == crossing["entering"], (pixel, row, crossing)
+                seen.add(row["object"])
+        assert len(seen) >= 20, f"these pixels show {len(seen)} things alone"
+
+
 def keeps_strangers_out(program, scenes, out):
     """Without the token, or from another site, nothing is told."""
     with viewer(program, scenes / "gallery.pbrt", "--spp", "1") as served:
@@ -253,9 +369,10 @@ def comes_back(program, scenes, out):
 
 def edits(program, scenes, out):
     """Select, move, paint, paint a surface, duplicate, delete, each seen; all taken back, the first picture is there to the bit."""
-    with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as shown:
+    with viewer(program, editable(scenes / "gallery.pbrt", out), "--spp", "2") as served, page(served.address) as shown:
         shown.until_samples(2)
         first = before = shown.pixels()
+        choose = shown.choose
         count = 0
 
         def changed(what):
@@ -264,12 +381,6 @@ def edits(program, scenes, out):
             shown.until(f"{what}: the program's word", lambda: int(shown.find("stage").get_attribute("data-edits") or 0) >= count)
             shown.until(f"{what}: another picture", lambda: shown.apart(before, 2) > 0)
             before = shown.pixels()
-
-        def choose(name):
-            item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
-            shown.script("arguments[0].scrollIntoView()", item)
-            item.click()
-            shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and len(shown.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
 
         def typed(name, words):
             field = shown.find(name)
@@ -343,6 +454,156 @@ def two_pages(program, scenes, out):
         assert mean_difference(one.pixels(), two.pixels()) == 0
 
 
+def saves(program, scenes, out):
+    """Ctrl S asks before words by hand are lost, says what it wrote, and the file gives the picture that is shown, to the bit."""
+    scene = editable(scenes / "gallery.pbrt", out)
+    by_hand = scene.read_bytes()
+    with viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
+        shown.until_samples(2)
+        assert not shown.is_unsaved() and not shown.find("discard").is_enabled()
+        shown.choose("capsule 5")
+        before = shown.pixels()
+        shown.move("0 -1 0.5")
+        shown.until("the mark of unsaved changes", shown.is_unsaved)
+        shown.press_save()
+        assert "comments" in shown.answer(False)
+        assert scene.read_bytes() == by_hand and shown.is_unsaved()
+        field = shown.find("save_name")
+        for name in ("../other", "/tmp/other", ".other"):
+            field.clear()
+            field.send_keys(name, Keys.ENTER)
+            shown.until(f"a refusal of {name}", lambda: shown.find("save_name").get_attribute("aria-invalid"))
+            assert "plain name" in shown.find("save_said").text, shown.find("save_said").text
+            shown.script("document.getElementById('save_name').dispatchEvent(new Event('input'))")
+        assert sorted(f.name for f in scene.parent.iterdir()) == [".gallery.pbrt.unsaved", "gallery.pbrt"]
+        field.clear()
+        field.send_keys("moved", Keys.ENTER)
+        shown.until("what was written", lambda: shown.find("save_said").text.endswith("moved.pbrt"))
+        shown.until("no mark", lambda: not shown.is_unsaved())
+        assert sorted(f.name for f in scene.parent.iterdir()) == ["gallery.pbrt", "moved.pbrt"]
+        shown.move("0 0 0.25")
+        field = shown.find("save_name")
+        field.clear()
+        field.send_keys("gallery")
+        shown.find("save").click()
+        shown.answer(True)
+        shown.until("what was written", lambda: shown.find("save_said").text.endswith("gallery.pbrt"))
+        shown.until("another picture", lambda: shown.apart(before, 2) > 0)
+        last = shown.pixels()
+        shown.script("document.querySelector('#keeping').scrollIntoView()")
+        shown.picture(out / "saved.png")
+        with page(served.address) as other:
+            assert not other.is_unsaved()
+    assert b"Caplet" in scene.read_bytes()[:60]
+    with viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
+        shown.until("the same picture", lambda: shown.apart(last, 2) == 0)
+        assert served.end() == 0
+        shown.driver.get_log("browser")
+    assert sorted(f.name for f in scene.parent.iterdir()) == ["gallery.pbrt", "moved.pbrt"]
+
+
+def keeps(program, scenes, out):
+    """Unsaved changes are there after a reload of the page, after the program ended, and after it was killed; undo still works."""
+    scene, port = editable(scenes / "gallery.pbrt", out), free_port()
+    options = ("--spp", "2", "--port", str(port))
+    with contextlib.ExitStack() as stack:
+        served = stack.enter_context(viewer(program, scene, *options))
+        shown = stack.enter_context(page(served.address))
+        shown.until_samples(2)
+        first = shown.pixels()
+        shown.choose("capsule 5")
+        shown.move("0 -1 0.5")
+        shown.choose("capsule 7")
+        shown.move("0 0 1")
+        shown.until("another picture", lambda: shown.apart(first, 2) > 0)
+        moved = shown.pixels()
+        shown.driver.refresh()
+        shown.until("the changes after a reload", lambda: shown.is_unsaved() and shown.apart(moved, 2) == 0)
+        for kill in (False, True):
+            # A page that stays open goes on with the next program at its address, and looks where it looked.
+            shown.find("stage").send_keys("+")
+            shown.until("the mark of a picture", lambda: shown.apart(moved, 2) > 0)
+            near = shown.pixels()
+            address = served.address
+            if kill:
+                served.process.kill()
+                served.process.wait()
+            else:
+                assert served.end() == 0
+            shown.until("a word about it", lambda: shown.find("lost").is_displayed() and "lost" in shown.find("lost").text)
+            if kill:
+                shown.picture(out / "lost.png")
+            served = stack.enter_context(viewer(program, scene, *options))
+            assert served.address == address
+            shown.until("the connection", lambda: not shown.find("lost").is_displayed())
+            shown.until("the changes after a restart", lambda: shown.is_unsaved() and shown.apart(near, 2) == 0)
+            assert "earlier session (2)" in shown.find("kept_note").text, shown.find("kept_note").text
+            if not kill:
+                shown.picture(out / "kept.png")
+                shown.find("close_note").click()
+                assert not shown.find("kept_note").is_displayed()
+            shown.find("stage").send_keys("z")
+            shown.until("the view before", lambda: shown.apart(moved, 2) == 0)
+            shown.driver.get_log("browser")  # that it could not connect
+        shown.find("back").click()
+        shown.until("one change less", lambda: shown.apart(moved, 2) > 0)
+        shown.find("back").click()
+        shown.until("the first picture", lambda: shown.apart(first, 2) == 0)
+        shown.until("no mark", lambda: not shown.is_unsaved())
+        shown.find("again").click()
+        shown.until("the mark again", shown.is_unsaved)
+        shown.find("discard").click()
+        shown.answer(True)
+        shown.until("the first picture", lambda: shown.apart(first, 2) == 0)
+        assert [f.name for f in scene.parent.iterdir()] == ["gallery.pbrt"]
+
+
+def asks_about_older_changes(program, scenes, out):
+    """Changes of a file that is another one since are made again, or forgotten, when one says so."""
+    scene = editable(scenes / "gallery.pbrt", out)
+    with viewer(program, scene, "--spp", "1") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        shown.choose("capsule 5")
+        shown.move("0 -1 0.5")
+        served.process.kill()
+        served.process.wait()
+        shown.until("a word about it", lambda: shown.find("lost").is_displayed())
+        shown.driver.get_log("browser")
+    with open(scene, "a", encoding="utf-8") as file:
+        file.write("# another one\n")
+    with viewer(program, scene, "--spp", "1") as served, page(served.address) as shown:
+        shown.until_samples(1)
+        assert not shown.is_unsaved() and "another one" in shown.find("kept_note").text
+        shown.picture(out / "older.png")
+        shown.find("forget_old").click()
+        shown.answer(False)
+        assert shown.find("kept_note").is_displayed()
+        shown.find("restore_old").click()
+        shown.until("the change", shown.is_unsaved)
+        shown.until("no question more", lambda: not shown.find("kept_note").is_displayed())
+        assert shown.find("back").is_enabled()
+
+
+def asks_before_changes_are_lost(program, scenes, out):
+    """Where changes cannot be kept, the page says so and does not go without a question; where they are, it does."""
+    scene = editable(scenes / "gallery.pbrt", out)
+    with viewer(program, scene, "--spp", "1") as served, viewer(program, scene, "--spp", "1") as second:
+        for address, is_kept in ((served.address, True), (second.address, False)):
+            with page(address) as shown:
+                shown.until_samples(1)
+                shown.choose("capsule 5")
+                shown.move("0 -1 0.5")
+                shown.until("the mark", shown.is_unsaved)
+                assert ("end with the program" in shown.find("save_said").text) != is_kept, shown.find("save_said").text
+                # WebDriver answers the question itself, so the page alone is asked.
+                asks = shown.script("const e = new Event('beforeunload', { cancelable: true }); window.dispatchEvent(e); return e.defaultPrevented")
+                assert asks != is_kept
+                shown.find("discard").click()
+                shown.answer(True)
+                shown.until("no mark", lambda: not shown.is_unsaved())
+                assert not shown.script("const e = new Event('beforeunload', { cancelable: true }); window.dispatchEvent(e); return e.defaultPrevented")
+
+
 def figures(program, scenes, out):
     """The pictures of docs/viewer.md."""
     def shot(name):
@@ -374,7 +635,7 @@ def figures(program, scenes, out):
         shot("viewer-neuron")
 
 
-CASES = [converges, camera, picks, edits, read_only, keeps_strangers_out, comes_back, two_pages]
+CASES = [converges, camera, picks, picks_everywhere, edits, saves, keeps, asks_about_older_changes, asks_before_changes_are_lost, read_only, keeps_strangers_out, comes_back, two_pages]
 
 
 def main(arguments):

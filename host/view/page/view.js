@@ -3,6 +3,7 @@
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
 import { Edits } from "./edit.js";
 import { inspect } from "./inspector.js";
+import { Keep } from "./keep.js";
 import { Picture } from "./picture.js";
 import { texts } from "./texts.js";
 
@@ -39,17 +40,25 @@ const edits = new Edits({
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
 });
 
+const keep = new Keep({
+  say, stage, tools: $("tools"), aside: document.querySelector("aside"),
+  title: (unsaved) => { if (scene) document.title = `${unsaved ? "• " : ""}${scene.name} - Caplet`; $("name").textContent = `${unsaved ? "• " : ""}${scene?.name ?? ""}`; },
+});
+
+let lost_since = 0;
 function connect() {
   const opened = new WebSocket(location.href.replace(/^http/, "ws").replace(/[^/]*$/, "") + "socket");
   opened.binaryType = "arraybuffer";
   let turn = Promise.resolve(), came = false;
-  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; waiting.clear(); under_asked = false; say({ type: "seen", seen: !document.hidden }); };
+  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; lost_since = 0; waiting.clear(); under_asked = edits.busy = false; say({ type: "seen", seen: !document.hidden }); };
   opened.onmessage = ({ data }) => {
     turn = turn.then(() => typeof data === "string" ? told(JSON.parse(data)) : binary(data)).catch((error) => console.error(error));
   };
   opened.onclose = () => {
     socket = null;
-    $("lost").textContent = came ? texts.lost : texts.closed;
+    if (came || !lost_since) lost_since = performance.now();
+    // A restart takes a while.
+    $("lost").textContent = performance.now() - lost_since < 20000 && scene ? texts.lost : texts.closed;
     $("lost").hidden = false;
     setTimeout(connect, 1000);
   };
@@ -58,7 +67,9 @@ function connect() {
 function told(message) {
   if (message.type === "scene") return begin(message);
   if (message.type === "looked") return void (camera && camera_of(message));
-  if (message.type === "error") return void ($("state").textContent = message.text);
+  if (message.type === "error") { keep.failed(message.text); return void ($("state").textContent = message.text); }
+  if (message.type === "saved") return keep.saved(message);
+  if (message.type === "save_asks") return keep.asks(message);
   if (message.type === "edited") return edited(message);
   const done = waiting.get(message.number);
   waiting.delete(message.number);
@@ -79,6 +90,7 @@ function save(blob, name) {
 function edited(message) {
   $("back").disabled = !message.can_undo;
   $("again").disabled = !message.can_redo;
+  keep.told(message.keep);
   if (message.scene) {
     const { camera: _, ...now } = message.scene;
     Object.assign(scene, now);
@@ -90,15 +102,14 @@ function edited(message) {
 }
 
 function begin(message) {
-  const again = scene?.name === message.name;
+  const again = scene?.name === message.name, restarted = again && scene.session !== message.session;
   scene = message;
-  document.title = `${scene.name} - Caplet`;
-  $("name").textContent = scene.name;
   const [low, high] = scene.bounds;
   center = mul(add(low, high), 0.5);
   radius = length(sub(high, low)) / 2 || 1;
   if (again && camera) {
-    camera_of(scene.camera);
+    if (restarted) { choose(null, false); looked = ""; }  // it is shown what this page looks at
+    else camera_of(scene.camera);
   } else {
     camera = new Camera(scene.camera);
     // What turns least in the picture when one orbits: the axis of the world that is nearest to the picture's up.
@@ -113,6 +124,7 @@ function begin(message) {
   $("material").replaceChildren(new Option(texts.mixed, ""), ...scene.materials.map((name, i) => new Option(name, String(i))));
   $("back").disabled = !scene.can_undo;
   $("again").disabled = !scene.can_redo;
+  keep.begin(scene);
   fill_tree();
   look();
   draw();

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/detail/keeping.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "view/detail/scene_text.h"
+
+namespace caplet::view {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* undo_line = R"({"type":"undo","again":false})";
+constexpr const char* redo_line = R"({"type":"undo","again":true})";
+
+/// In one line.
+std::string line_of(const std::string& text) { return Json::parse(text).dump(); }
+
+/// That the scene was saved there, and no change.
+bool is_mark(const std::string& line) {
+  const Json text = Json::parse(line, nullptr, false);
+  return text.is_object() && text.value("type", "") == "saved";
+}
+
+}  // namespace
+
+Look look_of(const Scene& scene) {
+  return {scene.film.width, scene.film.height,        scene.camera.world_from_camera,
+          scene.camera.fov, scene.camera.lens_radius, scene.camera.focal_distance};
+}
+
+Keeping::Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper)
+    : live_(live), editor_(editor), keeper_(std::move(keeper)), own_(look_of(live.scene())), crop_(live.scene().film.crop) {
+  if (!keeper_ || keeper_->lines().empty()) return;
+  const std::size_t made = make_lines(keeper_->lines()), all = keeper_->lines().size();
+  keeper_->has_made(made);
+  if (made < all) log::warn("{} of {} kept changes cannot be made again, and are put aside", all - made, all);
+  restored_ = has_unsaved() ? made : 0;
+  if (restored_ > 0)
+    log::info("unsaved changes of an earlier session are made again: {} from {}", made, keeper_->journal().string());
+}
+
+bool Keeping::change(const Message& message) {
+  if (const Edit* edit = std::get_if<Edit>(&message)) {
+    editor_.make(edit->change, edit->goes_on);
+    return true;
+  }
+  if (const Undo* undo = std::get_if<Undo>(&message)) return undo->again ? editor_.redo() : editor_.undo();
+  return false;
+}
+
+/// Whether it could be made.
+bool Keeping::make_line(const std::string& line) try {
+  if (!is_mark(line)) return change(parse_message(line));
+  const Json text = Json::parse(line);
+  saved_ = editor_.state();
+  if (const auto camera = text.find("camera"); camera != text.end()) {
+    Json look = *camera;
+    look["type"] = "look";
+    look["width"] = look["height"] = 1;
+    const Look before = std::exchange(own_, std::get<Look>(parse_message(look.dump())));
+    own_.width = before.width;
+    own_.height = before.height;
+    own_is_new_ = true;
+  }
+  return true;
+} catch (const InputError&) {
+  return false;
+} catch (const Json::exception&) {
+  return false;
+}
+
+std::size_t Keeping::make_lines(const std::vector<std::string>& lines) {
+  std::size_t made = 0;
+  while (made < lines.size() && make_line(lines[made])) ++made;
+  return made;
+}
+
+bool Keeping::make(const Message& message, const std::string& text) {
+  if (std::holds_alternative<Discard>(message)) {
+    const std::uint64_t state = editor_.state();
+    // As the undos that it is.
+    const auto go = [&](bool again) {
+      if (!(again ? editor_.redo() : editor_.undo())) return false;
+      if (keeper_) keeper_->keep(again ? redo_line : undo_line);
+      return true;
+    };
+    const std::optional<bool> way = editor_.way_to(saved_);
+    if (!way) throw InputError("the saved scene is not among the states that undo leads to any more");
+    while (editor_.state() != saved_ && go(*way)) {
+    }
+    restored_ = 0;
+    if (keeper_) keeper_->rest();
+    return editor_.state() != state;
+  }
+  if (const Kept* kept = std::get_if<Kept>(&message)) {
+    if (!keeper_ || !keeper_->old()) return false;
+    std::size_t made = 0;
+    if (kept->restore) {
+      const std::vector<std::string> lines = keeper_->old()->lines;
+      for (const std::string& line : lines)
+        if (!is_mark(line) && make_line(line)) {
+          keeper_->keep(line);
+          ++made;
+        }
+      if (made < lines.size())
+        log::warn("{} of {} changes of an earlier session do not fit the scene as it now is", lines.size() - made, lines.size());
+    }
+    keeper_->forget_old();
+    return made > 0;
+  }
+  if (!change(message)) return false;
+  if (keeper_) keeper_->keep(line_of(text));
+  if (keeper_ && !has_unsaved()) keeper_->rest();
+  return true;
+}
+
+Json Keeping::save(const Save& save, const Look& look, const std::function<bool()>& cancelled) {
+  if (!keeper_) throw InputError("this scene has no file to be saved beside");
+  const std::filesystem::path target = keeper_->target(save.name);
+  if (const std::string lost = keeper_->lost_with(target); !lost.empty() && !save.replace)
+    return {{"type", "save_asks"}, {"name", target.filename().string()}, {"camera", save.camera}, {"why", lost}};
+  Look own = own_;
+  if (save.camera) {
+    own = look;
+    own.width = own_.width;
+    own.height = own_.height;
+  }
+  Scene scene = live_.scene();
+  scene.camera.world_from_camera = own.world_from_camera;
+  scene.camera.fov = own.fov;
+  scene.camera.lens_radius = own.lens_radius;
+  scene.camera.focal_distance = own.focal_distance;
+  scene.film.width = own_.width;
+  scene.film.height = own_.height;
+  scene.film.crop = crop_;
+  Json mark = Json::object();
+  if (save.camera || own_is_new_) mark["camera"] = camera_text(own);
+  keeper_->save(scene, target, mark.dump(), cancelled);
+  own_ = own;
+  own_is_new_ = own_is_new_ || save.camera;
+  saved_ = editor_.state();
+  restored_ = 0;
+  log::info("wrote {}", target.string());
+  return {{"type", "saved"}, {"name", target.filename().string()}, {"file", target.string()}};
+}
+
+Json Keeping::text() const {
+  Json out{{"unsaved", has_unsaved()}, {"restored", restored_}};
+  if (!keeper_) return out;
+  out["name"] = keeper_->default_name();
+  out["kept"] = keeper_->failure().empty();
+  if (!keeper_->failure().empty()) out["why"] = keeper_->failure();
+  if (keeper_->old()) out["old"] = keeper_->old()->lines.size();
+  return out;
+}
+
+std::optional<std::filesystem::path> Keeping::end() {
+  if (!keeper_) return {};
+  const bool stays = has_unsaved();
+  keeper_->end(stays);
+  if (!stays || !keeper_->failure().empty()) return {};
+  return keeper_->journal();
+}
+
+}  // namespace caplet::view
