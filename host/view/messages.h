@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "view/parts.h"
+
 namespace caplet::view {
 
 /// How the scene is looked at, and in how many pixels.
@@ -67,18 +69,19 @@ struct Duplicate {
 struct Delete {
   std::vector<std::uint32_t> ids;
 };
-using Change = std::variant<Move, Reshape, Paint, Duplicate, Delete>;
+using Change = std::variant<Move, Reshape, Paint, Duplicate, Delete, Set, Add, Remove, Hide, Show>;
 
 struct Edit {
   Change change;
   bool goes_on = false;  // with the gesture of the change before: the two are taken back as one
+  double number = 0;     // given back with what comes of it
 };
 /// Takes the last change back, or makes it again.
 struct Undo {
   bool again = false;
 };
 
-using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Edit, Undo>;
+using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Form, Edit, Undo>;
 
 /// Largest picture that the page may ask for, in pixels along a side.
 inline constexpr int most_page_pixels = 4096;

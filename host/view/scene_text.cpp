@@ -59,6 +59,15 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   return out;
 }
 
+Json hidden_text(const Scene& scene, const Hidden& hidden) {
+  Json out = Json::array();
+  for (const auto& [place, shape] : hidden.shapes)
+    if (out.size() < most_named) out.push_back(shape->name.empty() ? geometry_name(*shape) : shape->name);
+  for (const auto& [place, instance] : hidden.instances)
+    if (out.size() < most_named) out.push_back(scene.objects[instance->object].name);
+  return out;
+}
+
 Json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive) {
   Json out;
   if (id < scene.shapes.size()) {

@@ -28,6 +28,7 @@
 #include "view/detail/scene_text.h"
 #include "view/detail/snapshot.h"
 #include "view/editor.h"
+#include "view/forms.h"
 #include "view/messages.h"
 #include "view/page.h"
 #include "view/picture.h"
@@ -48,7 +49,12 @@ Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<co
 /// A new view is wanted: the picture under way is of no more use.
 struct Superseded {};
 
-std::string error_text(const std::string& what) { return nlohmann::ordered_json{{"type", "error"}, {"text", what}}.dump(); }
+/// `number`: of what was asked for, where that has one.
+std::string error_text(const std::string& what, double number = 0) {
+  nlohmann::ordered_json out{{"type", "error"}, {"text", what}};
+  if (number > 0) out["number"] = number;
+  return out.dump();
+}
 
 }  // namespace
 
@@ -72,7 +78,9 @@ class Viewer::State {
     events.left = [this](ClientId id) { left(id); };
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
-    hello_ = scene_text(live_.scene(), device_.info().name, target());
+    hello_ = told_scene();
+    hello_["parts"] = told_parts();
+    hello_["lists"] = lists_text();
     hello_["home"] = camera_text(full_);
     hello_["read_only"] = options.read_only;
     hello_["can_undo"] = hello_["can_redo"] = false;
@@ -99,7 +107,7 @@ class Viewer::State {
   }
 
  private:
-  using Question = std::variant<Ask, Describe>;
+  using Question = std::variant<Ask, Describe, Form>;
   struct Client {
     bool seen = true;
     std::shared_ptr<const Picture> shown;
@@ -116,6 +124,13 @@ class Viewer::State {
     SessionOptions out;
     out.layers = Layers::none().with(Layer::object).with(Layer::primitive).with(Layer::variance);
     out.batch_paths = options_.batch_paths;
+    return out;
+  }
+
+  nlohmann::ordered_json told_scene() const { return scene_text(live_.scene(), device_.info().name, target()); }
+  nlohmann::ordered_json told_parts() const {
+    nlohmann::ordered_json out = parts_text(live_.scene());
+    out["hidden"] = hidden_text(live_.scene(), editor_.hidden());
     return out;
   }
 
@@ -163,6 +178,8 @@ class Viewer::State {
         if (client.asked.size() < most_questions) client.asked.emplace_back(*ask);
       } else if (const Describe* describe = std::get_if<Describe>(&message)) {
         if (client.asked.size() < most_questions) client.asked.emplace_back(*describe);
+      } else if (const Form* form = std::get_if<Form>(&message)) {
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*form);
       } else if (std::holds_alternative<Snapshot>(message)) {
         client.wants_snapshot = true;
       } else {
@@ -256,29 +273,38 @@ class Viewer::State {
     if (edits.empty()) return false;
     const std::uint64_t before = editor_.rearrangements(), numbers = editor_.renumberings();
     bool edited = false;
+    std::vector<std::pair<ClientId, Text>> made;
     for (const auto& [id, what] : edits) try {
         if (const Edit* edit = std::get_if<Edit>(&what)) {
           editor_.make(edit->change, edit->goes_on);
           edited = true;
+          if (edit->number > 0)
+            made.emplace_back(id, text_of({{"type", "made"}, {"number", edit->number}, {"ids", editor_.made()}}));
         } else {
           edited = (std::get<Undo>(what).again ? editor_.redo() : editor_.undo()) || edited;
         }
       } catch (const InputError& error) {
-        server_->send(id, std::make_shared<const std::string>(error_text(error.what())));
+        const Edit* edit = std::get_if<Edit>(&what);
+        server_->send(id, std::make_shared<const std::string>(error_text(error.what(), edit ? edit->number : 0)));
       }
     nlohmann::ordered_json told{{"type", "edited"},
                                 {"can_undo", editor_.can_undo()},
                                 {"can_redo", editor_.can_redo()},
                                 {"renumbered", editor_.renumberings() != numbers}};
-    if (editor_.rearrangements() != before) told["scene"] = scene_text(live_.scene(), device_.info().name, target());
+    if (editor_.rearrangements() != before) told["scene"] = told_scene();
+    told["samples"] = target();
+    told["parts"] = told_parts();
     {
       const std::lock_guard lock(mutex_);
       hello_["can_undo"] = editor_.can_undo();
       hello_["can_redo"] = editor_.can_redo();
+      hello_["samples"] = told["samples"];
+      hello_["parts"] = told["parts"];
       if (told.contains("scene"))
         for (const auto& [name, value] : told["scene"].items()) hello_[name] = value;
     }
     server_->send_to_all(text_of(told));
+    for (const auto& [id, text] : made) server_->send(id, text);
     return edited;
   }
 
@@ -397,6 +423,12 @@ class Viewer::State {
   Text answer(const Describe& describe) {
     nlohmann::ordered_json out{{"type", "answer"}, {"number", describe.number}};
     out["thing"] = thing_text(live_.scene(), describe.id, describe.primitive);
+    return text_of(out);
+  }
+
+  Text answer(const Form& form) {
+    nlohmann::ordered_json out{{"type", "answer"}, {"number", form.number}};
+    out["form"] = form_text(live_.scene(), editor_.view(), form.part);
     return text_of(out);
   }
 

@@ -26,8 +26,8 @@ const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; retur
 
 export class Edits {
   // `say` sends a message, `ask` one that is answered, `view` gives the camera, `stage` is what the picture fills.
-  constructor({ say, describe, view, stage, find }) {
-    Object.assign(this, { say, describe, view, stage, find });
+  constructor({ say, describe, view, stage, find, shown }) {
+    Object.assign(this, { say, describe, view, stage, find, shown });
     this.ids = [];
     this.primitive = 0;
     this.thing = null;
@@ -73,7 +73,7 @@ export class Edits {
   // Asks what it is now.
   refresh() {
     this.find("edit").hidden = !this.ids.length || this.read_only;
-    if (!this.ids.length) { this.draw(); return; }
+    if (!this.ids.length) { this.shown(null, "", false); this.draw(); return; }
     if (this.busy) { this.again = true; return; }
     this.busy = true;
     this.describe(this.ids[this.ids.length - 1], this.primitive, (thing) => {
@@ -94,6 +94,7 @@ export class Edits {
     find("surface").value = +surface < materials.length ? surface : "";
     const now = surface === "" ? (new Set(materials).size === 1 ? materials[0] : "") : materials[+surface] ?? "";
     find("material").value = String(now);
+    this.shown(this.ids.length === 1 ? this.ids[0] : null, now, materials.length > 0);
     find("material").disabled = !materials.length;
     find("capsule").hidden = !capsule || this.ids.length !== 1;
     for (const name of ["p0", "p1", "radius0", "radius1"])

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
 import { Edits } from "./edit.js";
+import { Forms } from "./forms.js";
 import { inspect } from "./inspector.js";
 import { Picture } from "./picture.js";
 import { texts } from "./texts.js";
@@ -10,7 +11,7 @@ const $ = (id) => document.getElementById(id);
 const stage = $("stage"), picture_canvas = $("picture"), marks = $("marks");
 const picture = new Picture(), chosen = new Set(), waiting = new Map();
 let scene = null, camera = null, world_up = [0, 0, 1], center = [0, 0, 0], radius = 1;
-let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null;
+let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null, under_hit = null;
 
 // --- Words ---
 
@@ -21,6 +22,8 @@ $("search").setAttribute("aria-label", texts.search);
 $("axis").setAttribute("aria-label", texts.axis);
 $("kept").setAttribute("aria-label", texts.kept);
 $("tree").setAttribute("aria-label", texts.things);
+for (const [id, text] of [["light", "light"], ["texture", "texture"], ["new-light", "new_light"], ["new-texture", "new_texture"], ["new-material", "new_material"], ["palette", "palette"], ["hidden", "hide"]]) $(id).setAttribute("aria-label", texts[text]);
+$("palette").setAttribute("role", "group");
 for (const [value, text] of Object.entries(texts.axes)) $("axis").add(new Option(text, value));
 for (const [value, text] of Object.entries(texts.curves)) $("curve").add(new Option(text, value));
 for (const [key, what] of texts.list) $("list").append(Object.assign(document.createElement("dt"), { textContent: key }), Object.assign(document.createElement("dd"), { textContent: what }));
@@ -34,7 +37,24 @@ function ask(pixel, all, reference, done) {
   say({ type: "ask", number, x: pixel[0], y: pixel[1], all, reference });
 }
 
+function edit(what, goes_on = false, done = () => {}) {
+  waiting.set(++number, done);
+  say({ type: "edit", number, goes_on, ...what });
+}
+
+const forms = new Forms({
+  edit, find: $, chosen: () => [...chosen], select: (ids) => choose_all(ids),
+  ask: (part, done) => { waiting.set(++number, done); say({ type: "form", number, ...part }); },
+  // Where new things come to be: on what is under the cursor, or where the camera looks.
+  place: (hit) => {
+    const size = camera.distance() * Math.tan(camera.fov / 2) * 0.2;
+    if (hit) return { at: add(hit.point, mul(unit(hit.normal), size)), size, towards: unit(camera.forward) };
+    return { at: camera.target, size, towards: unit(camera.forward) };
+  },
+});
+
 const edits = new Edits({
+  shown: (...what) => forms.thing(...what),
   say, view: () => camera, stage, find: $,
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
 });
@@ -58,11 +78,15 @@ function connect() {
 function told(message) {
   if (message.type === "scene") return begin(message);
   if (message.type === "looked") return void (camera && camera_of(message));
-  if (message.type === "error") return void ($("state").textContent = message.text);
+  if (message.type === "error") {
+    $("state").textContent = message.text;
+    waiting.get(message.number)?.({ error: message.text });
+    return void waiting.delete(message.number);
+  }
   if (message.type === "edited") return edited(message);
   const done = waiting.get(message.number);
   waiting.delete(message.number);
-  if (done) done(message.pick ?? message.thing);
+  if (done) done(message.type === "made" ? message : message.pick ?? message.thing ?? message.form);
 }
 
 async function binary(data) {
@@ -85,6 +109,8 @@ function edited(message) {
     if (message.renumbered) choose(null, false);
     fill_tree();
   }
+  scene.samples = message.samples;
+  forms.told(message.parts);
   edits.refresh();
   stage.dataset.edits = (+stage.dataset.edits || 0) + 1;
 }
@@ -110,7 +136,10 @@ function begin(message) {
     past = []; future = []; chosen.clear();
   }
   edits.read_only = scene.read_only;
-  $("material").replaceChildren(new Option(texts.mixed, ""), ...scene.materials.map((name, i) => new Option(name, String(i))));
+  document.body.classList.toggle("read-only", scene.read_only);
+  forms.begin(scene.lists);
+  forms.told(scene.parts);
+  forms.reset();
   $("back").disabled = !scene.can_undo;
   $("again").disabled = !scene.can_redo;
   fill_tree();
@@ -202,9 +231,18 @@ function hover(pixel) {
   ask(pixel, false, false, (told_of) => {
     under_asked = false;
     const hit = told_of.crossings[0];
+    under_hit = hit;
     $("under").textContent = hit ? texts.under(hit) : texts.nothing;
     if (under_next) hover(under_next);
   });
+}
+
+function choose_all(ids) {
+  chosen.clear();
+  for (const id of ids) chosen.add(id);
+  for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
+  edits.select([...chosen].sort((a, b) => a - b), 0);
+  mark();
 }
 
 function choose(id, more, primitive = 0) {
@@ -320,6 +358,10 @@ stage.addEventListener("keydown", (event) => {
   else if (event.key === "r") $("again").click();
   else if (event.key === "d") $("duplicate").click();
   else if (event.key === "Delete") $("delete").click();
+  else if (event.key === "n") forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit);
+  else if (event.key === "x") hide(false);
+  else if (event.key === "i") hide(true);
+  else if (event.key === "a") $("show-all").click();
   else if (event.key === "Escape") choose(null, false);
   else if (event.key === "?") $("keys").showModal();
   else if (axes[event.key]) along(axes[event.key]);
@@ -327,6 +369,10 @@ stage.addEventListener("keydown", (event) => {
   event.preventDefault();
 });
 
+const hide = (others) => { if (chosen.size) edit({ what: "hide", ids: [...chosen], others }, false, (made) => { if (others && made.ids) choose_all(made.ids); }); };
+$("hide").onclick = () => hide(false);
+$("isolate").onclick = () => hide(true);
+$("show-all").onclick = () => { if (!$("hidden-box").hidden) edit({ what: "show", hidden: null }); };
 $("back").onclick = () => say({ type: "undo", again: false });
 $("again").onclick = () => say({ type: "undo", again: true });
 $("fit").onclick = fit;
