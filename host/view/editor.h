@@ -12,20 +12,10 @@
 #include <vector>
 
 #include "lower/live_scene.h"
+#include "view/hidden.h"
 #include "view/messages.h"
 
 namespace caplet::view {
-
-/// Things by the places that they have in the whole, in ascending order.
-template <class T>
-using HiddenList = std::vector<std::pair<std::size_t, std::shared_ptr<const T>>>;
-/// What is left out of the picture.
-struct Hidden {
-  HiddenList<Shape> shapes;
-  HiddenList<Instance> instances;
-  bool empty() const { return shapes.empty() && instances.empty(); }
-};
-using HiddenPointer = std::shared_ptr<const Hidden>;
 
 /// Makes changes of a scene, each as a whole or not at all, and keeps what takes them back, without a limit. The camera is no
 /// change; the film's size is one, and of the document alone.

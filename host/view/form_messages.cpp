@@ -68,7 +68,7 @@ Part part(const json& object) {
   return {kind_of(text(object, "of", longest_name), "of"), object.contains("part") ? id(object, "part") : 0};
 }
 
-std::optional<Change> form_change(const json& of) {
+std::optional<FormChange> form_change(const json& of) {
   const json& what = field(of, "what");
   if (what == "set") return Set{part(of), text(of, "field", longest_name), value(field(of, "to"))};
   if (what == "add") return add(of);

@@ -27,6 +27,9 @@ Look look(const json& of) {
   out.fov = number(field(of, "fov"), "fov", 1e-3, 3.14);
   out.lens_radius = number(field(of, "lens_radius"), "lens_radius", 0, 1e9);
   out.focal_distance = number(field(of, "focal_distance"), "focal_distance", 1e-9, 1e12);
+  if (of.contains("separation")) out.separation = number(of["separation"], "separation", 0, 1e9);
+  if (of.contains("convergence")) out.convergence = number(of["convergence"], "convergence", 0, 1e12);
+  if (of.contains("orthographic")) out.orthographic = number(of["orthographic"], "orthographic", 0, 1e18);
   return out;
 }
 
@@ -37,6 +40,7 @@ Ask ask(const json& of) {
   out.y = whole(of, "y", 0, most_page_pixels - 1);
   out.all = truth(of, "all");
   out.reference = truth(of, "reference");
+  if (of.contains("eye")) out.eye = whole(of, "eye", 0, 1);
   return out;
 }
 
@@ -56,7 +60,7 @@ Change change(const json& of) {
   }
   if (what == "duplicate") return Duplicate{ids(of), point(of, "by")};
   if (what == "delete") return Delete{ids(of)};
-  if (const auto of_form = form_change(of)) return *of_form;
+  if (const auto of_form = form_change(of)) return std::visit([](const auto& one) { return Change(one); }, *of_form);
   refuse("what", fmt::format("is none of move, reshape, paint, duplicate, delete, {}", form_changes));
 }
 

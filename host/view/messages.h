@@ -23,6 +23,9 @@ struct Look {
   glm::dmat4 world_from_camera{1};
   double fov = 0;  // radians, of the shorter side
   double lens_radius = 0, focal_distance = 1;
+  double orthographic = 0;  // half the shorter side of what is seen, of parallel rays; 0: perspective
+  double separation = 0;    // of a pair of eyes; 0: one alone
+  double convergence = 0;   // what is so far before them is at one place in both views; 0: what is infinitely far
 };
 /// Whether anybody sees the page.
 struct Seen {
@@ -33,6 +36,7 @@ struct Ask {
   double number = 0;  // given back with the answer
   int x = 0, y = 0;
   bool all = false, reference = false;
+  int eye = 0;  // of a pair: 1 the right
 };
 /// The picture in full, as an EXR file.
 struct Snapshot {};
@@ -85,9 +89,6 @@ using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Form, Edit, Un
 
 /// Largest picture that the page may ask for, in pixels along a side.
 inline constexpr int most_page_pixels = 4096;
-
-/// Most things that one change may name.
-inline constexpr std::size_t most_chosen = 10000;
 
 /// Throws InputError that says which field is wrong.
 Message parse_message(std::string_view text);

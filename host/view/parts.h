@@ -63,6 +63,11 @@ struct Show {
   std::optional<std::uint32_t> hidden = {};
 };
 
+using FormChange = std::variant<Set, Add, Remove, Hide, Show>;
+
+/// Most things that one change may name.
+inline constexpr std::size_t most_chosen = 10000;
+
 /// What a part's form is.
 struct Form {
   double number = 0;  // given back with the answer

@@ -30,7 +30,10 @@ Json camera_text(const Look& look) {
   return {{"world_from_camera", to_json(look.world_from_camera)},
           {"fov", look.fov},
           {"lens_radius", look.lens_radius},
-          {"focal_distance", look.focal_distance}};
+          {"focal_distance", look.focal_distance},
+          {"orthographic", look.orthographic},
+          {"separation", look.separation},
+          {"convergence", look.convergence}};
 }
 
 Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples) {

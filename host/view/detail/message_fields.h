@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "view/messages.h"
+#include "view/parts.h"
 
 namespace caplet::view::message {
 
@@ -102,7 +102,7 @@ inline glm::dvec3 point(const json& object, const char* name) {
 /// A part of the scene: `of` and `part`.
 Part part(const json& object);
 /// Of the changes of forms; none where `what` is another.
-std::optional<Change> form_change(const json& object);
+std::optional<FormChange> form_change(const json& object);
 inline constexpr const char* form_changes = "set, add, remove, hide and show";
 
 }  // namespace caplet::view::message

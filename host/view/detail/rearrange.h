@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "view/editor.h"
+#include "view/hidden.h"
 
 namespace caplet::view {
 

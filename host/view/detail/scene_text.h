@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scene/scene.h"
-#include "view/editor.h"
+#include "view/hidden.h"
 #include "view/messages.h"
 
 namespace caplet::view {

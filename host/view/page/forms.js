@@ -205,10 +205,10 @@ class Form {
 
 export class Forms {
   // `ask` gets a part's form, `edit` makes a change and is told what came of it; `place` says where new things come to be.
-  constructor({ ask, edit, find, place, select, chosen }) {
-    Object.assign(this, { asks: ask, edit, find, place, select, chosen });
+  constructor({ ask, edit, find, place, lamp, select, chosen }) {
+    Object.assign(this, { asks: ask, edit, find, place, lamp, select, chosen });
     this.queue = new Map();
-    this.waits = false;
+    this.waits = 0;
     this.parts = { materials: [], textures: [], lights: [], hidden: [] };
     this.lists = { material: [], texture: [], light: [], shape: [], spectra: [] };
     this.forms = {};
@@ -227,7 +227,7 @@ export class Forms {
         if (kind) this.edit({ what: "add", of, ...more(kind) }, false, (made) => { if (made.ids) done(made.ids[0]); });
       };
     };
-    adds("new-light", "light", (kind) => ({ kind, ...this.place(null) }), (part) => { find("light").value = part; this.forms.light.box.open = true; this.forms.light.show(part); });
+    adds("new-light", "light", (kind) => ({ kind, ...this.lamp() }), (part) => { find("light").value = part; this.forms.light.box.open = true; this.forms.light.show(part); });
     adds("new-texture", "texture", (kind) => ({ kind: kind.slice(1), of_floats: kind[0] === "f" }), (part) => { find("texture").value = part; this.forms.texture.box.open = true; this.forms.texture.show(part); });
     adds("new-material", "material", (kind) => kind === "*" ? { like: this.forms.material.part ?? 0 } : { kind }, (part) => this.paint(part));
   }
@@ -236,14 +236,15 @@ export class Forms {
     this.go_on();
   }
   go_on() {
-    if (this.waits || !this.queue.size) return;
-    const [key, [part, done]] = this.queue.entries().next().value;
-    this.queue.delete(key);
-    this.waits = true;
-    this.asks(part, (form) => { this.waits = false; done(form); this.go_on(); });
+    for (const [key, [part, done]] of this.queue) {
+      if (this.waits >= 8) return;
+      this.queue.delete(key);
+      ++this.waits;
+      this.asks(part, (form) => { --this.waits; done(form); this.go_on(); });
+    }
   }
   // A new connection: nothing is waited for.
-  reset() { this.waits = false; this.queue.clear(); this.refresh(); }
+  reset() { this.waits = 0; this.queue.clear(); this.refresh(); }
   refresh() { for (const form of Object.values(this.forms)) form.refresh(); }
   key() { return [this.parts.textures.map((t) => t.name + t.of_floats), this.parts.materials.map((m) => m.name)]; }
   spectra() { return this.lists.spectra; }
@@ -262,7 +263,7 @@ export class Forms {
   // At the point under the cursor where there is one, else where the camera looks.
   add_shape(kind, hit) {
     this.last_shape = kind;
-    const { towards, ...place } = this.place(hit), material = Math.max(0, this.forms.material.part ?? this.parts.materials.length - 1);
+    const place = this.place(hit), material = Math.max(0, this.forms.material.part ?? this.parts.materials.length - 1);
     this.edit({ what: "add", of: "shape", kind, material, ...place }, false, (made) => { if (made.ids) this.select(made.ids); });
   }
   paint(material) {

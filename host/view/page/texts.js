@@ -6,7 +6,7 @@ export const texts = {
   axes: { "": "Look along…", "+x": "from +x", "-x": "from −x", "+y": "from +y", "-y": "from −y", "+z": "from +z", "-z": "from −z" },
   exposure: "Exposure", curve: "Tone", curves: { film: "film", srgb: "sRGB", linear: "linear" },
   png: "PNG", exr: "EXR", help: "? Help", things: "Scene", search: "Search by name", lens: "Lens",
-  fov: "Field of view, degrees", radius: "Lens radius", focus: "Distance in focus",
+  parallel: "Orthographic", stereo: "Two eyes", stereos: { off: "off", sbs: "side by side", "over-under": "over-under", anaglyph: "anaglyph (red, cyan)" }, separation: "Apart by", convergence: "Meet at (0: far)", fov: "Field of view, degrees", radius: "Lens radius", focus: "Distance in focus",
   edit: "Selected", duplicate: "Duplicate", delete: "Delete", back: "Undo", again: "Redo", surface: "Surface", material: "Material",
   move: "Move by", turn: "Turn about axis", scale: "Scale by", p0: "End 0", p1: "End 1", radius0: "Radius 0", radius1: "Radius 1",
   all_surfaces: "all", surface_number: (i) => String(i), mixed: "several",
@@ -42,6 +42,6 @@ export const texts = {
   intervals: (n) => `${n} crossings along the ray, nearest at the left`,
   list: [["drag", "orbit"], ["right or Shift drag", "pan"], ["wheel, pinch, + −", "come nearer, go away"], ["Ctrl wheel", "zoom (field of view)"],
     ["click", "select, and inspect the ray"], ["Shift click", "select several"], ["double click", "turn about this point"],
-    ["Alt click", "focus here"], ["arrows", "orbit (Shift: pan)"], ["f", "fit all"], ["h", "scene's camera"], ["z, y", "last view, next view"],
-    ["1 to 6", "look along an axis"], ["u, r", "undo, redo a change"], ["d, Del", "duplicate, delete"], ["n", "the last new shape again, under the cursor"], ["x, i, a", "hide, isolate, show all"], ["handles", "move; yellow: an end (Shift: in steps)"], ["Esc", "select nothing"], ["?", "this list"]],
+    ["Alt click", "focus here"], ["arrows", "orbit (Shift: pan)"], ["f", "fit all"], ["h", "scene's camera"], ["o, s", "orthographic, two eyes"], ["z, y", "last view, next view"],
+    ["1 to 6", "look along an axis"], ["u, r", "undo, redo a change"], ["d, Del", "duplicate, delete"], ["n", "the last new shape again, under the cursor"], ["x, i, a", "hide, isolate, show all"], ["handles", "move along an axis or in a plane, rings: turn, diamond: scale; yellow: an end"], ["Shift or Ctrl with a handle", "in steps: of lengths, 15°, tenths"], ["Esc", "select nothing"], ["?", "this list"]],
 };
