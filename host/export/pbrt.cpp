@@ -143,8 +143,8 @@ class SceneWriter {
     const SourceLocation where{here()};
     stream_.text << inverse_text(world_from_camera);
     if (medium) stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
-    Statement out("Camera \"perspective\"", nullptr, where);
-    out.number("fov", degrees_of(fov));
+    Statement out(fov == 0 ? "Camera \"orthographic\"" : "Camera \"perspective\"", nullptr, where);
+    if (fov != 0) out.number("fov", degrees_of(fov));
     if (frame_aspect_ratio) out.number("frameaspectratio", *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;

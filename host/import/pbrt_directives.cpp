@@ -45,7 +45,7 @@ void Parser::camera() {
   has_camera_ = true;
   check_place();
   coordinate_systems_["camera"] = inverse_of_transform();
-  if (check_name("Camera", type, where_, diagnostics_)) set_camera(given, inverse_of_transform(), scene_);
+  if (check_name("Camera", type, where_, diagnostics_)) set_camera(type, given, inverse_of_transform(), scene_);
   scene_.camera.medium = state_.media.outside;
 }
 

@@ -43,7 +43,7 @@ const std::vector<NameTable>& name_tables() {
       {"Accelerator", {"bvh", "kdtree"}, {}},
       {"ActiveTransform", {"All"}, {"EndTime", "StartTime"}},
       {"AreaLightSource", {"diffuse"}, {}},
-      {"Camera", {"perspective"}, {"orthographic", "realistic", "spherical"}},
+      {"Camera", {"orthographic", "perspective"}, {"realistic", "spherical"}},
       {"ColorSpace", {"aces2065-1", "dci-p3", "rec2020", "srgb"}, {}},
       {"Film", {"gbuffer", "rgb", "spectral"}, {}},
       {"Integrator",

@@ -61,12 +61,15 @@ void set_sensor(Parameters& parameters, FilmSettings& film) {
 
 }  // namespace
 
-void set_camera(Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
+void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
   Camera camera;
   camera.world_from_camera = world_from_camera;
-  const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
+  const bool is_parallel = type == "orthographic";
+  const double given = is_parallel ? 0 : parameters.number("fov", 90), half = is_parallel ? 0 : parameters.number("halffov", -1);
   const double degrees = half > 0 ? 2 * half : given;
-  if (degrees > 0 && degrees < 180)
+  if (is_parallel)
+    camera.fov = 0;
+  else if (degrees > 0 && degrees < 180)
     camera.fov = degrees * glm::pi<double>() / 180;
   else
     parameters.error(half > 0 ? "halffov" : "fov",

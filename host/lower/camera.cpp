@@ -25,7 +25,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   view.crop_height = narrow<uint>(window[3] - window[2]);
 
   const std::array<double, 4> screen = screen_window_of(camera, film);
-  const double unit = std::tan(camera.fov / 2);  // half the shorter side, at distance 1
+  const bool is_parallel = camera.fov == 0;
+  const double unit = is_parallel ? 1 : std::tan(camera.fov / 2);  // half the shorter side, at distance 1
 
   CameraRecord& record = out.camera;
   record = CameraRecord{};
@@ -38,7 +39,7 @@ void lower_camera(const Scene& scene, FlatView& out) {
   record.lens_radius = static_cast<float>(camera.lens_radius);
   record.focal_distance = static_cast<float>(camera.focal_distance);
   record.medium = camera.medium.value_or(CAPLET_NONE);
-  record.origins = camera.lens_radius > 0 ? 1 : 0;
+  record.origins = is_parallel ? CAPLET_ORTHOGRAPHIC : camera.lens_radius > 0 ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
@@ -47,15 +48,20 @@ RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
   const CameraRecord& camera = view.camera;
   const float* m = camera.world_from_camera;
   // In double from the numbers the device has.
-  const glm::dvec3 local(camera.screen_min_x + (x + 0.5) * camera.screen_per_pixel_x,
-                         camera.screen_min_y + (y + 0.5) * camera.screen_per_pixel_y, 1);
+  glm::dvec3 local(camera.screen_min_x + (x + 0.5) * camera.screen_per_pixel_x,
+                   camera.screen_min_y + (y + 0.5) * camera.screen_per_pixel_y, 1);
+  glm::dvec3 origin(m[3], m[7], m[11]);
+  if (camera.origins == CAPLET_ORTHOGRAPHIC) {
+    for (int r = 0; r < 3; ++r) origin[r] += m[4 * r] * local.x + m[4 * r + 1] * local.y;
+    local = {0, 0, 1};
+  }
   glm::dvec3 direction;
   for (int r = 0; r < 3; ++r) direction[r] = m[4 * r] * local.x + m[4 * r + 1] * local.y + m[4 * r + 2] * local.z;
   direction = glm::normalize(direction);
   RayRecord ray{};
-  ray.ox = m[3] + 0.0f;  // no -0
-  ray.oy = m[7] + 0.0f;
-  ray.oz = m[11] + 0.0f;
+  ray.ox = static_cast<float>(origin.x) + 0.0f;  // no -0
+  ray.oy = static_cast<float>(origin.y) + 0.0f;
+  ray.oz = static_cast<float>(origin.z) + 0.0f;
   ray.dx = static_cast<float>(direction.x);
   ray.dy = static_cast<float>(direction.y);
   ray.dz = static_cast<float>(direction.z);

@@ -13,7 +13,7 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   const glm::dvec3 right(camera.world_from_camera[0]), forward(camera.world_from_camera[2]);
   const double side = eye == Eye::left ? -0.5 : 0.5;
   camera.world_from_camera[3] += glm::dvec4(side * stereo.separation * glm::normalize(right), 0);
-  if (!stereo.convergence) return camera;
+  if (!stereo.convergence || camera.fov == 0) return camera;  // of parallel rays all is at one depth
   // By similar triangles, in the camera's own units, which transforms may stretch: what was in the middle at that distance is as
   // far to the other side as the eye has moved.
   const double across = side * stereo.separation / glm::length(right), away = *stereo.convergence / glm::length(forward);

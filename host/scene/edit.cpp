@@ -40,6 +40,13 @@ void check_alone(Scene scene, const Scene& of) {
   diagnostics.finish();
 }
 
+/// What shapes refer to.
+void add_parts(Scene& to, const Scene& from) {
+  to.textures = from.textures;
+  to.materials = from.materials;
+  to.media = from.media;
+}
+
 /// A scene of this shape alone, in the place that it has: an object's in all the object's instances.
 Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   Scene out;
@@ -69,7 +76,7 @@ void check(const Scene& scene, const TransformEdit& edit) {
   Shape shape = shape_at(scene, edit.at);
   shape.world_from_object = edit.world_from_object;
   Scene one = alone(scene, edit.at, std::move(shape));
-  one.materials = scene.materials;
+  add_parts(one, scene);
   check_alone(std::move(one), scene);
 }
 
@@ -82,7 +89,7 @@ void check(const Scene& scene, const EmissionEdit& edit) {
   one.where = shape.where;
   one.world_from_object = shape.world_from_object;
   Scene scene_of_it = alone(scene, edit.at, std::move(one));
-  scene_of_it.materials = scene.materials;
+  add_parts(scene_of_it, scene);
   check_alone(std::move(scene_of_it), scene);
 }
 

@@ -42,7 +42,7 @@ struct Instance {
 
 struct Camera {
   glm::dmat4 world_from_camera{1};  // camera space: +x right, +y up, +z forward
-  double fov = 1.5707963267948966;  // of the shorter image side, full angle
+  double fov = 1.5707963267948966;  // of the shorter image side, full angle; 0: orthographic, the screen window in scene units
   std::optional<double> frame_aspect_ratio;
   std::optional<std::array<double, 4>> screen_window;  // x min, x max, y min, y max
   double lens_radius = 0;

@@ -548,7 +548,8 @@ class Validator {
     medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
-    if (!(c.fov > 0 && c.fov < 3.14159265358979)) error(file, "the camera's field of view must be above 0 and below 180 degrees");
+    if (!(c.fov >= 0 && c.fov < 3.14159265358979))
+      error(file, "the camera's field of view must be from 0 (orthographic) to below 180 degrees");
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius))) error(file, "the camera's lens radius must be from 0 up");
     if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))
       error(file, "the camera's focal distance must be positive");

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "view/detail/rearrange.h"
 
 namespace caplet::view {
 
@@ -29,6 +30,13 @@ SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
     return CapsuleEdit{capsule->at, capsule->capsule, capsule_at(scene, capsule->at, capsule->capsule)};
   if (const auto* transform = std::get_if<TransformEdit>(&edit))
     return TransformEdit{transform->at, shape_at(scene, transform->at).world_from_object};
+  if (const auto* material = std::get_if<MaterialEdit>(&edit)) {
+    const Material& now = scene.materials.at(material->material);
+    return MaterialEdit{material->material, now.model, now.textures};
+  }
+  if (const auto* light = std::get_if<LightEdit>(&edit)) return LightEdit{light->light, scene.lights.at(light->light)};
+  if (const auto* emission = std::get_if<EmissionEdit>(&edit))
+    return EmissionEdit{emission->at, shape_at(scene, emission->at).emission.value()};
   const auto& instance = std::get<InstanceEdit>(edit);
   return InstanceEdit{instance.instance, scene.instances.at(instance.instance).world_from_object};
 }
@@ -37,6 +45,9 @@ SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
 std::tuple<std::size_t, std::uint32_t, std::size_t> place_of(const SceneEdit& edit) {
   if (const auto* capsule = std::get_if<CapsuleEdit>(&edit)) return {edit.index(), capsule->at.shape, capsule->capsule};
   if (const auto* transform = std::get_if<TransformEdit>(&edit)) return {edit.index(), transform->at.shape, 0};
+  if (const auto* material = std::get_if<MaterialEdit>(&edit)) return {edit.index(), material->material, 0};
+  if (const auto* light = std::get_if<LightEdit>(&edit)) return {edit.index(), light->light, 0};
+  if (const auto* emission = std::get_if<EmissionEdit>(&edit)) return {edit.index(), emission->at.shape, 0};
   return {edit.index(), std::get<InstanceEdit>(edit).instance, 0};
 }
 
@@ -45,41 +56,6 @@ SceneEdit moved(const Scene& scene, std::uint32_t id, const glm::dmat4& world_fr
   if (id < scene.shapes.size()) return TransformEdit{{std::nullopt, id}, world_from_world * scene.shapes[id].world_from_object};
   const auto instance = static_cast<std::uint32_t>(id - scene.shapes.size());
   return InstanceEdit{instance, world_from_world * scene.instances[instance].world_from_object};
-}
-
-/// Things, with the places among their kind that they have or are to have, in ascending order.
-struct Things {
-  std::vector<std::pair<std::size_t, Shape>> shapes;
-  std::vector<std::pair<std::size_t, Instance>> instances;
-};
-
-template <class T>
-void put(std::vector<T>& into, std::vector<std::pair<std::size_t, T>>& from) {
-  std::vector<T> out;
-  out.reserve(into.size() + from.size());
-  auto next = from.begin();
-  for (T& each : into) {
-    while (next != from.end() && next->first == out.size()) out.push_back(std::move((next++)->second));
-    out.push_back(std::move(each));
-  }
-  while (next != from.end()) out.push_back(std::move((next++)->second));
-  into = std::move(out);
-}
-
-template <class T>
-void take_out(std::vector<T>& of, const std::vector<std::size_t>& places, std::vector<std::pair<std::size_t, T>>& to) {
-  std::vector<T> rest;
-  rest.reserve(of.size() - places.size());
-  auto next = places.begin();
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    if (next != places.end() && *next == i) {
-      to.emplace_back(i, std::move(of[i]));
-      ++next;
-    } else {
-      rest.push_back(std::move(of[i]));
-    }
-  }
-  of = std::move(rest);
 }
 
 }  // namespace
@@ -92,39 +68,12 @@ std::uint32_t world_shape(const Scene& scene, std::uint32_t id) {
 
 namespace {
 
-// Rearrangements, each of which gives the one that takes it back.
-template <class Rearrange>
-Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances);
-
-template <class Rearrange>
-Rearrange addition(std::shared_ptr<const Things> things) {
-  return {[things = std::move(things)](Scene& scene) {
-    Things copy = *things;
-    std::vector<std::size_t> shapes, instances;
-    for (const auto& [place, shape] : copy.shapes) shapes.push_back(place);
-    for (const auto& [place, instance] : copy.instances) instances.push_back(place);
-    put(scene.shapes, copy.shapes);
-    put(scene.instances, copy.instances);
-    return removal<Rearrange>(std::move(shapes), std::move(instances));
-  }};
-}
-
-template <class Rearrange>
-Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances) {
-  return {[shapes = std::move(shapes), instances = std::move(instances)](Scene& scene) {
-    auto things = std::make_shared<Things>();
-    take_out(scene.shapes, shapes, things->shapes);
-    take_out(scene.instances, instances, things->instances);
-    return addition<Rearrange>(std::move(things));
-  }};
-}
-
 using Materials = std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::vector<std::uint32_t>>>>;
 
 /// Shapes' `material` and `materials`.
 template <class Rearrange>
 Rearrange painting(Materials materials) {
-  return {[materials = std::move(materials)](Scene& scene) {
+  return {[materials = std::move(materials)](Scene& scene, HiddenPointer&) {
     Materials before;
     for (const auto& [id, of] : materials) {
       Shape& shape = scene.shapes[id];
@@ -173,6 +122,7 @@ Editor::Step Editor::step_of(const Change& change) const {
     }
     return painting<Rearrange>(std::move(out));
   }
+  if (auto part = step_of_part(change)) return *std::move(part);
   std::vector<std::size_t> shapes, instances;
   const auto sort_out = [&](const std::vector<std::uint32_t>& ids) {
     for (const std::uint32_t id : ids) {
@@ -208,7 +158,10 @@ Editor::Step Editor::step_of(const Change& change) const {
 Editor::Step Editor::take(const Step& step) {
   if (const auto* rearrange = std::get_if<Rearrange>(&step)) {
     Scene scene = live_.scene();
-    Rearrange back = rearrange->work(scene);
+    HiddenPointer hidden = hidden_;
+    Rearrange back = rearrange->work(scene, hidden);
+    if (rearrange->hidden) hidden = rearrange->hidden;
+    back.hidden = hidden_;
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
@@ -216,7 +169,13 @@ Editor::Step Editor::take(const Step& step) {
     if (before.shapes.size() != scene.shapes.size() || before.instances.size() != scene.instances.size()) ++renumberings_;
     ++rearrangements_;
     live_.replace(std::move(scene));
+    hidden_ = std::move(hidden);
     return back;
+  }
+  if (const auto* view = std::get_if<ViewEdit>(&step)) {
+    check_edit(live_.scene(), *view);
+    live_.edit(*view);
+    return std::exchange(view_, *view);
   }
   const InPlace& edits = std::get<InPlace>(step);
   InPlace back;
@@ -238,6 +197,7 @@ void Editor::make(const Change& change, bool goes_on) {
   Step back = take(step_of(change));
   undone_.clear();
   ++states_;
+  made_ = made_by(change);
   if (goes_on && !done_.empty() && have_same_places(done_.back().step, back))
     done_.back().state = states_;  // what is there takes back both
   else
@@ -253,6 +213,7 @@ std::optional<bool> Editor::way_to(std::uint64_t state) const {
 }
 
 bool Editor::have_same_places(const Step& a, const Step& b) {
+  if (std::holds_alternative<ViewEdit>(a)) return std::holds_alternative<ViewEdit>(b);
   const InPlace* of_a = std::get_if<InPlace>(&a);
   const InPlace* of_b = std::get_if<InPlace>(&b);
   return of_a && of_b &&

@@ -5,21 +5,24 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "lower/live_scene.h"
+#include "view/hidden.h"
 #include "view/messages.h"
 
 namespace caplet::view {
 
 /// Makes changes of a scene, each as a whole or not at all, and keeps what takes them back, without a limit. The camera is no
-/// change.
+/// change; the film's size is one, and of the document alone.
 class Editor {
  public:
   /// `live` must outlive this, and be changed (but for its view) by this alone.
-  explicit Editor(LiveScene& live) : live_(live) {}
+  explicit Editor(LiveScene& live) : live_(live), view_(view_of(live.scene())) {}
 
   /// Throws InputError when there is no such thing, or when validate() would refuse what is to stand there.
   /// `goes_on`: with the change before, as one, where that is of the same places.
@@ -35,6 +38,15 @@ class Editor {
   bool can_undo() const { return !done_.empty(); }
   bool can_redo() const { return !undone_.empty(); }
 
+  /// What is hidden: shapes, then instances, are its list.
+  const Hidden& hidden() const { return *hidden_; }
+  /// How the scene itself is rendered, whatever is looked at now.
+  const ViewEdit& view() const { return view_; }
+  /// The scene as it is to be kept: with what is hidden, and its own view.
+  Scene document() const;
+  /// What the last change made: things by their numbers, or a part by its index.
+  const std::vector<std::uint32_t>& made() const { return made_; }
+
   /// Changes so far, those taken back included, of what is told of the scene (rearrangements), and of those such that give things
   /// other numbers (renumberings).
   std::uint64_t rearrangements() const { return rearrangements_; }
@@ -44,9 +56,10 @@ class Editor {
   /// In place, or of the scene as a whole. Doing it gives what takes it back.
   using InPlace = std::vector<SceneEdit>;
   struct Rearrange {
-    std::function<Rearrange(Scene&)> work;
+    std::function<Rearrange(Scene&, HiddenPointer&)> work;
+    HiddenPointer hidden = {};  // of what takes back: what was hidden
   };
-  using Step = std::variant<InPlace, Rearrange>;
+  using Step = std::variant<InPlace, Rearrange, ViewEdit>;
 
   struct Done {
     Step step;                // what takes back, or makes again
@@ -54,11 +67,20 @@ class Editor {
   };
 
   Step step_of(const Change& change) const;
+  std::optional<Step> step_of_part(const Change& change) const;
+  Step set(const Set& set) const;
+  Step add(const Add& add) const;
+  Step hide(const Hide& hide) const;
+  Step show(const Show& show) const;
+  std::vector<std::uint32_t> made_by(const Change& change) const;
   Step take(const Step& step);
   static bool have_same_places(const Step& a, const Step& b);
   bool go(std::vector<Done>& from, std::vector<Done>& to);
 
   LiveScene& live_;
+  HiddenPointer hidden_ = std::make_shared<const Hidden>();
+  ViewEdit view_;
+  std::vector<std::uint32_t> made_;
   std::vector<Done> done_, undone_;
   std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0;
 };

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "view/detail/scene_text.h"
+#include "view/detail/shown_view.h"
 
 namespace caplet::view {
 
@@ -30,13 +31,8 @@ bool is_mark(const std::string& line) {
 
 }  // namespace
 
-Look look_of(const Scene& scene) {
-  return {scene.film.width, scene.film.height,        scene.camera.world_from_camera,
-          scene.camera.fov, scene.camera.lens_radius, scene.camera.focal_distance};
-}
-
 Keeping::Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper)
-    : live_(live), editor_(editor), keeper_(std::move(keeper)), own_(look_of(live.scene())), crop_(live.scene().film.crop) {
+    : editor_(editor), keeper_(std::move(keeper)), own_(look_of_scene(live.scene())) {
   if (!keeper_ || keeper_->lines().empty()) return;
   const std::size_t made = make_lines(keeper_->lines()), all = keeper_->lines().size();
   keeper_->has_made(made);
@@ -126,25 +122,21 @@ Json Keeping::save(const Save& save, const Look& look, const std::function<bool(
   const std::filesystem::path target = keeper_->target(save.name);
   if (const std::string lost = keeper_->lost_with(target); !lost.empty() && !save.replace)
     return {{"type", "save_asks"}, {"name", target.filename().string()}, {"camera", save.camera}, {"why", lost}};
-  Look own = own_;
-  if (save.camera) {
-    own = look;
-    own.width = own_.width;
-    own.height = own_.height;
+  const bool camera_is_new = save.camera || own_is_new_;
+  const Look own = save.camera ? look : own_;
+  Scene scene = editor_.document();
+  if (camera_is_new) {
+    Look one_eye = own;
+    one_eye.separation = 0;
+    one_eye.width = scene.film.width;
+    one_eye.height = scene.film.height;
+    scene.camera = shown_view(editor_.view(), one_eye, 1, 0).camera;
   }
-  Scene scene = live_.scene();
-  scene.camera.world_from_camera = own.world_from_camera;
-  scene.camera.fov = own.fov;
-  scene.camera.lens_radius = own.lens_radius;
-  scene.camera.focal_distance = own.focal_distance;
-  scene.film.width = own_.width;
-  scene.film.height = own_.height;
-  scene.film.crop = crop_;
   Json mark = Json::object();
-  if (save.camera || own_is_new_) mark["camera"] = camera_text(own);
+  if (camera_is_new) mark["camera"] = camera_text(own);
   keeper_->save(scene, target, mark.dump(), cancelled);
   own_ = own;
-  own_is_new_ = own_is_new_ || save.camera;
+  own_is_new_ = camera_is_new;
   saved_ = editor_.state();
   restored_ = 0;
   log::info("wrote {}", target.string());

@@ -9,50 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "view/detail/message_fields.h"
 
 namespace caplet::view {
 
 namespace {
 
-using nlohmann::json;
+using namespace message;
 
 constexpr int deepest = 8;
-
-[[noreturn]] void refuse(const std::string& field, const std::string& why) { throw InputError(SourceLocation{field}, why); }
-
-const json& field(const json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end()) refuse(name, "is missing");
-  return *found;
-}
-
-double number(const json& value, const std::string& name, double least, double most) {
-  if (!value.is_number()) refuse(name, "is not a number");
-  const double out = value.get<double>();
-  if (!(out >= least && out <= most)) refuse(name, fmt::format("is {}, and not in {} to {}", out, least, most));
-  return out;
-}
-
-int whole(const json& object, const char* name, int least, int most) {
-  const double out = number(field(object, name), name, least, most);
-  if (out != std::floor(out)) refuse(name, fmt::format("is {}, and no whole number", out));
-  return static_cast<int>(out);
-}
-
-bool truth(const json& object, const char* name) {
-  const json& value = field(object, name);
-  if (!value.is_boolean()) refuse(name, "is not true or false");
-  return value.get<bool>();
-}
-
-glm::dmat4 matrix(const json& object, const char* name) {
-  const json& rows = field(object, name);
-  if (!rows.is_array() || rows.size() != 16) refuse(name, "is not a list of sixteen numbers");
-  glm::dmat4 out;
-  for (int i = 0; i < 16; ++i)
-    out[i % 4][i / 4] = number(rows[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e12, 1e12);
-  return out;
-}
 
 Look look(const json& of) {
   Look out;
@@ -62,6 +27,9 @@ Look look(const json& of) {
   out.fov = number(field(of, "fov"), "fov", 1e-3, 3.14);
   out.lens_radius = number(field(of, "lens_radius"), "lens_radius", 0, 1e9);
   out.focal_distance = number(field(of, "focal_distance"), "focal_distance", 1e-9, 1e12);
+  if (of.contains("separation")) out.separation = number(of["separation"], "separation", 0, 1e9);
+  if (of.contains("convergence")) out.convergence = number(of["convergence"], "convergence", 0, 1e12);
+  if (of.contains("orthographic")) out.orthographic = number(of["orthographic"], "orthographic", 0, 1e18);
   return out;
 }
 
@@ -72,36 +40,7 @@ Ask ask(const json& of) {
   out.y = whole(of, "y", 0, most_page_pixels - 1);
   out.all = truth(of, "all");
   out.reference = truth(of, "reference");
-  return out;
-}
-
-constexpr double most_id = 4294967294.0;
-
-std::uint32_t id(const json& value, const std::string& name) {
-  const double out = number(value, name, 0, most_id);
-  if (out != std::floor(out)) refuse(name, fmt::format("is {}, and no whole number", out));
-  return static_cast<std::uint32_t>(out);
-}
-
-std::uint32_t id(const json& object, const char* name) { return id(field(object, name), std::string(name)); }
-
-std::vector<std::uint32_t> ids(const json& object) {
-  const json& list = field(object, "ids");
-  if (!list.is_array() || list.empty() || list.size() > most_chosen)
-    refuse("ids", fmt::format("is not a list of 1 to {} numbers", most_chosen));
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < list.size(); ++i) out.push_back(id(list[i], fmt::format("ids[{}]", i)));
-  std::ranges::sort(out);
-  if (const auto twice = std::ranges::adjacent_find(out); twice != out.end())
-    refuse("ids", fmt::format("names {} twice", *twice));
-  return out;
-}
-
-glm::dvec3 point(const json& object, const char* name) {
-  const json& list = field(object, name);
-  if (!list.is_array() || list.size() != 3) refuse(name, "is not a list of three numbers");
-  glm::dvec3 out;
-  for (int i = 0; i < 3; ++i) out[i] = number(list[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e30, 1e30);
+  if (of.contains("eye")) out.eye = whole(of, "eye", 0, 1);
   return out;
 }
 
@@ -121,7 +60,8 @@ Change change(const json& of) {
   }
   if (what == "duplicate") return Duplicate{ids(of), point(of, "by")};
   if (what == "delete") return Delete{ids(of)};
-  refuse("what", "is none of move, reshape, paint, duplicate and delete");
+  if (const auto of_form = form_change(of)) return std::visit([](const auto& one) { return Change(one); }, *of_form);
+  refuse("what", fmt::format("is none of move, reshape, paint, duplicate, delete, {}", form_changes));
 }
 
 Save save(const json& of) {
@@ -160,12 +100,15 @@ Message parse_message(std::string_view text) {
   if (type == "snapshot") return Snapshot{};
   if (type == "describe")
     return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"), id(message, "primitive")};
-  if (type == "edit") return Edit{change(message), truth(message, "goes_on")};
+  if (type == "form") return Form{number(field(message, "number"), "number", 0, 1e15), part(message)};
+  if (type == "edit")
+    return Edit{change(message), truth(message, "goes_on"),
+                message.contains("number") ? number(message["number"], "number", 0, 1e15) : 0};
   if (type == "undo") return Undo{truth(message, "again")};
   if (type == "save") return save(message);
   if (type == "discard") return Discard{};
   if (type == "kept") return Kept{truth(message, "restore")};
-  refuse("type", "is none of look, seen, ask, snapshot, describe, edit, undo, save, discard and kept");
+  refuse("type", "is none of look, seen, ask, snapshot, describe, form, edit, undo, save, discard and kept");
 }
 
 }  // namespace caplet::view

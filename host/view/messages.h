@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "view/parts.h"
+
 namespace caplet::view {
 
 /// How the scene is looked at, and in how many pixels.
@@ -21,6 +23,9 @@ struct Look {
   glm::dmat4 world_from_camera{1};
   double fov = 0;  // radians, of the shorter side
   double lens_radius = 0, focal_distance = 1;
+  double orthographic = 0;  // half the shorter side of what is seen, of parallel rays; 0: perspective
+  double separation = 0;    // of a pair of eyes; 0: one alone
+  double convergence = 0;   // what is so far before them is at one place in both views; 0: what is infinitely far
 };
 /// Whether anybody sees the page.
 struct Seen {
@@ -31,6 +36,7 @@ struct Ask {
   double number = 0;  // given back with the answer
   int x = 0, y = 0;
   bool all = false, reference = false;
+  int eye = 0;  // of a pair: 1 the right
 };
 /// The picture in full, as an EXR file.
 struct Snapshot {};
@@ -67,11 +73,12 @@ struct Duplicate {
 struct Delete {
   std::vector<std::uint32_t> ids;
 };
-using Change = std::variant<Move, Reshape, Paint, Duplicate, Delete>;
+using Change = std::variant<Move, Reshape, Paint, Duplicate, Delete, Set, Add, Remove, Hide, Show>;
 
 struct Edit {
   Change change;
   bool goes_on = false;  // with the gesture of the change before: the two are taken back as one
+  double number = 0;     // given back with what comes of it
 };
 /// Takes the last change back, or makes it again.
 struct Undo {
@@ -91,16 +98,13 @@ struct Kept {
   bool restore = false;  // make them again, as far as they can be; else they are forgotten
 };
 
-using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Edit, Undo, Save, Discard, Kept>;
+using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
 
 /// Longest name of a file, in bytes.
 inline constexpr std::size_t longest_name = 200;
 
 /// Largest picture that the page may ask for, in pixels along a side.
 inline constexpr int most_page_pixels = 4096;
-
-/// Most things that one change may name.
-inline constexpr std::size_t most_chosen = 10000;
 
 /// Throws InputError that says which field is wrong.
 Message parse_message(std::string_view text);

@@ -15,6 +15,7 @@ namespace caplet::view {
 struct Picture {
   std::uint64_t version = 0;  // grows with each
   std::uint32_t view = 0;     // of the camera and the scene that it shows: pictures of one view converge to one
+  int eye = 0;                // of a pair: 1 the right
   int width = 0, height = 0;  // of what was rendered
   int scale = 1;              // pixels of the page's picture along a side that one of these stands for
   std::uint32_t samples = 0;

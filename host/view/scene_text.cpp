@@ -30,7 +30,10 @@ Json camera_text(const Look& look) {
   return {{"world_from_camera", to_json(look.world_from_camera)},
           {"fov", look.fov},
           {"lens_radius", look.lens_radius},
-          {"focal_distance", look.focal_distance}};
+          {"focal_distance", look.focal_distance},
+          {"orthographic", look.orthographic},
+          {"separation", look.separation},
+          {"convergence", look.convergence}};
 }
 
 Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples) {
@@ -56,6 +59,15 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   Json materials = Json::array();
   for (std::uint32_t i = 0; i < scene.materials.size(); ++i) materials.push_back(material_label(scene, i));
   out["materials"] = std::move(materials);
+  return out;
+}
+
+Json hidden_text(const Scene& scene, const Hidden& hidden) {
+  Json out = Json::array();
+  for (const auto& [place, shape] : hidden.shapes)
+    if (out.size() < most_named) out.push_back(shape->name.empty() ? geometry_name(*shape) : shape->name);
+  for (const auto& [place, instance] : hidden.instances)
+    if (out.size() < most_named) out.push_back(scene.objects[instance->object].name);
   return out;
 }
 

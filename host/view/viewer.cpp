@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <condition_variable>
 #include <deque>
@@ -27,8 +28,10 @@
 #include "report/pick_report.h"
 #include "view/detail/keeping.h"
 #include "view/detail/scene_text.h"
+#include "view/detail/shown_view.h"
 #include "view/detail/snapshot.h"
 #include "view/editor.h"
+#include "view/forms.h"
 #include "view/messages.h"
 #include "view/page.h"
 #include "view/picture.h"
@@ -40,7 +43,7 @@ namespace {
 constexpr int coarsest_scale = 16;
 constexpr double first_guess_paths_a_second = 5e5;
 constexpr std::size_t most_crossings = 4096;
-constexpr std::size_t most_questions = 8, most_edits = 1000;  // that wait
+constexpr std::size_t most_questions = 16, most_edits = 1000;  // that wait
 
 using Text = std::shared_ptr<const std::string>;
 
@@ -49,7 +52,12 @@ Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<co
 /// A new view is wanted: the picture under way is of no more use.
 struct Superseded {};
 
-std::string error_text(const std::string& what) { return nlohmann::ordered_json{{"type", "error"}, {"text", what}}.dump(); }
+/// `number`: of what was asked for, where that has one.
+std::string error_text(const std::string& what, double number = 0) {
+  nlohmann::ordered_json out{{"type", "error"}, {"text", what}};
+  if (number > 0) out["number"] = number;
+  return out.dump();
+}
 
 }  // namespace
 
@@ -57,7 +65,7 @@ class Viewer::State {
  public:
   State(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper)
       : options_(options), live_(std::move(scene)), editor_(live_), device_(device), keeping_(live_, editor_, std::move(keeper)) {
-    full_ = wanted_ = look_of(live_.scene());
+    full_ = wanted_ = look_of_scene(live_.scene());
     session_.emplace(live_.flat(), live_.view(), std::vector<Device>{device}, session_options());
     (void)live_.take_changes();
     query_.emplace(*session_->scene_on(0));
@@ -69,7 +77,9 @@ class Viewer::State {
     events.left = [this](ClientId id) { left(id); };
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
-    hello_ = scene_text(live_.scene(), device_.info().name, target());
+    hello_ = told_scene();
+    hello_["parts"] = told_parts();
+    hello_["lists"] = lists_text();
     hello_["home"] = camera_text(full_);
     hello_["read_only"] = options.read_only;
     hello_["can_undo"] = editor_.can_undo();
@@ -102,7 +112,7 @@ class Viewer::State {
   }
 
  private:
-  using Question = std::variant<Ask, Describe>;
+  using Question = std::variant<Ask, Describe, Form>;
   struct Wish {
     ClientId from = 0;
     Message message;
@@ -110,7 +120,7 @@ class Viewer::State {
   };
   struct Client {
     bool seen = true;
-    std::shared_ptr<const Picture> shown;
+    std::array<std::shared_ptr<const Picture>, 2> shown;  // of both eyes
     std::deque<Question> asked;
     bool wants_snapshot = false;
   };
@@ -119,6 +129,13 @@ class Viewer::State {
     SessionOptions out;
     out.layers = Layers::none().with(Layer::object).with(Layer::primitive).with(Layer::variance);
     out.batch_paths = options_.batch_paths;
+    return out;
+  }
+
+  nlohmann::ordered_json told_scene() const { return scene_text(live_.scene(), device_.info().name, target()); }
+  nlohmann::ordered_json told_parts() const {
+    nlohmann::ordered_json out = parts_text(live_.scene());
+    out["hidden"] = hidden_text(live_.scene(), editor_.hidden());
     return out;
   }
 
@@ -166,6 +183,8 @@ class Viewer::State {
         if (client.asked.size() < most_questions) client.asked.emplace_back(*ask);
       } else if (const Describe* describe = std::get_if<Describe>(&message)) {
         if (client.asked.size() < most_questions) client.asked.emplace_back(*describe);
+      } else if (const Form* form = std::get_if<Form>(&message)) {
+        if (client.asked.size() < most_questions) client.asked.emplace_back(*form);
       } else if (std::holds_alternative<Snapshot>(message)) {
         client.wants_snapshot = true;
       } else {
@@ -188,9 +207,15 @@ class Viewer::State {
     {
       const std::lock_guard lock(mutex_);
       const auto client = clients_.find(id);
-      if (client == clients_.end() || !picture_ || picture_->version == shown || !client->second.seen) return {};
-      now = picture_;
-      before = std::exchange(client->second.shown, now);
+      if (client == clients_.end() || !client->second.seen) return {};
+      const auto is_new = [&](std::size_t eye) {
+        const auto& had = client->second.shown[eye];
+        return pictures_[eye] && (!had || had->version != pictures_[eye]->version);
+      };
+      if (!is_new(0) && !is_new(1)) return {};
+      const std::size_t eye = is_new(0) ? 0 : 1;
+      now = pictures_[eye];
+      before = std::exchange(client->second.shown[eye], now);
     }
     shown = now->version;
     return std::make_shared<const std::string>(packed(*now, before.get()));
@@ -237,7 +262,7 @@ class Viewer::State {
     const std::lock_guard lock(mutex_);
     return is_seen();
   }
-  bool has_more() const { return scale_ != 1 || samples_ < target(); }
+  bool has_more() const { return scale_ != 1 || samples_[eyes() - 1] < target(); }
 
   std::optional<Look> take_wanted() {
     const std::lock_guard lock(mutex_);
@@ -256,27 +281,35 @@ class Viewer::State {
     if (wishes.empty()) return false;
     const std::uint64_t before = editor_.rearrangements(), numbers = editor_.renumberings();
     bool edited = false;
+    std::vector<std::pair<ClientId, Text>> made;
     for (const Wish& wish : wishes) try {
-        if (const Save* save = std::get_if<Save>(&wish.message))
+        if (const Save* save = std::get_if<Save>(&wish.message)) {
           tell(keeping_.save(*save, full_, [this] { return is_ending(); }), wish.from);
-        else
-          edited = keeping_.make(wish.message, wish.text) || edited;
+          continue;
+        }
+        edited = keeping_.make(wish.message, wish.text) || edited;
+        if (const Edit* edit = std::get_if<Edit>(&wish.message); edit && edit->number > 0)
+          made.emplace_back(wish.from, text_of({{"type", "made"}, {"number", edit->number}, {"ids", editor_.made()}}));
       } catch (const std::exception& error) {  // what is wrong with it, or a file that cannot be written
-        server_->send(wish.from, std::make_shared<const std::string>(error_text(error.what())));
+        const Edit* edit = std::get_if<Edit>(&wish.message);
+        server_->send(wish.from, std::make_shared<const std::string>(error_text(error.what(), edit ? edit->number : 0)));
       }
     nlohmann::ordered_json told{{"type", "edited"},
                                 {"can_undo", editor_.can_undo()},
                                 {"can_redo", editor_.can_redo()},
                                 {"renumbered", editor_.renumberings() != numbers},
                                 {"keep", keeping_.text()}};
-    if (editor_.rearrangements() != before) told["scene"] = scene_text(live_.scene(), device_.info().name, target());
+    if (editor_.rearrangements() != before) told["scene"] = told_scene();
+    told["samples"] = target();
+    told["parts"] = told_parts();
     {
       const std::lock_guard lock(mutex_);
-      for (const char* name : {"can_undo", "can_redo", "keep"}) hello_[name] = told[name];
+      for (const char* name : {"can_undo", "can_redo", "keep", "samples", "parts"}) hello_[name] = told[name];
       if (told.contains("scene"))
         for (const auto& [name, value] : told["scene"].items()) hello_[name] = value;
     }
     server_->send_to_all(text_of(told));
+    for (const auto& [id, text] : made) server_->send(id, text);
     return edited;
   }
 
@@ -300,20 +333,29 @@ class Viewer::State {
     return ended_ || wanted_number_ != number_ || !edits_.empty();
   }
 
+  std::size_t eyes() const { return full_.separation > 0 ? 2 : 1; }
+
+  void look_with(const Look& look, int scale, std::size_t eye) {
+    ViewEdit own = view_of(live_.scene());
+    own.camera = editor_.view().camera;
+    live_.edit(shown_view(own, look, scale, static_cast<int>(eye)));
+    session_->update(live_.flat(), live_.take_changes(), live_.view());
+    eye_ = eye;
+  }
+
   /// The film for `look`, a pixel for each square of `scale` pixels.
   void set_film(const Look& look, int scale) {
-    ViewEdit view = view_of(live_.scene());
-    view.camera.world_from_camera = look.world_from_camera;
-    view.camera.fov = look.fov;
-    view.camera.lens_radius = look.lens_radius;
-    view.camera.focal_distance = look.focal_distance;
-    view.film.crop.reset();
-    view.film.width = (look.width - 1) / scale + 1;
-    view.film.height = (look.height - 1) / scale + 1;
-    live_.edit(view);
-    session_->update(live_.flat(), live_.take_changes(), live_.view());
+    look_with(look, scale, 0);
     scale_ = scale;
-    samples_ = 0;
+    samples_ = {0, 0};
+    films_ = {};
+  }
+
+  /// The other of a pair, with the samples that it has.
+  void change_eyes() {
+    films_[eye_] = session_->film();
+    look_with(full_, scale_, 1 - eye_);
+    if (samples_[eye_] > 0) session_->resume(std::move(*films_[eye_]));
   }
 
   void begin(const Look& look) {
@@ -324,15 +366,22 @@ class Viewer::State {
     set_film(look, scale);
     full_ = look;
     ++view_;
+    const std::lock_guard lock(mutex_);
+    if (eyes() == 1) pictures_[1].reset();
   }
 
   void step() {
-    if (scale_ == 0 || (scale_ > 1 && samples_ > 0)) set_film(full_, 1);
+    const bool both = samples_[0] > 0 && (eyes() == 1 || samples_[1] > 0);
+    if (scale_ == 0 || (scale_ > 1 && both)) set_film(full_, 1);
+    const std::size_t eye = eyes() == 2 && samples_[1] < samples_[0] ? 1 : 0;
+    if (eye != eye_) change_eyes();
     const double pixels = static_cast<double>(live_.scene().film.width) * live_.scene().film.height;
     const double affordable = options_.step_seconds * paths_a_second_ / pixels;
-    const std::uint32_t count = scale_ > 1 ? 1
-                                           : std::clamp(static_cast<std::uint32_t>(affordable), 1u,
-                                                        std::max(1u, std::min(samples_, target() - samples_)));
+    std::uint32_t count = 1;
+    if (scale_ == 1)
+      count = eye == 1 ? samples_[0] - samples_[1]
+                       : std::clamp(static_cast<std::uint32_t>(affordable), 1u,
+                                    std::max(1u, std::min(samples_[0], target() - samples_[0])));
     const bool is_coarse = scale_ > 1;
     const Clock::time_point start = Clock::now();
     session_->render(count, [&](const SessionProgress&) {
@@ -342,7 +391,7 @@ class Viewer::State {
     });
     const double seconds = std::max(1e-4, seconds_since(start));
     paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
-    samples_ += count;
+    samples_[eye_] += count;
     publish();
     if (scale_ == 1) keeping_.pause();
   }
@@ -353,11 +402,12 @@ class Viewer::State {
     auto picture = std::make_shared<Picture>(shown_of(image, scale_ == 1));
     picture->version = ++version_;
     picture->view = view_;
+    picture->eye = static_cast<int>(eye_);
     picture->scale = scale_;
-    picture->samples = samples_;
+    picture->samples = samples_[eye_];
     {
       const std::lock_guard lock(mutex_);
-      picture_ = std::move(picture);
+      pictures_[eye_] = std::move(picture);
     }
     server_->picture_changed();
   }
@@ -376,7 +426,7 @@ class Viewer::State {
           question = found->second.asked.front();
           found->second.asked.pop_front();
         } else {
-          if (scale_ != 1 || samples_ == 0) return;  // as soon as there is a picture
+          if (scale_ != 1 || samples_[0] == 0) return;  // as soon as there is a picture
           found->second.wants_snapshot = false;
         }
       }
@@ -390,9 +440,8 @@ class Viewer::State {
   Text answer(const Ask& ask) {
     nlohmann::ordered_json out{{"type", "answer"}, {"number", ask.number}};
     const Scene& scene = live_.scene();
-    const int scale = std::max(1, scale_);
     // The ray of the full picture's pixel, whatever is rendered now.
-    const RayRecord ray = ray_at(ask.x, ask.y, scale);
+    const RayRecord ray = ray_at(ask);
     report::PickReport told;
     told.pixel = {ask.x, ask.y};
     told.ray = ray;
@@ -414,14 +463,25 @@ class Viewer::State {
     return text_of(out);
   }
 
-  RayRecord ray_at(int x, int y, int scale) {
-    if (scale == 1) return ray_of_pixel(live_.scene(), std::min(x, full_.width - 1), std::min(y, full_.height - 1));
-    return ray_of_pixel(live_.scene(), std::min(x / scale, live_.scene().film.width - 1),
-                        std::min(y / scale, live_.scene().film.height - 1));
+  Text answer(const Form& form) {
+    nlohmann::ordered_json out{{"type", "answer"}, {"number", form.number}};
+    out["form"] = form_text(live_.scene(), editor_.view(), form.part);
+    return text_of(out);
+  }
+
+  RayRecord ray_at(const Ask& ask) const {
+    ViewEdit own = view_of(live_.scene());
+    own.camera = editor_.view().camera;
+    const ViewEdit view = shown_view(own, full_, 1, ask.eye);
+    Scene looked;
+    looked.camera = view.camera;
+    looked.film = view.film;
+    return ray_of_pixel(looked, std::min(ask.x, full_.width - 1), std::min(ask.y, full_.height - 1));
   }
 
   Text snapshot() {
-    return std::make_shared<const std::string>(exr_bytes(develop(session_->film(), live_.scene(), session_options().layers)));
+    return std::make_shared<const std::string>(
+        exr_bytes(develop(eye_ == 0 ? session_->film() : *films_[0], live_.scene(), session_options().layers)));
   }
 
   ViewerOptions options_;
@@ -436,8 +496,11 @@ class Viewer::State {
   // Of the renderer's thread.
   Look full_;
   std::uint64_t number_ = 0, version_ = 0;
-  std::uint32_t view_ = 1, samples_ = 0;
-  int scale_ = 0;  // of the film; 0: it has nothing
+  std::uint32_t view_ = 1;
+  std::array<std::uint32_t, 2> samples_{};  // of both eyes
+  std::array<std::optional<Film>, 2> films_;
+  std::size_t eye_ = 0;  // whose film the session has
+  int scale_ = 0;        // of the film; 0: it has nothing
   double paths_a_second_ = first_guess_paths_a_second;
 
   std::mutex mutex_;  // of all that follows
@@ -446,7 +509,7 @@ class Viewer::State {
   std::uint64_t wanted_number_ = 1;
   std::deque<Wish> edits_;
   std::map<ClientId, Client> clients_;
-  std::shared_ptr<const Picture> picture_;
+  std::array<std::shared_ptr<const Picture>, 2> pictures_;
   nlohmann::ordered_json hello_;
   bool ended_ = false;
   std::exception_ptr failure_;

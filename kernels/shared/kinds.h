@@ -167,4 +167,7 @@ enum {
 #ifdef __cplusplus
 }
 #endif
+// CameraRecord::origins of parallel rays
+#define CAPLET_ORTHOGRAPHIC 2u
+
 #endif

@@ -29,6 +29,6 @@ static void stage_item(const Stage* g, uint path) {
   g->carried.path_flags[path] = PATH_SPECULAR;
   g->radiance.path_radiance[path] = (float4)(0.0f);
   layers_of_nothing(g->batch.batch, path, g->layers.path_layers);
-  if (has_cones) g->cones.path_cone[path] = (float2)(0.0f, CAPLET_CONE_SHARE * camera_spread(g->camera.camera, raster));
+  if (has_cones) g->cones.path_cone[path] = CAPLET_CONE_SHARE * camera_spread(g->camera.camera, raster);
   g->queues.queue[path] = path;
 }

@@ -21,6 +21,7 @@
 #include "live_pictures.h"
 #include "support/data.h"
 #include "view/detail/keeping.h"
+#include "view/detail/shown_view.h"
 
 namespace caplet::view {
 namespace {
@@ -71,7 +72,7 @@ struct Sitting {
   }
   bool say(const std::string& text) { return keeping->make(parse_message(text), text); }
   nlohmann::ordered_json save(std::optional<std::string> name = {}, bool replace = true) {
-    return keeping->save({std::move(name), false, replace}, look_of(live.scene()), {});
+    return keeping->save({std::move(name), false, replace}, look_of_scene(live.scene()), {});
   }
   nlohmann::ordered_json told() const { return keeping->text(); }
   double x_of(std::uint32_t id) const { return live.scene().shapes[id].world_from_object[3].x; }
@@ -390,7 +391,7 @@ TEST(Keeping, AFailedSaveLeavesAllAsItWas) {
   const fs::path file = scene_file();
   Sitting run(file);
   run.say(move_line(1, 0.5));
-  EXPECT_ANY_THROW(run.keeping->save({{}, false, true}, look_of(run.live.scene()), [] { return true; }));
+  EXPECT_ANY_THROW(run.keeping->save({{}, false, true}, look_of_scene(run.live.scene()), [] { return true; }));
   EXPECT_EQ(text_of(file), test::some_text);
   EXPECT_THAT(names_in(file.parent_path()), ElementsAre(".scene.pbrt.unsaved", "scene.pbrt"));
   EXPECT_TRUE(run.told()["unsaved"]);
@@ -401,7 +402,7 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
   const Scene before = import_scene(file, FileImageReader());
   {
     Sitting run(file);
-    Look look = look_of(before);
+    Look look = look_of_scene(before);
     look.width = 777;
     look.fov = 0.5;
     look.world_from_camera[3].x += 1;

@@ -13,7 +13,7 @@
 namespace caplet::pbrt {
 
 /// `camera_from_world` is the current transform.
-void set_camera(Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene);
+void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene);
 void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene);
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
 /// Returns the sampler's own seed, if it has one.

@@ -188,6 +188,7 @@ Bounds bounds_under(const PolyhedronShape& polyhedron, const glm::dmat4& m) {
 void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
   const std::size_t planes = polyhedron.points.size();
   if (polyhedron.normals.size() != planes) return report.error("the polyhedron has another number of normals than of points");
+  if (planes == 0) return report.error("the polyhedron has no planes");
   if (planes > max_polyhedron_planes)
     return report.error("the polyhedron has " + std::to_string(planes) + " planes, more than " +
                         std::to_string(max_polyhedron_planes));

@@ -17,9 +17,6 @@
 
 namespace caplet::view {
 
-/// How the scene itself is looked at.
-Look look_of(const Scene& scene);
-
 class Keeping {
  public:
   /// Makes again what `keeper` has of an earlier session. Both scenes outlive this. Without a keeper nothing is kept, nor saved.
@@ -48,12 +45,10 @@ class Keeping {
   bool make_line(const std::string& line);
   std::size_t make_lines(const std::vector<std::string>& lines);
 
-  LiveScene& live_;
   Editor& editor_;
   std::unique_ptr<Keeper> keeper_;
   Look own_;
-  bool own_is_new_ = false;  // it was saved with another camera than it came with
-  decltype(FilmSettings::crop) crop_;
+  bool own_is_new_ = false;   // it was saved with another camera than it came with
   std::uint64_t saved_ = 0;   // state of the editor
   std::size_t restored_ = 0;  // changes of an earlier session
 };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "view/hidden.h"
 #include "view/messages.h"
 
 namespace caplet::view {
@@ -21,6 +22,9 @@ nlohmann::ordered_json camera_text(const Look& look);
 /// Its name, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at
 /// which a picture is done.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
+
+/// Names of what is hidden: shapes, then instances.
+nlohmann::ordered_json hidden_text(const Scene& scene, const Hidden& hidden);
 
 /// A thing: its place in the world, bounds, surfaces with their materials, and a capsule of it where it has some, with its ends
 /// in the world. Null where there is none.

@@ -22,6 +22,10 @@ export class Camera {
     this.right = column(0); this.up = column(1); this.forward = column(2); this.eye = column(3);
     this.fov = from.fov; this.lens_radius = from.lens_radius; this.focal_distance = from.focal_distance;
     this.target = null;
+    this.separation = from.separation ?? 0; this.convergence = from.convergence ?? 0;
+    this.parallel = from.orthographic > 0;
+    // A distance from which a perspective camera frames the same.
+    if (this.parallel) this.target = add(this.eye, mul(unit(this.forward), from.orthographic / Math.tan(this.fov / 2)));
   }
   copy() {
     const out = Object.create(Camera.prototype);
@@ -30,6 +34,8 @@ export class Camera {
   matrix() {
     return [0, 1, 2].flatMap((i) => [this.right[i], this.up[i], this.forward[i], this.eye[i]]).concat([0, 0, 0, 1]);
   }
+  // Half the shorter side of what is seen at the distance of the target: there both cameras frame the same.
+  half() { return this.distance() * Math.tan(this.fov / 2); }
   distance() { return length(sub(this.target, this.eye)); }
   turn(axis, angle) {
     for (const name of ["right", "up", "forward"]) this[name] = turned(this[name], axis, angle);

@@ -5,6 +5,8 @@ import { add, cross, dot, length, mul, sub, unit } from "./camera.js";
 import { texts } from "./texts.js";
 
 const NS = "http://www.w3.org/2000/svg", COLORS = ["#ff5a4d", "#5fd35f", "#5a9bff"], AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const ANGLE = Math.PI / 12;  // a step of turns
+const snaps = (event) => event.shiftKey || event.ctrlKey;
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const make = (name, attributes) => {
   const out = document.createElementNS(NS, name);
@@ -26,8 +28,8 @@ const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; retur
 
 export class Edits {
   // `say` sends a message, `ask` one that is answered, `view` gives the camera, `stage` is what the picture fills.
-  constructor({ say, describe, view, stage, find }) {
-    Object.assign(this, { say, describe, view, stage, find });
+  constructor({ say, describe, view, stage, find, shown }) {
+    Object.assign(this, { say, describe, view, stage, find, shown });
     this.ids = [];
     this.primitive = 0;
     this.thing = null;
@@ -73,7 +75,7 @@ export class Edits {
   // Asks what it is now.
   refresh() {
     this.find("edit").hidden = !this.ids.length || this.read_only;
-    if (!this.ids.length) { this.draw(); return; }
+    if (!this.ids.length) { this.shown(null, "", false); this.draw(); return; }
     if (this.busy) { this.again = true; return; }
     this.busy = true;
     this.describe(this.ids[this.ids.length - 1], this.primitive, (thing) => {
@@ -94,6 +96,7 @@ export class Edits {
     find("surface").value = +surface < materials.length ? surface : "";
     const now = surface === "" ? (new Set(materials).size === 1 ? materials[0] : "") : materials[+surface] ?? "";
     find("material").value = String(now);
+    this.shown(this.ids.length === 1 ? this.ids[0] : null, now, materials.length > 0);
     find("material").disabled = !materials.length;
     find("capsule").hidden = !capsule || this.ids.length !== 1;
     for (const name of ["p0", "p1", "radius0", "radius1"])
@@ -102,25 +105,36 @@ export class Edits {
 
   // --- Handles ---
 
+  // Half the shorter side of what is seen so far away.
+  half(z) { const camera = this.view(); return camera.parallel ? camera.half() : z * Math.tan(camera.fov / 2); }
   // A point of the world in the stage, in CSS pixels; null behind the camera.
   project(p) {
     const camera = this.view(), d = sub(p, camera.eye), z = dot(d, unit(camera.forward)) / length(camera.forward);
     if (z <= 0) return null;
-    const { clientWidth: w, clientHeight: h } = this.stage, scale = Math.min(w, h) / 2 / Math.tan(camera.fov / 2) / z;
+    const { clientWidth: w, clientHeight: h } = this.stage, scale = Math.min(w, h) / 2 / this.half(z);
     return [w / 2 + scale * dot(d, unit(camera.right)), h / 2 - scale * dot(d, unit(camera.up)), z];
   }
   draw() {
+    if (this.dragged) return;  // a handle that goes loses the pointer
     this.handles.replaceChildren();
-    if (!this.thing || !this.ids.length || this.read_only) return;
+    if (!this.thing || !this.ids.length || this.read_only || this.view().separation > 0) return;
     const center = this.center(), at = this.project(center);
     if (!at) return;
-    const camera = this.view(), reach = 70 * at[2] * 2 * Math.tan(camera.fov / 2) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
+    const camera = this.view(), reach = 70 * 2 * this.half(at[2]) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
     AXES.forEach((axis, i) => {
       const end = this.project(add(center, mul(axis, reach)));
       if (!end) return;
       this.handles.append(make("line", { x1: at[0], y1: at[1], x2: end[0], y2: end[1], stroke: COLORS[i], "stroke-width": 3 }));
       this.handle("rect", { x: end[0] - 6, y: end[1] - 6, width: 12, height: 12, fill: COLORS[i], "data-handle": "xyz"[i] }, (start, move) => this.along(center, axis, start, move));
     });
+    this.draw_rings(center, reach);
+    this.draw_planes(center, reach);
+    const diagonal = this.project(add(center, mul(add(unit(camera.right), unit(camera.up)), 0.85 * reach)));
+    if (diagonal) this.grip("path", { d: `M${diagonal[0]} ${diagonal[1] - 8}l8 8l-8 8l-8 -8z`, fill: "#fff", stroke: "#333", "data-handle": "scale" }, 1, (start, move) => {
+      const box = this.stage.getBoundingClientRect(), far = (event) => Math.hypot(event.clientX - box.left - at[0], event.clientY - box.top - at[1]) || 1;
+      const factor = Math.max(0.01, far(move) / far(start));
+      return snaps(move) ? Math.max(0.1, Math.round(factor * 10) / 10) : factor;
+    }, (now, gone) => about(center, [0, 0, 1], 0, now / gone));
     this.handle("circle", { cx: at[0], cy: at[1], r: 7, fill: "#fff", stroke: "#333", "data-handle": "plane" }, (start, move) => this.in_plane(center, start, move));
     const capsule = this.thing.capsule;
     if (!capsule || this.ids.length !== 1) return;
@@ -129,6 +143,64 @@ export class Edits {
       if (end) this.handle("circle", { cx: end[0], cy: end[1], r: 6, fill: "#ffd24d", stroke: "#333", "data-handle": name }, (start, move) => this.in_plane(capsule[name], start, move), (by) => this.reshape({ [name]: add(this.held[name], by) }, this.moved++ > 0));
     }
   }
+  draw_rings(center, reach) {
+    AXES.forEach((axis, i) => {
+      const [u, v] = [AXES[(i + 1) % 3], AXES[(i + 2) % 3]], points = [];
+      for (let k = 0; k <= 48; ++k) {
+        const angle = k * Math.PI / 24, p = this.project(add(center, add(mul(u, 0.75 * reach * Math.cos(angle)), mul(v, 0.75 * reach * Math.sin(angle)))));
+        if (!p) return;
+        points.push(`${p[0].toFixed(1)},${p[1].toFixed(1)}`);
+      }
+      const angle_at = (event) => { const p = this.on_plane(center, axis, event); return p && Math.atan2(dot(sub(p, center), v), dot(sub(p, center), u)); };
+      this.grip("polyline", { points: points.join(" "), fill: "none", stroke: COLORS[i], "stroke-width": 4, "stroke-opacity": 0.55, "pointer-events": "stroke", "data-handle": `turn-${"xyz"[i]}` }, 0, (start, move) => {
+        const from = angle_at(start), to = angle_at(move);
+        let angle = from === null || to === null ? (move.clientX - start.clientX) * 0.01 : to - from;
+        angle -= 2 * Math.PI * Math.round(angle / (2 * Math.PI));
+        return snaps(move) ? ANGLE * Math.round(angle / ANGLE) : angle;
+      }, (now, gone) => about(center, axis, now - gone, 1));
+    });
+  }
+  draw_planes(center, reach) {
+    AXES.forEach((axis, i) => {
+      const [u, v] = [AXES[(i + 1) % 3], AXES[(i + 2) % 3]];
+      const corners = [[0.25, 0.25], [0.45, 0.25], [0.45, 0.45], [0.25, 0.45]].map(([a, b]) => this.project(add(center, add(mul(u, a * reach), mul(v, b * reach)))));
+      if (corners.includes(null)) return;
+      this.handle("polygon", { points: corners.map((p) => `${p[0].toFixed(1)},${p[1].toFixed(1)}`).join(" "), fill: COLORS[i], "fill-opacity": 0.5, stroke: COLORS[i], "data-handle": `plane-${"xyz"[i]}` }, (start, move) => {
+        const from = this.on_plane(center, axis, start), to = this.on_plane(center, axis, move);
+        return from && to ? sub(to, from) : [0, 0, 0];
+      });
+    });
+  }
+  // Where the ray under the pointer meets the plane through a point; null where it does not, or hardly.
+  on_plane(center, normal, event) {
+    const camera = this.view(), box = this.stage.getBoundingClientRect(), pixel = 2 * this.half(1) / Math.min(box.width, box.height);
+    const aside = add(mul(unit(camera.right), (event.clientX - box.left - box.width / 2) * pixel), mul(unit(camera.up), -(event.clientY - box.top - box.height / 2) * pixel));
+    const forward = unit(camera.forward), way = camera.parallel ? forward : add(forward, aside), from = camera.parallel ? add(camera.eye, aside) : camera.eye;
+    const along = dot(unit(way), normal);
+    if (Math.abs(along) < 0.05) return null;
+    const t = dot(sub(center, from), normal) / dot(way, normal);
+    return t > 0 || camera.parallel ? add(from, mul(way, t)) : null;
+  }
+  // A handle whose way is a number; `matrix` is what comes to what has gone so far.
+  grip(shape, attributes, first, way, matrix) {
+    const node = this.handles.appendChild(make(shape, { ...attributes, tabindex: -1 }));
+    node.addEventListener("pointerdown", (start) => {
+      start.stopPropagation();
+      node.setPointerCapture(start.pointerId);
+      this.dragged = true;
+      let gone = first, moved = 0;
+      const go = (move) => {
+        const now = way(start, move);
+        if (now === gone) return;
+        this.change({ what: "move", ids: this.ids, matrix: matrix(now, gone) }, moved++ > 0);
+        gone = now;
+      };
+      const end = () => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); };
+      node.addEventListener("pointermove", go);
+      node.addEventListener("pointerup", end, { once: true });
+      node.addEventListener("pointercancel", end, { once: true });
+    });
+  }
   // The way of the pointer along an axis of the world, as far as it goes.
   along(center, axis, start, move) {
     const a = this.project(center), b = this.project(add(center, mul(axis, this.size() * 0.1)));
@@ -136,7 +208,7 @@ export class Edits {
     return mul(axis, this.size() * 0.1 * ((move.clientX - start.clientX) * way[0] + (move.clientY - start.clientY) * way[1]) / square);
   }
   in_plane(center, start, move) {
-    const camera = this.view(), one = this.project(center)[2] * 2 * Math.tan(camera.fov / 2) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
+    const camera = this.view(), one = 2 * this.half(this.project(center)[2]) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
     return add(mul(unit(camera.right), (move.clientX - start.clientX) * one), mul(unit(camera.up), -(move.clientY - start.clientY) * one));
   }
   handle(shape, attributes, way, put = (by) => this.change({ what: "move", ids: this.ids, matrix: shift(sub(by, this.gone)) }, this.moved++ > 0)) {
@@ -144,18 +216,19 @@ export class Edits {
     node.addEventListener("pointerdown", (start) => {
       start.stopPropagation();
       node.setPointerCapture(start.pointerId);
+      this.dragged = true;
       this.moved = 0;
       this.gone = [0, 0, 0];
       this.held = this.thing.capsule && { ...this.thing.capsule };
       const step = 10 ** Math.floor(Math.log10(this.size()) - 0.5);
       const go = (move) => {
         let by = way(start, move);
-        if (move.shiftKey) by = by.map((v) => step * Math.round(v / step));
+        if (snaps(move)) by = by.map((v) => step * Math.round(v / step));
         if (length(sub(by, this.gone)) === 0) return;
         put(by);
         this.gone = by;
       };
-      const end = () => { node.removeEventListener("pointermove", go); this.refresh(); };
+      const end = () => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); };
       node.addEventListener("pointermove", go);
       node.addEventListener("pointerup", end, { once: true });
       node.addEventListener("pointercancel", end, { once: true });

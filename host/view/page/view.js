@@ -2,16 +2,18 @@
 // Copyright Caplet authors
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
 import { Edits } from "./edit.js";
+import { Forms } from "./forms.js";
 import { inspect } from "./inspector.js";
 import { Keep } from "./keep.js";
 import { Picture } from "./picture.js";
+import { LAYOUTS, arranged, share, view_pixel } from "./stereo.js";
 import { texts } from "./texts.js";
 
 const $ = (id) => document.getElementById(id);
 const stage = $("stage"), picture_canvas = $("picture"), marks = $("marks");
-const picture = new Picture(), chosen = new Set(), waiting = new Map();
+const picture = new Picture(), right_picture = new Picture(), chosen = new Set(), waiting = new Map();
 let scene = null, camera = null, world_up = [0, 0, 1], center = [0, 0, 0], radius = 1;
-let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null;
+let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null, under_hit = null;
 
 // --- Words ---
 
@@ -22,7 +24,10 @@ $("search").setAttribute("aria-label", texts.search);
 $("axis").setAttribute("aria-label", texts.axis);
 $("kept").setAttribute("aria-label", texts.kept);
 $("tree").setAttribute("aria-label", texts.things);
+for (const [id, text] of [["light", "light"], ["texture", "texture"], ["new-light", "new_light"], ["new-texture", "new_texture"], ["new-material", "new_material"], ["palette", "palette"], ["hidden", "hide"]]) $(id).setAttribute("aria-label", texts[text]);
+$("palette").setAttribute("role", "group");
 for (const [value, text] of Object.entries(texts.axes)) $("axis").add(new Option(text, value));
+for (const value of LAYOUTS) $("stereo").add(new Option(texts.stereos[value], value));
 for (const [value, text] of Object.entries(texts.curves)) $("curve").add(new Option(text, value));
 for (const [key, what] of texts.list) $("list").append(Object.assign(document.createElement("dt"), { textContent: key }), Object.assign(document.createElement("dd"), { textContent: what }));
 
@@ -32,10 +37,32 @@ const say = (message) => { if (socket?.readyState === 1) socket.send(JSON.string
 
 function ask(pixel, all, reference, done) {
   waiting.set(++number, done);
-  say({ type: "ask", number, x: pixel[0], y: pixel[1], all, reference });
+  say({ type: "ask", number, x: pixel[0], y: pixel[1], eye: pixel[2] ?? 0, all, reference });
 }
 
+function edit(what, goes_on = false, done = () => {}) {
+  waiting.set(++number, done);
+  say({ type: "edit", number, goes_on, ...what });
+}
+
+const forms = new Forms({
+  edit, find: $, chosen: () => [...chosen], select: (ids) => choose_all(ids),
+  ask: (part, done) => { waiting.set(++number, done); say({ type: "form", number, ...part }); },
+  // Where new things come to be: on what is under the cursor, or where the camera looks.
+  place: (hit) => {
+    const size = camera.distance() * Math.tan(camera.fov / 2) * 0.2;
+    if (hit) return { at: add(hit.point, mul(unit(hit.normal), size)), size };
+    return { at: camera.target, size };
+  },
+  // Over one's shoulder.
+  lamp: () => {
+    const at = add(camera.eye, mul(unit(camera.up), 0.3 * camera.distance()));
+    return { at, size: camera.distance(), towards: sub(camera.target, at) };
+  },
+});
+
 const edits = new Edits({
+  shown: (...what) => forms.thing(...what),
   say, view: () => camera, stage, find: $,
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
 });
@@ -67,17 +94,23 @@ function connect() {
 function told(message) {
   if (message.type === "scene") return begin(message);
   if (message.type === "looked") return void (camera && camera_of(message));
-  if (message.type === "error") { keep.failed(message.text); return void ($("state").textContent = message.text); }
+  if (message.type === "error") {
+    keep.failed(message.text);
+    $("state").textContent = message.text;
+    waiting.get(message.number)?.({ error: message.text });
+    return void waiting.delete(message.number);
+  }
   if (message.type === "saved") return keep.saved(message);
   if (message.type === "save_asks") return keep.asks(message);
   if (message.type === "edited") return edited(message);
   const done = waiting.get(message.number);
   waiting.delete(message.number);
-  if (done) done(message.pick ?? message.thing);
+  if (done) done(message.type === "made" ? message : message.pick ?? message.thing ?? message.form);
 }
 
 async function binary(data) {
-  if (await picture.take(data)) return draw();
+  const is_right = data.byteLength >= 40 && new DataView(data).getUint32(28, true) & 4;
+  if (await (is_right ? right_picture : picture).take(data)) return draw();
   save(new Blob([data], { type: "image/x-exr" }), `${scene.name}.exr`);
 }
 
@@ -97,6 +130,8 @@ function edited(message) {
     if (message.renumbered) choose(null, false);
     fill_tree();
   }
+  scene.samples = message.samples;
+  forms.told(message.parts);
   edits.refresh();
   stage.dataset.edits = (+stage.dataset.edits || 0) + 1;
 }
@@ -117,11 +152,14 @@ function begin(message) {
     world_up = [0, 0, 0];
     world_up[axis] = Math.sign(up[axis]);
     const along = dot(sub(center, camera.eye), unit(camera.forward));
-    camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
+    if (!camera.parallel) camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
     past = []; future = []; chosen.clear();
   }
   edits.read_only = scene.read_only;
-  $("material").replaceChildren(new Option(texts.mixed, ""), ...scene.materials.map((name, i) => new Option(name, String(i))));
+  document.body.classList.toggle("read-only", scene.read_only);
+  forms.begin(scene.lists);
+  forms.told(scene.parts);
+  forms.reset();
   $("back").disabled = !scene.can_undo;
   $("again").disabled = !scene.can_redo;
   keep.begin(scene);
@@ -135,13 +173,19 @@ function begin(message) {
 // As another page has it.
 function camera_of(message) {
   const now = new Camera(message);
-  now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
+  if (!now.parallel) now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
   camera = now;
   edits.draw();
   show_lens();
 }
 
 function show_lens() {
+  if (!camera.separation && $("stereo").value !== "off") $("stereo").value = "off";
+  if (camera.separation && $("stereo").value === "off") $("stereo").value = "sbs";
+  $("pair").hidden = !camera.separation;
+  $("separation").value = +camera.separation.toPrecision(6);
+  $("convergence").value = +camera.convergence.toPrecision(6);
+  $("parallel").setAttribute("aria-pressed", String(camera.parallel));
   $("fov").value = (camera.fov * 180 / Math.PI).toFixed(1);
   $("radius").value = +camera.lens_radius.toPrecision(6);
   $("focus").value = +camera.focal_distance.toPrecision(6);
@@ -151,8 +195,9 @@ let looked = "";
 function look() {
   if (!camera) return;
   const scale = window.devicePixelRatio || 1, most = 4096;
-  const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale)));
-  const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance };
+  const [across, down] = share(camera.separation > 0 ? $("stereo").value : "off");
+  const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale / across))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale / down)));
+  const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence };
   const text = JSON.stringify(message);
   edits.draw();
   show_lens();
@@ -167,7 +212,7 @@ function look() {
 function remember() { past.push(camera.copy()); future = []; if (past.length > 1000) past.shift(); }
 function change(what) { remember(); what(); look(); }
 function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
-const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); camera.target = target; });
+const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); if (!camera.parallel) camera.target = target; });
 const fit = () => change(() => camera.fit(center, radius));
 function along(name) {
   if (!name) return;
@@ -179,30 +224,39 @@ function along(name) {
 
 // --- The picture ---
 
+const layout = () => camera?.separation > 0 ? $("stereo").value : "off";
+const has_right = () => right_picture.view === picture.view && right_picture.width === picture.width && right_picture.height === picture.height;
+
 function draw() {
   const { width, height } = picture;
   if (!scene || !width) return;
-  picture_canvas.width = width;
-  picture_canvas.height = height;
-  picture_canvas.getContext("2d").putImageData(new ImageData(picture.shown(+$("exposure").value, $("curve").value), width, height), 0, 0);
+  const shown = (of) => of.shown(+$("exposure").value, $("curve").value);
+  const [across, down, bytes] = arranged(layout(), width, height, shown(picture), has_right() ? shown(right_picture) : null);
+  picture_canvas.width = across;
+  picture_canvas.height = down;
+  picture_canvas.getContext("2d").putImageData(new ImageData(bytes, across, down), 0, 0);
   mark();
   $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.device);
   stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
+  stage.dataset.right = has_right() && right_picture.scale === 1 ? right_picture.samples : 0;
 }
 
 function mark() {
   if (picture.scale !== 1 && picture.width) { marks.getContext("2d").clearRect(0, 0, marks.width, marks.height); return; }
   if (!picture.width) return;
-  marks.width = picture.width;
-  marks.height = picture.height;
-  if (chosen.size && picture.objects) marks.getContext("2d").putImageData(new ImageData(picture.outline(chosen), picture.width, picture.height), 0, 0);
+  const is_on = chosen.size && picture.objects;
+  const [width, height, bytes] = arranged(layout() === "anaglyph" ? "off" : layout(), picture.width, picture.height, is_on ? picture.outline(chosen) : new Uint8ClampedArray(4 * picture.width * picture.height),
+    is_on && has_right() && right_picture.objects ? right_picture.outline(chosen) : null);
+  marks.width = width;
+  marks.height = height;
+  if (is_on) marks.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
 }
 
 // --- What is under the cursor ---
 
 function pixel_at(event) {
   const box = stage.getBoundingClientRect(), scale = window.devicePixelRatio || 1;
-  return [Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale)].map((v) => Math.max(0, v));
+  return view_pixel(layout(), picture.width, picture.height, [Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale)].map((v) => Math.max(0, v)));
 }
 
 // One question at a time: the next is asked when the last is answered.
@@ -214,9 +268,18 @@ function hover(pixel) {
   ask(pixel, false, false, (told_of) => {
     under_asked = false;
     const hit = told_of.crossings[0];
+    under_hit = hit;
     $("under").textContent = hit ? texts.under(hit) : texts.nothing;
     if (under_next) hover(under_next);
   });
+}
+
+function choose_all(ids) {
+  chosen.clear();
+  for (const id of ids) chosen.add(id);
+  for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
+  edits.select([...chosen].sort((a, b) => a - b), 0);
+  mark();
 }
 
 function choose(id, more, primitive = 0) {
@@ -236,7 +299,7 @@ function click(event) {
   });
   ask(pixel, true, true, (told_of) => {
     inspect(told_of, $("asked"), $("intervals"), $("table"));
-    $("table").dataset.pixel = pixel.join();
+    $("table").dataset.pixel = pixel.slice(0, 2).join();
   });
 }
 
@@ -332,6 +395,12 @@ stage.addEventListener("keydown", (event) => {
   else if (event.key === "r") $("again").click();
   else if (event.key === "d") $("duplicate").click();
   else if (event.key === "Delete") $("delete").click();
+  else if (event.key === "s") { $("stereo").selectedIndex = ($("stereo").selectedIndex + 1) % LAYOUTS.length; $("stereo").dispatchEvent(new Event("change")); }
+  else if (event.key === "o") $("parallel").click();
+  else if (event.key === "n") forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit);
+  else if (event.key === "x") hide(false);
+  else if (event.key === "i") hide(true);
+  else if (event.key === "a") $("show-all").click();
   else if (event.key === "Escape") choose(null, false);
   else if (event.key === "?") $("keys").showModal();
   else if (axes[event.key]) along(axes[event.key]);
@@ -339,6 +408,11 @@ stage.addEventListener("keydown", (event) => {
   event.preventDefault();
 });
 
+const hide = (others) => { if (chosen.size) edit({ what: "hide", ids: [...chosen], others }, false, (made) => { if (others && made.ids) choose_all(made.ids); }); };
+$("parallel").onclick = () => { if (camera) change(() => { camera.parallel = !camera.parallel; }); };
+$("hide").onclick = () => hide(false);
+$("isolate").onclick = () => hide(true);
+$("show-all").onclick = () => { if (!$("hidden-box").hidden) edit({ what: "show", hidden: null }); };
 $("back").onclick = () => say({ type: "undo", again: false });
 $("again").onclick = () => say({ type: "undo", again: true });
 $("fit").onclick = fit;
@@ -358,6 +432,19 @@ fill_kept();
 const bounded = (id, least, most, set) => { $(id).onchange = (event) => { const value = +event.target.value; if (camera && value >= least && value <= most) change(() => set(value)); else look(); }; };
 bounded("fov", 1, 170, (value) => { camera.fov = value * Math.PI / 180; });
 bounded("radius", 0, 1e9, (value) => { camera.lens_radius = value; });
+bounded("separation", 1e-9, 1e9, (value) => { camera.separation = value; });
+bounded("convergence", 0, 1e12, (value) => { camera.convergence = value; });
+$("stereo").onchange = (event) => {
+  if (!camera) return;
+  const layout = event.target.value;
+  change(() => {
+    if (layout === "off") camera.separation = 0;
+    else if (!camera.separation) { camera.separation = +(camera.distance() / 30).toPrecision(3); camera.convergence = +camera.distance().toPrecision(3); }
+  });
+  event.target.value = layout;
+  look();
+  draw();
+};
 bounded("focus", 1e-6, 1e12, (value) => { camera.focal_distance = value; });
 $("search").oninput = () => { if (scene) fill_tree(); };
 $("tree").onclick = (event) => { const item = event.target.closest("li"); if (item) choose(+item.dataset.id, event.shiftKey || event.ctrlKey); };

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Things that are not shown.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace caplet::view {
+
+/// Things by the places that they have in the whole, in ascending order.
+template <class T>
+using HiddenList = std::vector<std::pair<std::size_t, std::shared_ptr<const T>>>;
+/// What is left out of the picture.
+struct Hidden {
+  HiddenList<Shape> shapes;
+  HiddenList<Instance> instances;
+  bool empty() const { return shapes.empty() && instances.empty(); }
+};
+using HiddenPointer = std::shared_ptr<const Hidden>;
+
+}  // namespace caplet::view

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/detail/shown_view.h"
+
+#include <algorithm>
+#include <array>
+
+#include "present/stereo.h"
+
+namespace caplet::view {
+
+namespace {
+
+constexpr double usual_fov = 0.7;  // of an orthographic camera that becomes a perspective one
+
+}  // namespace
+
+Look look_of_scene(const Scene& scene) {
+  const Camera& camera = scene.camera;
+  Look out;
+  out.width = scene.film.width;
+  out.height = scene.film.height;
+  out.world_from_camera = camera.world_from_camera;
+  out.fov = camera.fov > 0 ? camera.fov : usual_fov;
+  out.lens_radius = camera.lens_radius;
+  out.focal_distance = camera.focal_distance;
+  if (camera.fov > 0) return out;
+  const std::array<double, 4> window = screen_window_of(camera, scene.film);
+  out.orthographic = 0.5 * std::min(window[1] - window[0], window[3] - window[2]);
+  return out;
+}
+
+ViewEdit shown_view(const ViewEdit& own, const Look& look, int scale, int eye) {
+  ViewEdit view = own;
+  view.camera.world_from_camera = look.world_from_camera;
+  view.camera.fov = look.fov;
+  view.camera.lens_radius = look.lens_radius;
+  view.camera.focal_distance = look.focal_distance;
+  if (look.orthographic > 0) {
+    const double pixel = look.orthographic / std::min(look.width, look.height);
+    const double x = pixel * look.width, y = pixel * look.height;
+    view.camera.fov = 0;
+    view.camera.screen_window = {-x, x, -y, y};
+  }
+  view.film.crop.reset();
+  view.film.width = (look.width - 1) / scale + 1;
+  view.film.height = (look.height - 1) / scale + 1;
+  if (!(look.separation > 0)) return view;
+  Scene scene;
+  scene.camera = view.camera;
+  scene.film = view.film;
+  const Stereo stereo{look.separation, look.convergence > 0 ? std::optional(look.convergence) : std::nullopt};
+  view.camera = camera_of_eye(scene, stereo, eye == 0 ? Eye::left : Eye::right);
+  return view;
+}
+
+}  // namespace caplet::view

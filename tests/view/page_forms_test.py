@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Forms, new and hidden things, other cameras and the reach of all controls in the page of `caplet view`, in a real browser.
+
+usage: page_forms_test.py PROGRAM SCENES FOLDER [NAME...]   as page_test.py
+"""
+import contextlib
+import pathlib
+import sys
+import time
+
+import page_test
+from page_test import ActionChains, By, Keys, mean_difference, page, viewer
+
+SCENE = """
+LookAt 4 -5 3  0 0 0.3  0 0 1
+Camera "perspective" "float fov" [ 40 ]
+Film "rgb" "integer xresolution" [ 64 ] "integer yresolution" [ 48 ]
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.45 0.5 ]
+LightSource "point" "rgb I" [ 20 18 16 ] "point3 from" [ 3 -3 5 ]
+Texture "board" "spectrum" "checkerboard" "rgb tex1" [ 0.8 0.2 0.1 ] "rgb tex2" [ 0.1 0.2 0.8 ]
+MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [ 0.7 0.1 0.1 ]
+MakeNamedMaterial "white" "string type" "diffuse" "rgb reflectance" [ 0.8 0.8 0.8 ]
+MakeNamedMaterial "boarded" "string type" "diffuse" "texture reflectance" [ "board" ]
+NamedMaterial "white"
+Shape "disk" "float radius" [ 6 ] "float height" [ -0.8 ] "string name" "floor"
+NamedMaterial "red"
+Shape "sphere" "float radius" [ 0.8 ] "string name" "ball"
+NamedMaterial "white"
+Shape "box" "point3 p0" [ 1 1 -0.8 ] "point3 p1" [ 2 2 0.5 ] "string name" "box"
+NamedMaterial "boarded"
+Shape "capsule" "point3 p0" [ -1.5 0 0 ] "point3 p1" [ -1.5 1 0.5 ] "float radius" [ 0.3 ] "string name" "pill"
+"""
+
+
+class Work:
+    """A page with the scene, and what one does with it."""
+
+    def __init__(self, shown):
+        self.shown = shown
+        shown.until("a picture of the page's size", lambda: shown.samples() >= 2 and shown.pixels()[0] > 100)
+        self.first = self.before = shown.pixels()
+
+    def edits(self):
+        return int(self.shown.find("stage").get_attribute("data-edits") or 0)
+
+    def changed(self, what):
+        self.shown.until(f"{what}: another picture", lambda: self.shown.apart(self.before, 2) > 0)
+        self.before = self.shown.pixels()
+
+    def choose(self, name):
+        item = next(i for i in self.shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
+        self.shown.script("arguments[0].scrollIntoView()", item)
+        item.click()
+        self.shown.until(f"what {name} is", lambda: self.shown.find("edit").is_displayed() and len(self.shown.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
+
+    def open(self, form):
+        self.shown.script("const d = document.getElementById('form-' + arguments[0]); d.open = true; d.scrollIntoView({block: 'center'})", form)
+
+    def field(self, form, name):
+        """The input of a form's field, as soon as it is there."""
+        find = f"#form-{form} [name='{name}']"
+        self.shown.until(f"the field {name} of {form}", lambda: self.shown.driver.find_elements(By.CSS_SELECTOR, find))
+        return self.shown.driver.find_element(By.CSS_SELECTOR, find)
+
+    def put(self, form, name, value):
+        self.field(form, name)
+        self.shown.script("const n = document.querySelector(`#form-${arguments[0]} [name='${arguments[1]}']`); n.value = arguments[2]; n.dispatchEvent(new Event('change'))", form, name, value)
+
+    def pick(self, name, value):
+        self.shown.script("const s = document.getElementById(arguments[0]); s.value = arguments[1]; s.dispatchEvent(new Event('change'))", name, value)
+
+    def undo_all(self):
+        while self.shown.find("back").is_enabled():
+            before = self.edits()
+            self.shown.script("document.getElementById('back').click()")
+            self.shown.until("the program's word", lambda: self.edits() > before)
+        self.shown.until("the first picture again", lambda: self.shown.apart(self.first, 2) == 0)
+
+
+@contextlib.contextmanager
+def work(program, out, *options):
+    scene = out / "forms.pbrt"
+    scene.write_text(SCENE)
+    with viewer(program, scene, "--spp", "2", *options) as served, page(served.address) as shown:
+        one = Work(shown)
+        one.address = served.address
+        yield one
+
+
+# --- Cases ---
+
+def forms(program, scenes, out):
+    """Parameters of a material, of a surface's, of a light and of the film; what is wrong is said at its field; all is taken back."""
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("ball")
+        at.put("material", "reflectance", "0.1 0.6 0.2")
+        at.changed("a colour")
+        at.put("material", "reflectance", "0.1 1.6 0.2")
+        shown.until("a refusal at the field", lambda: "between" in shown.find("material-reflectance-error").text)
+        assert at.field("material", "reflectance").get_attribute("aria-invalid")
+        assert mean_difference(at.before, shown.pixels()) == 0
+        at.put("material", "kind", "conductor")
+        at.changed("a metal")
+        at.put("material", "alpha_u", "0.3")
+        at.changed("a rough metal")
+        at.put("material", "k kind", "name")
+        at.put("material", "k", "metal-Ag-k")
+        at.changed("a spectrum by name")
+        at.pick("new-material", "dielectric")
+        at.changed("glass of one's own")
+        at.put("material", "name", "my glass")
+        shown.until("its name", lambda: any(o.text == "my glass" for o in shown.driver.find_elements(By.CSS_SELECTOR, "#palette button")))
+        at.choose("box")
+        at.pick("surface", "5")
+        shown.script("document.querySelector('#palette [data-material=\"0\"]').click()")
+        at.changed("a surface painted from the palette")
+        at.pick("light", "1")
+        at.put("light", "scale", "3")
+        at.changed("a brighter light")
+        at.put("light", "kind", "spot")
+        at.changed("a spot")
+        with page(at.address) as other:
+            other.until_samples(2)
+            other.script("document.getElementById('light').value = '1'; document.getElementById('light').dispatchEvent(new Event('change'))")
+            other.until("the other's light", lambda: other.driver.find_elements(By.CSS_SELECTOR, "#form-light [name=coneangle]"))
+            kind = other.driver.find_element(By.CSS_SELECTOR, "#form-light [name=kind]").get_attribute("value")
+            assert kind == "spot", kind
+        at.pick("new-light", "distant")
+        at.changed("a light of one's own")
+        at.open("integrator")
+        at.put("integrator", "maxdepth", "1")
+        at.changed("shorter paths")
+        at.open("film")
+        at.put("film", "xresolution", "123")
+        at.put("film", "iso", "50")
+        at.changed("a darker film")
+        shown.until("its width", lambda: at.field("film", "xresolution").get_attribute("value") == "123")
+        shown.picture(out / "forms.png")
+        at.undo_all()
+
+
+def shapes(program, scenes, out):
+    """New shapes come where the camera looks, selected."""
+    with work(program, out) as at:
+        shown = at.shown
+        count = int(shown.find("more").text.split(" of ")[1])
+        for i, button in enumerate(shown.driver.find_elements(By.CSS_SELECTOR, "#shapes button")):
+            name = button.get_attribute("data-shape")
+            shown.script("arguments[0].click()", button)
+            shown.until(f"a new {name}", lambda: shown.find("more").text.endswith(f" of {count + i + 1}"))
+            shown.until(f"{name} is selected", lambda: [t.text.split(" ")[0] for t in shown.driver.find_elements(By.CSS_SELECTOR, "#tree [aria-selected=true]")] == [name.split(" ")[0]])
+        at.changed("new shapes")
+        width, height, _ = shown.pixels()
+        shown.mouse(int(0.3 * width), int(0.8 * height)).perform()
+        shown.until("what is under the cursor", lambda: "floor" in shown.find("under").text)
+        shown.script("document.getElementById('stage').focus()")
+        shown.find("stage").send_keys("n")
+        at.changed("one under the cursor")
+        shown.picture(out / "shapes.png")
+        at.undo_all()
+
+
+def hides(program, scenes, out):
+    """What is hidden is neither seen nor met; all but what is selected likewise."""
+    with work(program, out) as at:
+        shown = at.shown
+        width, height, _ = shown.pixels()
+        shown.mouse(width // 2, height // 2).perform()
+        shown.until("the ball", lambda: shown.find("under").text.startswith("ball"))
+        at.choose("ball")
+        shown.script("document.getElementById('hide').click()")
+        at.changed("hidden")
+        assert shown.find("more").text.endswith(" of 3"), shown.find("more").text
+        assert [b.text for b in shown.driver.find_elements(By.CSS_SELECTOR, "#hidden button")] == ["Show ball"]
+        shown.mouse(width // 2 + 3, height // 2).perform()
+        shown.until("what is behind", lambda: shown.find("under").text and not shown.find("under").text.startswith("ball"))
+        at.choose("box")
+        shown.script("document.getElementById('isolate').click()")
+        at.changed("alone")
+        shown.until("it is still selected", lambda: [t.text.split(" ")[0] for t in shown.driver.find_elements(By.CSS_SELECTOR, "#tree [aria-selected=true]")] == ["box"])
+        assert shown.find("hidden-count").text.startswith("3")
+        shown.picture(out / "isolated.png")
+        shown.script("document.getElementById('show-all').click()")
+        shown.until("all again", lambda: shown.apart(at.first, 2) == 0)
+        assert not shown.find("hidden-box").is_displayed()
+        at.undo_all()
+
+
+def cameras(program, scenes, out):
+    """Parallel rays and back; two eyes, each the camera moved by hand."""
+    with work(program, out) as at:
+        shown = at.shown
+        shown.find("parallel").click()
+        at.changed("parallel rays")
+        assert shown.find("parallel").get_attribute("aria-pressed") == "true"
+        shown.picture(out / "orthographic.png")
+        shown.find("stage").send_keys("z")
+        shown.until("the first view", lambda: shown.apart(at.first, 2) == 0)
+        at.pick("stereo", "sbs")
+        shown.until("both eyes", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2)
+        width, height, both = shown.pixels()
+        assert width >= at.first[0] - 2, (width, at.first[0])
+        shown.picture(out / "stereo.png")
+        half = width // 2
+        rows = [both[4 * width * y:4 * width * (y + 1)] for y in range(height)]
+        views = [[v for row in rows for v in row[4 * half * eye:4 * half * (eye + 1)]] for eye in (0, 1)]
+        assert views[0] != views[1]
+        # The same by a camera that is moved by hand: parallel axes, so that its window stays.
+        at.pick("convergence", "0")
+        shown.until("parallel axes", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2 and shown.pixels()[2] != both)
+        separation = float(shown.find("separation").get_attribute("value"))
+        time.sleep(0.2)
+        width, height, both = shown.pixels()
+        rows = [both[4 * width * y:4 * width * (y + 1)] for y in range(height)]
+        for eye, side in ((0, -0.5), (1, 0.5)):
+            view = [v for row in rows for v in row[4 * half * eye:4 * half * (eye + 1)]]
+            shown.script("""const {Picture} = await import('./picture.js');
+                const s = new WebSocket(location.href.replace(/^http/, 'ws').replace(/[^/]*$/, '') + 'socket'); s.binaryType = 'arraybuffer';
+                const p = new Picture(); window.by_hand = null; let turn = Promise.resolve(); window.other = s;
+                s.onmessage = (e) => { turn = turn.then(async () => {
+                  if (typeof e.data === 'string') { const m = JSON.parse(e.data); if (m.type !== 'scene') return;
+                    const c = m.camera, right = [0, 4, 8].map((i) => c.world_from_camera[i]); [3, 7, 11].forEach((i, k) => { c.world_from_camera[i] += arguments[0] * right[k]; });
+                    s.send(JSON.stringify({...c, type: 'look', separation: 0, width: arguments[1], height: arguments[2]})); return; }
+                  if (new DataView(e.data).getUint32(28, true) & 4) return;
+                  await p.take(e.data);
+                  if (p.scale === 1 && p.samples >= 2 && p.width === arguments[1]) window.by_hand = Array.from(p.shown(0, 'film')); }); };
+                s.onopen = () => s.send(JSON.stringify({type: 'seen', seen: true}));""", side * separation, half, height)
+            # This page sees the look as another page's: it goes back to two eyes by undoing nothing, and is asked again.
+            shown.until("the view by hand", lambda: shown.script("return window.by_hand !== null"))
+            assert shown.script("return window.by_hand") == view, eye
+            shown.script("window.other.close()")
+            shown.driver.refresh()
+            shown.until("the page again", lambda: shown.samples() >= 2)
+            at.pick("stereo", "sbs")
+            shown.until("both eyes again", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2)
+
+
+def handles(program, scenes, out):
+    """Handles of planes, turns and sizes; in steps with Ctrl."""
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("box")
+        for name in ("plane-z", "turn-z", "scale", "turn-x"):
+            shown.until(f"the handle {name}", lambda: shown.driver.find_elements(By.CSS_SELECTOR, f"[data-handle={name}]"))
+            before = at.edits()
+            # Where it is drawn, by its own first point.
+            x, y = shown.script("""const n = document.querySelector(`[data-handle=${arguments[0]}]`), p = n.getPointAtLength(n.getTotalLength() * 0.13), b = n.ownerSVGElement.getBoundingClientRect();
+                return [p.x + b.left, p.y + b.top];""", name)
+            chain = ActionChains(shown.driver, duration=20)
+            chain.w3c_actions.pointer_action.move_to_location(int(x), int(y))
+            chain.w3c_actions.pointer_action.click_and_hold()
+            chain.key_down(Keys.CONTROL)
+            for k in (1, 2, 3):
+                chain.w3c_actions.pointer_action.move_to_location(int(x) + 15 * k, int(y) + 9 * k)
+            chain.w3c_actions.pointer_action.release()
+            chain.key_up(Keys.CONTROL)
+            chain.perform()
+            shown.until(f"{name}: the program's word", lambda: at.edits() > before)
+            at.changed(name)
+        shown.picture(out / "all_handles.png")
+        at.undo_all()
+
+
+NAMES = """return [...document.querySelectorAll('button, input, select, summary, a[href], [tabindex="0"]')].filter((n) => n.checkVisibility())"""
+
+
+def within_reach(program, scenes, out):
+    """Every control has a name and can be reached by Tab; nothing is cut off at 640 pixels, which is 200 % of 1280."""
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("pill")
+        shown.script("for (const d of document.querySelectorAll('details')) d.open = true")
+        at.pick("light", "1")
+        at.pick("texture", "0")
+        for form in ("material", "light", "texture", "film", "filter", "sampler", "integrator"):
+            shown.until(f"the form {form}", lambda: shown.driver.find_elements(By.CSS_SELECTOR, f"#form-{form} [name]"))
+        controls = shown.script(NAMES)
+        assert len(controls) > 70, len(controls)
+        nameless = [n.get_attribute("outerHTML")[:120] for n in controls if not n.accessible_name.strip()]
+        assert not nameless, nameless
+        # All that Tab comes to, from the first to where it comes round.
+        enabled = shown.script(NAMES + ".filter((n) => !n.disabled && n.tabIndex >= 0).length")
+        shown.script("document.activeElement.blur()")
+        seen = set()
+        chain = ActionChains(shown.driver, duration=0)
+        for _ in range(enabled + 4):
+            chain.send_keys(Keys.TAB)
+        shown.script("window.visited = new Set(); document.addEventListener('focusin', (e) => window.visited.add(e.target))")
+        chain.perform()
+        missed = shown.script("return (" + NAMES.removeprefix("return ") + ").filter((n) => !n.disabled && n.tabIndex >= 0 && !window.visited.has(n)).map((n) => n.outerHTML.slice(0, 100))")
+        assert not missed, missed
+        for scheme in ("light", "dark"):
+            shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            shown.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 640, "height": 512, "deviceScaleFactor": 2, "mobile": False})
+            time.sleep(0.3)
+            cut = shown.script("""return [...document.querySelectorAll('button, input, select, summary, h1, h2, label')].filter((n) => n.checkVisibility()).filter((n) => {
+                const b = n.getBoundingClientRect(); return b.width > 0 && (b.left < -1 || b.right > innerWidth + 1); }).map((n) => n.outerHTML.slice(0, 100))""")
+            assert not cut, cut
+            assert shown.script("return document.documentElement.scrollWidth <= innerWidth")
+            # Text against what is behind it (WCAG 2.1, 1.4.3).
+            low = shown.script("""const lum = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((v) => v / 255).map((v) => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+                const behind = (n) => { for (; n; n = n.parentElement) { const c = getComputedStyle(n).backgroundColor; if (!/, 0\\)$/.test(c)) return c; } return 'rgb(255, 255, 255)'; };
+                return [...document.querySelectorAll('button, summary, h1, h2, label span, small, .field span, #tree li, footer output')].filter((n) => n.checkVisibility() && n.textContent.trim() && !n.disabled).map((n) => {
+                  const a = lum(getComputedStyle(n).color), b = lum(behind(n)); return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), n.outerHTML.slice(0, 80)]; }).filter(([ratio]) => ratio < 4.5)""")
+            assert not low, low
+            shown.picture(out / f"narrow_{scheme}.png")
+            shown.script("document.querySelector('#form-material').scrollIntoView()")
+            shown.picture(out / f"narrow_{scheme}_form.png")
+
+
+def figures(program, scenes, out):
+    """The pictures of docs/viewer.md."""
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
+        shown.driver.set_window_size(1280, 1000)
+        at = Work(shown)
+        at.choose("capsule 7")
+        at.put("material", "kind", "conductor")
+        at.put("material", "alpha_u", "0.25")
+        at.put("material", "alpha_v", "0.25")
+        shown.until("64 samples", lambda: shown.samples() >= 64, 400)
+        shown.script("document.querySelector('#shapes').scrollIntoView()")
+        shown.picture(out / "viewer-forms.png")
+
+
+CASES = [forms, shapes, hides, cameras, handles, within_reach]
+
+if __name__ == "__main__":
+    page_test.CASES, page_test.figures, page_test.__doc__ = CASES, figures, __doc__
+    sys.exit(page_test.main(sys.argv[1:]))
