@@ -40,7 +40,8 @@ void check_alone(Scene scene, const Scene& of) {
   diagnostics.finish();
 }
 
-/// A scene of this shape alone, in the place that it has: an object's in all the object's instances.
+/// A scene of this shape alone, in the place that it has: an object's in all the object's instances. What it is made of and holds
+/// is for the caller to add.
 Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   Scene out;
   if (!place.object) {
@@ -52,6 +53,13 @@ Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
     if (instance.object == *place.object) out.instances.push_back({0, instance.world_from_object, instance.where});
   if (out.instances.empty()) out.instances.emplace_back();
   return out;
+}
+
+/// What the shapes of `to`, which are of `scene`, refer to.
+void add_appearance(const Scene& scene, Scene& to) {
+  to.textures = scene.textures;
+  to.materials = scene.materials;
+  to.media = scene.media;
 }
 
 void check(const Scene& scene, const CapsuleEdit& edit) {
@@ -69,7 +77,7 @@ void check(const Scene& scene, const TransformEdit& edit) {
   Shape shape = shape_at(scene, edit.at);
   shape.world_from_object = edit.world_from_object;
   Scene one = alone(scene, edit.at, std::move(shape));
-  one.materials = scene.materials;
+  add_appearance(scene, one);
   check_alone(std::move(one), scene);
 }
 
@@ -82,7 +90,7 @@ void check(const Scene& scene, const EmissionEdit& edit) {
   one.where = shape.where;
   one.world_from_object = shape.world_from_object;
   Scene scene_of_it = alone(scene, edit.at, std::move(one));
-  scene_of_it.materials = scene.materials;
+  add_appearance(scene, scene_of_it);
   check_alone(std::move(scene_of_it), scene);
 }
 

@@ -170,7 +170,7 @@ class Scene:
         return self.copy()
 
     def __repr__(self):
-        held = ", ".join(f"{count} {kind}{'s' if count != 1 else ''}" for kind, count in self.primitives.items())
+        held = ", ".join(f"{count} {kind}{'' if count == 1 else 'es' if kind.endswith(('x', 'h')) else 's'}" for kind, count in self.primitives.items())
         return f"<caplet.Scene: {held or 'empty'}>"
 
     # --- What it holds ---

@@ -9,6 +9,12 @@ import pytest
 import caplet
 
 
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """What packages write beside them stays out of the tree."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def scenes():
     return pathlib.Path(os.environ.get("CAPLET_SCENES", pathlib.Path(__file__).parents[2] / "scenes"))

@@ -289,6 +289,21 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);
 }
 
+// Of a shape that is checked again its textures and media are there.
+TEST_F(LibraryBuild, ShapesWithTexturesAndMediaAreMoved) {
+  caplet::Scene scene = three_balls();
+  const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {}});
+  const std::uint32_t paint = scene.add_material("", caplet::NamedMaterial{"principled", {{"metallic", squares}}});
+  const std::uint32_t fog = scene.add_medium("fog", "homogeneous", {});
+  const std::uint32_t ball = scene.add_shape("sphere", {{"alpha", squares}}, {.materials = {paint}, .inside = fog});
+  const std::uint32_t lamp = scene.add_shape("disk", {}, {.materials = {paint}, .emission = caplet::Parameters{}});
+  caplet::Transform up = caplet::identity;
+  up[11] = 3;
+  EXPECT_NO_THROW(scene.set_transform(ball, up));
+  EXPECT_EQ(scene.transform(ball), up);
+  EXPECT_NO_THROW(scene.set_emission(lamp, 2.0, 1));
+}
+
 TEST_F(LibraryBuild, TheOpenCameraFollowsUntilOneIsGiven) {
   caplet::Scene scene = three_balls();
   scene.present();

@@ -61,25 +61,25 @@ def _height_field(model, geom):
 
 
 def _add(scene, mujoco, model, geom, options, far):
-    kind, size = model.geom_type[geom], np.asarray(model.geom_size[geom], dtype=np.float64)
-    types = mujoco.mjtGeom
-    if kind == types.mjGEOM_SPHERE:
+    kind, size = int(model.geom_type[geom]), np.asarray(model.geom_size[geom], dtype=np.float64)
+    if kind == int(mujoco.mjtGeom.mjGEOM_SPHERE):
         return scene.add("sphere", radius=size[0], **options)
-    if kind == types.mjGEOM_CAPSULE:
+    if kind == int(mujoco.mjtGeom.mjGEOM_CAPSULE):
         return scene.add_capsules((0, 0, -size[1]), (0, 0, size[1]), size[0], **options)
-    if kind == types.mjGEOM_CYLINDER:
+    if kind == int(mujoco.mjtGeom.mjGEOM_CYLINDER):
         return scene.add("cylinder", p0=(0, 0, -size[1]), p1=(0, 0, size[1]), radius=size[0], **options)
-    if kind == types.mjGEOM_BOX:
+    if kind == int(mujoco.mjtGeom.mjGEOM_BOX):
         return scene.add("box", p0=-size, p1=size, **options)
-    if kind == types.mjGEOM_ELLIPSOID:
+    if kind == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID):
         options["transform"] = options["transform"] @ np.diag([*size, 1])
         return scene.add("sphere", radius=1, **options)
-    if kind == types.mjGEOM_PLANE:
+    if kind == int(mujoco.mjtGeom.mjGEOM_PLANE):
         x, y = (half if half > 0 else far for half in size[:2])
-        return scene.add_mesh([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], [(0, 1, 2), (0, 2, 3)], **options)
-    if kind == types.mjGEOM_HFIELD:
+        return scene.add("trianglemesh", P=[(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], indices=[0, 1, 2, 0, 2, 3],
+                         onesided=True, **options)  # as MuJoCo's: nothing from below
+    if kind == int(mujoco.mjtGeom.mjGEOM_HFIELD):
         return scene.add_mesh(*_height_field(model, geom), **options)
-    if kind in (types.mjGEOM_MESH, types.mjGEOM_SDF):
+    if kind in (int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_SDF)):
         return scene.add_mesh(*_mesh_of(model, geom), **options)
     raise InputError(f"geom {geom}: MuJoCo's geom type {kind} is not known")
 
@@ -103,7 +103,7 @@ def _lights(scene, mujoco, model, data):
         if not model.light_active[i]:
             continue
         strength, at, way = np.pi * model.light_diffuse[i], data.light_xpos[i], data.light_xdir[i]
-        if model.light_type[i] == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL:
+        if int(model.light_type[i]) == int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL):
             scene.add_light(light_types.distant(L=tuple(strength), from_=(0, 0, 0), to=tuple(way)))
             continue
         away = np.sum((np.asarray(at) - model.stat.center)**2)
@@ -143,7 +143,7 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
         geoms.append(geom)
     scene.info["geom"] = np.array(geoms, dtype=np.int64)
     scene.info["scale"] = {i: np.diag([*model.geom_size[geom], 1]) for i, geom in enumerate(geoms)
-                           if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_ELLIPSOID}
+                           if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)}
     if lights == "model":
         _lights(scene, mujoco, model, data)
     elif lights != "studio":
