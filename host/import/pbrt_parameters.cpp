@@ -3,6 +3,7 @@
 #include "import/detail/pbrt_parameters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <unordered_map>
 #include <utility>
@@ -138,6 +139,28 @@ class GivenNames {
   std::unordered_map<std::string, std::size_t> table_;
 };
 
+/// Whether values that were given without a type can be of this one. A spectrum of one number is a float, of three an rgb.
+bool suits(const Parameter& parameter, std::string_view type) {
+  const std::size_t count = parameter.numbers.size();
+  if (!parameter.bools.empty()) return type == "bool";
+  if (!parameter.strings.empty()) return type == "string" || type == "spectrum" || type == "texture";
+  if (type == "bool" || type == "string" || type == "texture" || type == "blackbody" || count == 0) return false;
+  if (type == "spectrum") return count > 3 && count % 2 == 0;
+  if (type == "integer")
+    return std::ranges::all_of(parameter.numbers, [](double x) { return x == std::floor(x) && std::abs(x) <= 2147483647.0; });
+  return count % find_type(type)->multiple == 0;
+}
+
+/// What was given, for messages.
+std::string values_of(const Parameter& parameter) {
+  const auto some = [](std::size_t count, const char* what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+  };
+  if (!parameter.bools.empty()) return some(parameter.bools.size(), "bool");
+  if (!parameter.strings.empty()) return in_quotes(parameter.strings[0]);
+  return some(parameter.numbers.size(), "number");
+}
+
 std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
 
 /// The complaint about a parameter's number of values, empty when it is right.
@@ -269,8 +292,29 @@ void Parameters::error(std::string_view name, const std::string& message, const 
 bool Parameters::has(std::string_view name) { return find(name) != nullptr; }
 
 const Parameter* Parameters::values(std::string_view name, std::initializer_list<std::string_view> types) {
-  const Parameter* parameter = find(name);
+  Parameter* parameter = find(name);
+  if (notes_types_) {
+    auto& noted = asked_types_[name];
+    for (const std::string_view type : types)
+      if (std::ranges::find(noted, type) == noted.end()) noted.emplace_back(type);
+  }
   if (!parameter || parameter->broken) return nullptr;
+  if (parameter->type.empty()) {
+    for (const std::string_view type : types) {
+      // Where it may be a spectrum, more than three numbers are not colours.
+      if (type == "rgb" && types.size() > 1 && parameter->numbers.size() != 3) continue;
+      if (!suits(*parameter, type)) continue;
+      parameter->type = type;
+      break;
+    }
+    if (parameter->type.empty()) {
+      std::string wanted;
+      for (const std::string_view type : types) wanted += (wanted.empty() ? "" : " or ") + std::string(type);
+      error(name, "must be of type " + wanted + ", not " + values_of(*parameter));
+      parameter->broken = true;
+      return nullptr;
+    }
+  }
   if (std::find(types.begin(), types.end(), parameter->type) != types.end()) return parameter;
   std::string wanted;
   for (std::string_view type : types) wanted += (wanted.empty() ? "" : " or ") + std::string(type);
@@ -417,6 +461,16 @@ std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_
   if (!parameter || parameter->type != "texture") return std::nullopt;
   const TextureValue* found = textures.find(parameter->strings[0], is_float);
   return found && found->is_float == is_float && found->refusal.empty() ? found->texture : std::nullopt;
+}
+
+std::vector<AskedParameter> Parameters::asked() const {
+  std::vector<AskedParameter> out;
+  for (const std::string_view name : asked_) {
+    if (std::ranges::find(out, name, &AskedParameter::name) != out.end()) continue;
+    const auto noted = asked_types_.find(name);
+    out.push_back({std::string(name), noted == asked_types_.end() ? std::vector<std::string>{} : noted->second});
+  }
+  return out;
 }
 
 void Parameters::refuse(std::string_view name) {

@@ -57,8 +57,12 @@ class Given {
       value = to_model(Spectrum(*number));
     else if (const Rgb* rgb = std::get_if<Rgb>(given))
       value = to_model(Spectrum(*rgb));
+    else if (const auto* three = std::get_if<std::array<double, 3>>(given))
+      value = to_model(Spectrum(Rgb{(*three)[0], (*three)[1], (*three)[2]}));
     else if (const std::string* text = std::get_if<std::string>(given))
       value = to_model(Spectrum(*text));
+    else if (const Blackbody* body = std::get_if<Blackbody>(given))
+      value = BlackbodySpectrum{body->kelvin};
     else
       wrong(name, "a spectrum or a texture");
     return true;
@@ -85,6 +89,13 @@ class Given {
   std::vector<std::string> asked_;
 };
 
+/// The greatest number of a spectrum that is given by such.
+double greatest_of(const caplet::Spectrum& spectrum) {
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return constant->value;
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return std::max({rgb->rgb.x, rgb->rgb.y, rgb->rgb.z});
+  return 0;
+}
+
 /// Of the calls of scene/materials.def.
 struct MaterialTaker {
   Given& given;
@@ -96,9 +107,12 @@ struct MaterialTaker {
     return texture.has_value();
   }
   void albedo(const std::string& name, caplet::Spectrum& value) {
+    unbounded(name, value);
+    if (greatest_of(value) > 1) given.wrong(name, "a reflectance, of no component above 1");
+  }
+  void unbounded(const std::string& name, caplet::Spectrum& value) {
     if (!textured(name)) given.spectrum(name, value);
   }
-  void unbounded(const std::string& name, caplet::Spectrum& value) { albedo(name, value); }
   void index(const std::string& name, caplet::Spectrum& value) {
     if (given.texture(name)) given.wrong(name, "a spectrum");
     given.spectrum(name, value);

@@ -53,6 +53,49 @@ std::optional<Hit> to_nearest(const PickRecord& pick, const caplet::Scene& scene
   return pick.object == CAPLET_NONE ? std::nullopt : std::optional(to_hit(pick, scene));
 }
 
+constexpr std::size_t rays_at_once = std::size_t{1} << 18;
+
+/// Crossings in plain numbers.
+class Numbers {
+ public:
+  explicit Numbers(const caplet::Scene& scene) : scene_(scene) {
+    std::size_t shapes = scene.shapes.size();
+    for (const Object& object : scene.objects) {
+      first_.push_back(shapes);
+      shapes += object.shapes.size();
+    }
+  }
+  Crossing crossing(const PickRecord& pick, std::size_t ray) const {
+    Crossing out;
+    out.ray = static_cast<std::uint32_t>(ray);
+    if (pick.object == CAPLET_NONE) return out;
+    out.t = pick.t;
+    out.error = pick.error;
+    out.uv = {pick.u, pick.v};
+    out.object_id = pick.object;
+    out.material_id = pick.material;
+    out.primitive = pick.primitive;
+    out.surface = pick.surface;
+    out.leaving = pick.leaving;
+    std::ranges::copy(pick.point, out.point.begin());
+    std::ranges::copy(pick.normal, out.normal.begin());
+    if (pick.object < scene_.shapes.size()) {
+      out.shape = pick.object;
+      return out;
+    }
+    const Identity identity = identity_of(scene_, pick);
+    out.instance = identity.instance.value_or(Crossing::none);
+    const std::uint32_t object = scene_.instances[out.instance].object;
+    out.shape = static_cast<std::uint32_t>(first_[object] +
+                                           static_cast<std::size_t>(identity.shape - scene_.objects[object].shapes.data()));
+    return out;
+  }
+
+ private:
+  const caplet::Scene& scene_;
+  std::vector<std::size_t> first_;
+};
+
 }  // namespace
 
 std::optional<Hit> Questions::pixel(int x, int y) const {
@@ -71,17 +114,40 @@ std::vector<std::optional<Hit>> Questions::nearest(std::span<const Ray> rays) co
   return out;
 }
 
-std::vector<std::vector<Hit>> Questions::all(std::span<const Ray> rays, std::size_t most) const {
+template <class Take>
+void Questions::for_lists(std::span<const Ray> rays, std::size_t most, Take&& take) const {
   if (most < 1 || most > max_query_capacity)
     throw InputError(fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
   try_device(device, {.shapes = shapes, .lists = true});
-  std::vector<std::vector<Hit>> out(rays.size());
-  if (rays.empty()) return out;
+  if (rays.empty()) return;
   const HitLists lists = query.all(to_records(rays), most);
   if (!lists.overflowed.empty())
     throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0], most, lists.overflowed.size()));
   for (std::size_t i = 0; i < rays.size(); ++i)
-    for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) out[i].push_back(to_hit(lists.crossings[k], scene));
+    for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) take(i, lists.crossings[k]);
+}
+
+std::vector<std::vector<Hit>> Questions::all(std::span<const Ray> rays, std::size_t most) const {
+  std::vector<std::vector<Hit>> out(rays.size());
+  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) { out[ray].push_back(to_hit(pick, scene)); });
+  return out;
+}
+
+void Questions::nearest(std::span<const Ray> rays, std::span<Crossing> out) const {
+  if (out.size() != rays.size()) throw InputError(fmt::format("{} rays and room for {} hits", rays.size(), out.size()));
+  try_device(device, {.shapes = shapes, .nearest = true});
+  const Numbers numbers(scene);
+  for (std::size_t first = 0; first < rays.size(); first += rays_at_once) {
+    const std::size_t count = std::min(rays_at_once, rays.size() - first);
+    const std::vector<PickRecord> picks = query.closest(to_records(rays.subspan(first, count)));
+    for (std::size_t i = 0; i < count; ++i) out[first + i] = numbers.crossing(picks[i], first + i);
+  }
+}
+
+std::vector<Crossing> Questions::crossings(std::span<const Ray> rays, std::size_t most) const {
+  std::vector<Crossing> out;
+  const Numbers numbers(scene);
+  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) { out.push_back(numbers.crossing(pick, ray)); });
   return out;
 }
 
@@ -107,6 +173,10 @@ std::optional<Hit> Picker::nearest(const Ray& ray) { return nearest(std::span(&r
 std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) { return data_->questions().nearest(rays); }
 std::vector<std::vector<Hit>> Picker::all(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().all(rays, most);
+}
+void Picker::nearest(std::span<const Ray> rays, std::span<Crossing> out) { data_->questions().nearest(rays, out); }
+std::vector<Crossing> Picker::crossings(std::span<const Ray> rays, std::size_t most) {
+  return data_->questions().crossings(rays, most);
 }
 
 }  // namespace caplet::v0

@@ -11,6 +11,7 @@
 #include "base/spelling.h"
 #include "library/detail/appearance.h"
 #include "library/detail/inside.h"
+#include "library/detail/places.h"
 #include "present/film_window.h"
 
 namespace caplet::v0 {
@@ -22,33 +23,6 @@ constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 // A session that is further behind takes the scene as a whole.
 constexpr std::size_t most_logged = 1 << 16;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
-
-glm::dmat4 to_model(const Transform& rows) {
-  glm::dmat4 out(1);
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) out[c][r] = rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)];
-  return out;
-}
-
-Transform to_public(const glm::dmat4& m) {
-  Transform rows;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)] = m[c][r];
-  return rows;
-}
-
-/// Shapes of the world are numbered first, then those of each object.
-ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape) {
-  std::size_t left = shape;
-  if (left < scene.shapes.size()) return {{}, shape};
-  left -= scene.shapes.size();
-  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
-    const std::size_t count = scene.objects[object].shapes.size();
-    if (left < count) return {static_cast<std::uint32_t>(object), static_cast<std::uint32_t>(left)};
-    left -= count;
-  }
-  throw InputError(fmt::format("there is no shape {}, counted from 0", shape));
-}
 
 template <class T>
 const T& at(const std::vector<T>& values, std::size_t number, const char* what) {
@@ -77,6 +51,12 @@ void Scene::Data::edit(const SceneEdit& edit) {
 void Scene::Data::as_a_whole() {
   edits.clear();
   origin = next_serial();
+}
+
+void Scene::Data::as_a_whole_in_view() {
+  const bool is_presented = presented == origin;
+  as_a_whole();
+  if (is_presented) presented = origin;
 }
 
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
@@ -263,14 +243,17 @@ void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3
   view.camera.world_from_camera = *world_from_camera;
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
+  changed().open_camera = false;
 }
 
 double Scene::fov() const { return data_->model.camera.fov * degrees_per_radian; }
 void Scene::set_fov(double degrees) {
+  if (data_->open_camera) present();
   ViewEdit view = view_of(data_->model);
   view.camera.fov = degrees / degrees_per_radian;
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
+  changed().open_camera = false;
 }
 
 }  // namespace caplet::v0

@@ -137,5 +137,9 @@ std::vector<std::optional<Hit>> Session::nearest(std::span<const Ray> rays) { re
 std::vector<std::vector<Hit>> Session::all(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().all(rays, most);
 }
+void Session::nearest(std::span<const Ray> rays, std::span<Crossing> out) { data_->questions().nearest(rays, out); }
+std::vector<Crossing> Session::crossings(std::span<const Ray> rays, std::size_t most) {
+  return data_->questions().crossings(rays, most);
+}
 
 }  // namespace caplet::v0

@@ -44,10 +44,16 @@ struct TextureNumber {
   std::uint32_t number = 0;
 };
 
-/// What a parameter may be: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, or the
-/// numbers of two materials.
-using Parameter =
-    std::variant<double, Rgb, std::string, bool, TextureNumber, std::array<double, 3>, std::array<std::uint32_t, 2>>;
+/// Light of a black body.
+struct Blackbody {
+  double kelvin = 6500;
+};
+
+/// What a parameter may be: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, the
+/// numbers of two materials; of shapes, lights and media also a black body, many numbers (points one behind the other), or many
+/// names.
+using Parameter = std::variant<double, Rgb, std::string, bool, TextureNumber, std::array<double, 3>, std::array<std::uint32_t, 2>,
+                               Blackbody, std::vector<double>, std::vector<std::string>>;
 using Parameters = std::map<std::string, Parameter>;
 
 /// Any material by the name that scene files have for it: "coateddiffuse", "hair", "principled". Parameters are those that

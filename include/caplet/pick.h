@@ -40,6 +40,21 @@ struct Hit {
   std::optional<std::uint32_t> instance;     // number of the instance, of shapes that are in one
 };
 
+/// The same in plain numbers, without padding: what arrays of them hold.
+struct Crossing {
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  float t = std::numeric_limits<float>::infinity();  // infinite where the ray misses
+  float error = 0;
+  std::array<float, 2> uv{};
+  std::uint32_t object_id = none, material_id = none, primitive = none, surface = none;
+  std::uint32_t shape = none;     // the shape's number (Scene::shapes)
+  std::uint32_t instance = none;  // of shapes that are in one
+  std::uint32_t leaving = 0;      // 1: the ray comes out of the solid
+  std::uint32_t ray = 0;          // its number among those asked
+  std::array<float, 3> point{}, normal{};
+};
+
 /// Holds a scene, as it was when this was made, on a device. Members throw RunError.
 class CAPLET_API Picker {
  public:
@@ -56,6 +71,10 @@ class CAPLET_API Picker {
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);
   /// Every hit in order; throws RunError when a ray has more than `most` (1 to 2^20).
   std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most = 256);
+  /// The nearest hit of each ray into `out`, which has as many.
+  void nearest(std::span<const Ray> rays, std::span<Crossing> out);
+  /// Every hit, by rays and in order.
+  std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most = 256);
 
  private:
   struct Data;

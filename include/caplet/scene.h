@@ -9,12 +9,16 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "caplet/error.h"
 #include "caplet/export.h"
 #include "caplet/material.h"
+#include "caplet/shape.h"
 
 CAPLET_BEGIN
 
@@ -23,18 +27,11 @@ struct Bounds {
   std::array<double, 3> min{}, max{};
 };
 
-/// The convex hull of two spheres; of one where the ends are the same. In the space of its shape.
-struct Capsule {
-  std::array<float, 3> p0{}, p1{};
-  float radius0 = 0, radius1 = 0;
-};
-
-/// Three rows of four numbers: world (or object) space from that of a shape or instance.
-using Transform = std::array<double, 12>;
-
 /// Copies are cheap until one of them is changed.
 class CAPLET_API Scene {
  public:
+  /// Of nothing yet; what of camera and light is left open present() gives it.
+  Scene();
   Scene(const Scene&);
   Scene(Scene&&) noexcept;
   Scene& operator=(const Scene&);
@@ -95,6 +92,50 @@ class CAPLET_API Scene {
   void look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up);
   double fov() const;  // degrees, of the picture's shorter side
   void set_fov(double degrees);
+
+  // Building: what it consists of becomes more. These throw InputError, and then change nothing, for what cannot be rendered and
+  // for names that there are none of. A Session takes the scene as a whole afterwards.
+  /// A shape of one of statement_types(Statement::shape), with their parameters. Returns its number, as do all of these.
+  std::uint32_t add_shape(const std::string& type, const Parameters& parameters, const ShapeOptions& options = {});
+  /// `count` shapes of one type: `each` has the values of all of them one behind the other, as many for one as for another;
+  /// `transforms` and `materials`, where there are any, one for each. Returns the first's number; the others follow.
+  std::uint32_t add_shapes(const std::string& type, std::size_t count, const Parameters& shared, const Parameters& each,
+                           std::span<const Transform> transforms, std::span<const std::uint32_t> materials = {},
+                           const ShapeOptions& options = {});
+  /// One shape of many capsules.
+  std::uint32_t add_capsules(const CapsuleArrays& capsules, const ShapeOptions& options = {});
+  /// One shape of many triangles.
+  std::uint32_t add_mesh(const MeshArrays& mesh, const ShapeOptions& options = {});
+  /// Capsules of a shape, all of them. set_capsules takes another number of them as well.
+  CapsuleArrays capsule_arrays(std::uint32_t shape) const;
+  void set_capsules(std::uint32_t shape, const CapsuleArrays& capsules);
+  /// The number of the `index`-th shape of an object definition; of the world where `object` is empty.
+  std::uint32_t shape_in(const std::string& object, std::size_t index) const;
+  /// The other way round.
+  std::pair<std::string, std::size_t> place(std::uint32_t shape) const;
+  /// Materials of a shape's surfaces: of all, or one a surface.
+  void set_shape_materials(std::uint32_t shape, const std::vector<std::uint32_t>& materials);
+  std::vector<std::string> objects() const;
+  /// Places an object definition; returns the first instance's number.
+  std::uint32_t add_instances(const std::string& object, std::span<const Transform> transforms);
+  /// A light of one of statement_types(Statement::light), in the space of `transform`.
+  std::uint32_t add_light(const std::string& type, const Parameters& parameters, const Transform& transform = identity);
+  /// All lights but emissive shapes.
+  void remove_lights();
+  std::uint32_t add_medium(const std::string& name, const std::string& type, const Parameters& parameters,
+                           const Transform& transform = identity);
+  std::vector<std::string> media() const;
+  /// `transform`: world space from the camera's, whose +x is right, +y up, +z forward.
+  void set_camera(const std::string& type, const Parameters& parameters, const Transform& transform);
+  Transform camera() const;
+  /// The medium that the camera is in where no solid holds it.
+  void set_camera_medium(std::optional<std::uint32_t> medium);
+  /// Film, filter, sampler or integrator; what `parameters` leaves out is as a file that leaves it out has it.
+  void set_option(Statement statement, const std::string& type, const Parameters& parameters);
+  /// What no one has given: a camera that frames the shapes, and studio light. They follow when shapes are added and this is
+  /// called again, and go where a camera or light is given. Throws InputError for what cannot be rendered, a scene without shapes
+  /// among it.
+  void present();
 
  private:
   friend struct Inside;

@@ -50,6 +50,8 @@ class CAPLET_API Session {
   std::optional<Hit> nearest(const Ray& ray);
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);
   std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most = 256);
+  void nearest(std::span<const Ray> rays, std::span<Crossing> out);
+  std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most = 256);
 
  private:
   struct Data;

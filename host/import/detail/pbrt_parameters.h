@@ -25,7 +25,8 @@
 namespace caplet::pbrt {
 
 struct Parameter {
-  std::string type, name;  // old type names are replaced by the new ones ("point" -> "point3")
+  std::string type,
+      name;  // old type names are replaced by the new ones ("point" -> "point3"); no type: any that suits the values
   SourceLocation where;
   std::vector<double> numbers;       // integer, float, points, vectors, normal, rgb, blackbody, spectrum (pairs)
   std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
@@ -79,6 +80,12 @@ void add_errors(const InputError& problem, const SourceLocation& where, Diagnost
 /// Finds files that statements name: beside the file with the statement, else beside the scene's main file.
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
 
+/// What a statement asks for: a parameter, and the types that it may have; none where only its being there was asked for.
+struct AskedParameter {
+  std::string name;
+  std::vector<std::string> types;
+};
+
 /// One statement's parameters. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). Reading
 /// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback. Names asked for are literals:
 /// they are kept as they are.
@@ -107,6 +114,8 @@ class Parameters {
   void ignore(std::string_view name);
   /// Everything not asked for is an error that lists the nearest name asked for.
   void finish();
+  /// What was asked for by now, in order.
+  std::vector<AskedParameter> asked() const;
 
   /// A name that is no literal, to ask for.
   const char* kept(std::string name) { return kept_.emplace_front(std::move(name)).c_str(); }
@@ -121,6 +130,8 @@ class Parameters {
   /// The colour space at the statement.
   ColorSpace space() const { return space_; }
   Diagnostics& diagnostics() { return *diagnostics_; }
+  /// From now on types that are asked for are noted, for asked().
+  void note_types() { notes_types_ = true; }
   /// Errors from now on go there.
   void report_to(Diagnostics& diagnostics) { diagnostics_ = &diagnostics; }
 
@@ -137,6 +148,8 @@ class Parameters {
   ColorSpace space_;
   Diagnostics* diagnostics_;
   std::vector<std::string_view> asked_;
+  std::map<std::string_view, std::vector<std::string>> asked_types_;
+  bool notes_types_ = false;
   std::forward_list<std::string> kept_;
 };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,16 @@ struct Scene::Data {
   };
   std::uint64_t origin = next_serial();
   std::vector<Logged> edits;
+  // Of a scene that is built: whether no one has given it a camera, or a light; whether present() has given it its light; and
+  // the state (`origin`) that present() has seen to.
+  bool open_camera = false, open_light = false, studio_light = false;
+  std::optional<std::uint64_t> presented = {};
 
   void edit(const SceneEdit& edit);
   /// What has changed is more than edits say: sessions take the scene anew.
   void as_a_whole();
+  /// The same, of what neither camera nor light follow.
+  void as_a_whole_in_view();
 };
 
 struct Device::Data {

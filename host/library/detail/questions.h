@@ -25,6 +25,13 @@ struct Questions {
   std::optional<Hit> pixel(int x, int y) const;
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays) const;
   std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most) const;
+  void nearest(std::span<const Ray> rays, std::span<Crossing> out) const;
+  std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most) const;
+
+ private:
+  /// take(number of the ray, crossing) for each, in order.
+  template <class Take>
+  void for_lists(std::span<const Ray> rays, std::size_t most, Take&& take) const;
 };
 
 }  // namespace caplet::v0

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Transforms and numbers of shapes of the public classes -> the model's.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+
+#include "caplet/shape.h"
+#include "scene/edit.h"
+#include "scene/scene.h"
+
+namespace caplet::v0 {
+
+glm::dmat4 to_model(const Transform& rows);
+Transform to_public(const glm::dmat4& m);
+
+/// Shapes of the world are numbered first, then those of each object. Throws InputError when there is none of that number.
+ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape);
+
+}  // namespace caplet::v0

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Caplet: a path tracer of exact solids on any OpenCL device.
+
+    import caplet
+    scene = caplet.Scene()
+    scene.add_capsules(p0, p1, radius, color=(0.8, 0.3, 0.1))   # (n, 3), (n, 3), (n,)
+    caplet.render(scene, spp=64, size=(960, 540)).save("picture.png")
+
+docs/python.md has more.
+"""
+from . import errors
+from .errors import Error, InputError, RunError
+from . import _caplet, bridges, cameras, lights, materials, media, textures
+from ._caplet import formats, set_log_level
+from .bridges import denoise, from_gemmi, from_mujoco, from_nibabel, from_trimesh, to_xarray
+from .image import Image, load_film
+from .named import Blackbody, Camera, Light, Material, Medium, Texture
+from .rendering import CROSSING, Report, Session, devices, pick, render, trace, verify
+from .scene import Scene, Shape, Shapes, load
+
+
+def shape_types():
+    """The types that Scene.add takes."""
+    return _caplet.statement_types("shape")
+
+
+def shape_parameters(type):
+    """The parameters of a type of shape: [(name, types of values)]."""
+    return [(name, tuple(kinds)) for name, kinds in _caplet.statement_parameters("shape", type)]
+
+
+__all__ = ["Blackbody", "CROSSING", "Camera", "Error", "Image", "InputError", "Light", "Material", "Medium", "Report", "RunError", "Scene",
+           "Session", "Shape", "Shapes", "Texture", "cameras", "denoise", "devices", "errors", "formats", "from_gemmi", "from_mujoco",
+           "from_nibabel", "from_trimesh", "lights", "load", "load_film", "materials", "media", "pick", "render", "set_log_level",
+           "shape_parameters", "shape_types", "textures", "to_xarray", "trace", "verify"]
+__version__ = "0.1.0"

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Robots: MuJoCo's models, every geom as its exact solid."""
+import numpy as np
+
+from .. import cameras, lights as light_types, materials
+from ..errors import InputError
+from ..scene import Scene
+
+_DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)  # of a geom that names none
+_FAR = 100  # of an endless plane: so many times the model's extent to each side
+
+
+def _linear(screen):
+    screen = np.clip(np.asarray(screen, dtype=np.float64), 0, 1)
+    return np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)
+
+
+def _rgba(model, geom):
+    """MuJoCo's own rule: the geom's colour, or that of its material where it names none."""
+    own, material = model.geom_rgba[geom], model.geom_matid[geom]
+    return model.mat_rgba[material] if material >= 0 and tuple(np.float32(own)) == tuple(np.float32(_DEFAULT_RGBA)) else own
+
+
+def _transforms(data):
+    out = np.zeros((len(data.geom_xpos), 4, 4))
+    out[:, :3, :3] = np.asarray(data.geom_xmat).reshape(-1, 3, 3)
+    out[:, :3, 3] = data.geom_xpos
+    out[:, 3, 3] = 1
+    return out
+
+
+def _name(mujoco, model, geom):
+    return mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom) or f"geom {geom}"
+
+
+def _mesh_of(model, geom):
+    mesh = model.geom_dataid[geom]
+    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+    begin, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+    return model.mesh_vert[first:first + count], model.mesh_face[begin:begin + faces]
+
+
+def _height_field(model, geom):
+    """Its surface, two triangles a cell, and the sides and bottom of its base."""
+    field = model.geom_dataid[geom]
+    rows, columns, first = model.hfield_nrow[field], model.hfield_ncol[field], model.hfield_adr[field]
+    half_x, half_y, top, base = model.hfield_size[field]
+    heights = model.hfield_data[first:first + rows * columns].reshape(rows, columns) * top
+    x, y = np.meshgrid(np.linspace(-half_x, half_x, columns), np.linspace(-half_y, half_y, rows))
+    upper = np.stack([x, y, heights], axis=2).reshape(-1, 3)
+    lower = upper * [1, 1, 0] - [0, 0, base]
+    number = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = (part.reshape(-1) for part in (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
+    surface = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    around = np.concatenate([number[0, :-1], number[:-1, -1], number[-1, :0:-1], number[:0:-1, 0]])
+    after = np.roll(around, -1)
+    far = rows * columns
+    sides = np.concatenate([np.stack([around + far, after + far, after], 1), np.stack([around + far, after, around], 1)])
+    return np.concatenate([upper, lower]), np.concatenate([surface, surface[:, ::-1] + far, sides])
+
+
+def _add(scene, mujoco, model, geom, options, far):
+    kind, size = int(model.geom_type[geom]), np.asarray(model.geom_size[geom], dtype=np.float64)
+    if kind == int(mujoco.mjtGeom.mjGEOM_SPHERE):
+        return scene.add("sphere", radius=size[0], **options)
+    if kind == int(mujoco.mjtGeom.mjGEOM_CAPSULE):
+        return scene.add_capsules((0, 0, -size[1]), (0, 0, size[1]), size[0], **options)
+    if kind == int(mujoco.mjtGeom.mjGEOM_CYLINDER):
+        return scene.add("cylinder", p0=(0, 0, -size[1]), p1=(0, 0, size[1]), radius=size[0], **options)
+    if kind == int(mujoco.mjtGeom.mjGEOM_BOX):
+        return scene.add("box", p0=-size, p1=size, **options)
+    if kind == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID):
+        options["transform"] = options["transform"] @ np.diag([*size, 1])
+        return scene.add("sphere", radius=1, **options)
+    if kind == int(mujoco.mjtGeom.mjGEOM_PLANE):
+        x, y = (half if half > 0 else far for half in size[:2])
+        return scene.add("trianglemesh", P=[(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], indices=[0, 1, 2, 0, 2, 3],
+                         onesided=True, **options)  # as MuJoCo's: nothing from below
+    if kind == int(mujoco.mjtGeom.mjGEOM_HFIELD):
+        return scene.add_mesh(*_height_field(model, geom), **options)
+    if kind in (int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_SDF)):
+        return scene.add_mesh(*_mesh_of(model, geom), **options)
+    raise InputError(f"geom {geom}: MuJoCo's geom type {kind} is not known")
+
+
+def _camera(scene, mujoco, model, data, camera):
+    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera) if isinstance(camera, str) else int(camera)
+    if not 0 <= number < model.ncam:
+        raise InputError(f"camera: the model has no camera {camera!r}, of {model.ncam}")
+    place = np.eye(4)
+    place[:3, :3] = np.asarray(data.cam_xmat[number]).reshape(3, 3) @ np.diag([1, 1, -1])  # it looks along -z
+    place[:3, 3] = data.cam_xpos[number]
+    scene.camera = cameras.perspective(fov=model.cam_fovy[number], transform=place)
+
+
+def _lights(scene, mujoco, model, data):
+    """MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the model's middle."""
+    scene.remove_lights()
+    ambient = np.asarray(model.vis.headlight.ambient) + model.light_ambient.sum(axis=0)
+    scene.add_light(light_types.infinite(L=tuple(ambient + 1e-6)))
+    for i in range(model.nlight):
+        if not model.light_active[i]:
+            continue
+        strength, at, way = np.pi * model.light_diffuse[i], data.light_xpos[i], data.light_xdir[i]
+        if int(model.light_type[i]) == int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL):
+            scene.add_light(light_types.distant(L=tuple(strength), from_=(0, 0, 0), to=tuple(way)))
+            continue
+        away = np.sum((np.asarray(at) - model.stat.center)**2)
+        strength = tuple(strength * away)
+        if 0 < model.light_cutoff[i] < 90:
+            scene.add_light(light_types.spot(I=strength, from_=tuple(at), to=tuple(at + way), coneangle=model.light_cutoff[i],
+                                             conedeltaangle=model.light_cutoff[i] * 0.2))
+        else:
+            scene.add_light(light_types.point(I=strength, from_=tuple(at)))
+
+
+def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"):
+    """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
+
+    model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all. camera:
+    one of the model's, by name or number; None: one that frames what there is. lights: "studio", or "model" for the model's own.
+
+    Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Colours are taken as
+    a screen's; what is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
+    scene.info["geom"][image.object_id] is a segmentation. update_mujoco(scene, data) moves all of it.
+    """
+    import mujoco
+    if data is None:
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+    scene, places, made, geoms = Scene(), _transforms(data), {}, []
+    far = _FAR * max(float(model.stat.extent), 1e-3)
+    for geom in range(model.ngeom):
+        rgba = np.asarray(_rgba(model, geom), dtype=np.float64)
+        if (groups is not None and model.geom_group[geom] not in groups) or rgba[3] == 0:
+            continue
+        color = tuple(_linear(rgba[:3]))
+        if color not in made:
+            made[color] = materials.diffuse(reflectance=color)
+        options = {"name": _name(mujoco, model, geom), "transform": places[geom], "material": made[color]}
+        _add(scene, mujoco, model, geom, options, far)
+        geoms.append(geom)
+    scene.info["geom"] = np.array(geoms, dtype=np.int64)
+    scene.info["scale"] = {i: np.diag([*model.geom_size[geom], 1]) for i, geom in enumerate(geoms)
+                           if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)}
+    if lights == "model":
+        _lights(scene, mujoco, model, data)
+    elif lights != "studio":
+        raise InputError(f'lights: "studio" or "model" is needed, not {lights!r}')
+    if camera is not None:
+        _camera(scene, mujoco, model, data, camera)
+    return scene
+
+
+def update_mujoco(scene, data):
+    """Moves the shapes of a scene that from_mujoco made to where `data` has them; a Session's `update` follows in place."""
+    places = _transforms(data)
+    for number, geom in enumerate(scene.info["geom"]):
+        scene.shape(number).transform = places[geom] @ scene.info["scale"].get(number, np.eye(4))

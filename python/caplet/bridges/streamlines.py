@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Streamlines that nibabel has read."""
+import numpy as np
+
+from .. import materials
+from ..errors import InputError
+from ..scene import Scene
+
+
+def from_nibabel(tractogram, radius=0.1, color="direction"):
+    """A scene of streamlines as chains of capsules, in their world space (millimetres): one shape, "streamlines".
+
+    tractogram: what nibabel.streamlines.load gives, its .tractogram or its .streamlines. radius: of all, or one a streamline.
+    color: "direction" (red, green and blue are the axes), or a colour of all. scene.info["streamline"]: that of each capsule.
+    """
+    lines = getattr(tractogram, "streamlines", tractogram)
+    lines = [np.asarray(line, dtype=np.float32) for line in lines]
+    held = [(i, line) for i, line in enumerate(lines) if len(line) > 1]
+    if not held:
+        raise InputError("there are no streamlines of two points or more")
+    p0 = np.concatenate([line[:-1] for _, line in held])
+    p1 = np.concatenate([line[1:] for _, line in held])
+    which = np.repeat([i for i, _ in held], [len(line) - 1 for _, line in held])
+    radii = np.broadcast_to(np.asarray(radius, dtype=np.float64), len(lines))[which]
+    if isinstance(color, str) and color == "direction":
+        along = np.abs(p1 - p0)
+        length = np.linalg.norm(along, axis=1, keepdims=True)
+        color = np.clip(np.divide(along, length, out=np.full_like(along, 0.5), where=length > 0), 0.02, 0.9)
+    scene = Scene()
+    scene.add_capsules(p0, p1, radii, color=color, material=materials.diffuse(), name="streamlines")
+    scene.info["streamline"] = which
+    return scene

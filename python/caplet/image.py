@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""What a render gives: a picture with its layers as arrays."""
+import os
+import tempfile
+
+import numpy as np
+
+from .errors import InputError
+
+
+class Image:
+    """A picture and its layers: arrays of (height, width) or (height, width, 3), from the top left.
+
+    rgb: scene-linear float32. alpha: what is covered, 0 to 1. depth: along the view, scene units. normal: unit, world.
+    position: world. albedo. variance: of each pixel's mean. object_id, primitive_id: uint32, 2^32 - 1 where nothing is.
+    In a notebook it shows itself.
+    """
+
+    def __init__(self, film):
+        self._film = film
+        self._cache = {}
+        self._png = None
+
+    @property
+    def channels(self):
+        """Names of all channels: "R", "albedo.G", "object.id"..."""
+        return self._film.channels()
+
+    def __getitem__(self, name):
+        """One channel by its name, (height, width)."""
+        if name not in self._cache:
+            self._cache[name] = self._film.ids(name) if name.endswith(".id") else self._film.values(name)
+        return self._cache[name]
+
+    def _layer(self, *names):
+        key = ",".join(names)
+        if key not in self._cache:
+            self._cache[key] = np.stack([self[name] for name in names], axis=2)
+        return self._cache[key]
+
+    @property
+    def rgb(self):
+        return self._layer("R", "G", "B")
+
+    @property
+    def alpha(self):
+        return self["A"]
+
+    @property
+    def depth(self):
+        return self["Z"]
+
+    @property
+    def normal(self):
+        return self._layer("N.X", "N.Y", "N.Z")
+
+    @property
+    def position(self):
+        return self._layer("P.X", "P.Y", "P.Z")
+
+    @property
+    def albedo(self):
+        return self._layer("albedo.R", "albedo.G", "albedo.B")
+
+    @property
+    def variance(self):
+        return self._layer("variance.R", "variance.G", "variance.B")
+
+    @property
+    def object_id(self):
+        return self["object.id"]
+
+    @property
+    def primitive_id(self):
+        return self["primitive.id"]
+
+    @property
+    def size(self):
+        """(width, height) in pixels."""
+        return self._film.width, self._film.height
+
+    @property
+    def shape(self):
+        """(height, width)"""
+        return self._film.height, self._film.width
+
+    @property
+    def spp(self):
+        """Samples a pixel that were finished."""
+        return self._film.spp
+
+    @property
+    def samples(self):
+        """Which they are: [(first, count)]."""
+        return self._film.samples()
+
+    def save(self, path):
+        """`.exr`: all layers. `.png` and others: tone-mapped, 8 bits a channel."""
+        path = os.fspath(path)
+        if path.lower().endswith(".exr"):
+            self._film.write_exr(path)
+        else:
+            self._film.write_preview(path)
+
+    def save_film(self, path):
+        """The exact sums as an EXR file, which load_film takes, and Session.resume goes on with."""
+        self._film.save(os.fspath(path))
+
+    def __add__(self, other):
+        """The samples of both, of the same scene and view."""
+        if not isinstance(other, Image):
+            return NotImplemented
+        film = self._film.copy()
+        film.add(other._film)
+        return Image(film)
+
+    def png(self):
+        """The bytes of a PNG, tone-mapped."""
+        if self._png is None:
+            with tempfile.TemporaryDirectory() as folder:
+                file = os.path.join(folder, "image.png")
+                self._film.write_preview(file)
+                with open(file, "rb") as held:
+                    self._png = held.read()
+        return self._png
+
+    def _repr_png_(self):
+        try:
+            return self.png()
+        except InputError:  # of a library without PNG
+            return None
+
+    def __repr__(self):
+        return f"<caplet.Image {self.size[0]} x {self.size[1]}, {self.spp} samples a pixel>"
+
+
+def load_film(path, scene):
+    """A film that save_film wrote, of this scene."""
+    from ._caplet import Film
+    return Image(Film.load(os.fspath(path), scene._native))

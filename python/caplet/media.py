@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""A constructor for each medium of the library's list, with its parameters as keywords."""
+from . import named as _named
+
+_named.fill(globals(), "medium")

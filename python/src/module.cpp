@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// caplet._caplet: the library's public classes for the package's Python, which is what programs use.
+#include <caplet/log.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "binding.h"
+
+namespace caplet_python {
+
+namespace {
+
+/// Raises caplet.errors.NAME(messages).
+void raise(const char* name, const std::vector<std::string>& messages) {
+  nb::list list;
+  for (const std::string& message : messages)
+    list.append(nb::steal<nb::str>(PyUnicode_DecodeUTF8(message.data(), static_cast<Py_ssize_t>(message.size()), "replace")));
+  const nb::object type = nb::module_::import_("caplet.errors").attr(name);
+  const nb::object error = type(list);
+  PyErr_SetObject(type.ptr(), error.ptr());
+}
+
+}  // namespace
+
+void bind_errors(nb::module_& m) {
+  nb::register_exception_translator(
+      [](const std::exception_ptr& thrown, void*) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const caplet::InputError& error) {
+          raise("InputError", error.messages());
+        } catch (const caplet::RunError& error) {
+          raise("RunError", {error.what()});
+        }
+      },
+      nullptr);
+  m.def("set_log_level", [](const std::string& least) {
+    using caplet::LogLevel;
+    caplet::set_log_level(least == "info"    ? LogLevel::info
+                          : least == "error" ? LogLevel::error
+                          : least == "none"  ? LogLevel::none
+                                             : LogLevel::warning);
+  });
+}
+
+}  // namespace caplet_python
+
+NB_MODULE(_caplet, m) {
+  caplet_python::bind_errors(m);
+  caplet_python::bind_scene(m);
+  caplet_python::bind_render(m);
+  caplet_python::bind_trace(m);
+}

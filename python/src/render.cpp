@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Devices, films and sessions.
+#include <caplet/device.h>
+#include <caplet/film.h>
+#include <caplet/session.h>
+#include <caplet/verify.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "session.h"
+
+namespace caplet_python {
+
+namespace {
+
+nb::dict told(const caplet::DeviceInfo& info) {
+  nb::dict out;
+  out["index"] = info.index;
+  out["name"] = info.name;
+  out["vendor"] = info.vendor;
+  out["driver"] = info.driver;
+  out["version"] = info.version;
+  out["platform"] = info.platform;
+  out["type"] = info.type;
+  out["compute_units"] = info.compute_units;
+  out["global_bytes"] = info.global_bytes;
+  return out;
+}
+
+caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const std::string& choice, std::uint64_t rays,
+                              std::uint64_t seed) {
+  caplet::VerifyReport report;
+  std::atomic<bool> stopped = false;
+  struct Stopped {};
+  run_interruptibly(
+      [&] {
+        const std::vector<caplet::Device> devices =
+            choice.empty() ? std::vector{caplet::choose_device()} : caplet::choose_devices(choice);
+        const caplet::VerifyOptions options{rays, seed, [&](std::uint64_t) {
+                                              if (stopped) throw Stopped{};
+                                            }};
+        try {
+          report = scene ? caplet::verify(*scene, devices, options) : caplet::verify(devices, options);
+        } catch (const Stopped&) {
+        }
+      },
+      [&] { stopped = true; }, [] {});
+  return report;
+}
+
+}  // namespace
+
+void bind_render(nb::module_& m) {
+  m.def("devices", [] {
+    nb::list out;
+    for (const caplet::DeviceInfo& info : caplet::devices()) out.append(told(info));
+    return out;
+  });
+  m.def(
+      "verify",
+      [](const std::optional<caplet::Scene>& scene, const std::string& devices, std::uint64_t rays, std::uint64_t seed) {
+        const caplet::VerifyReport report = verified(scene, devices, rays, seed);
+        nb::list of_devices;
+        for (const auto& one : report.devices) {
+          nb::dict row = told(one.device);
+          row["rays"] = one.rays;
+          row["hits"] = one.hits;
+          row["disagreements"] = one.disagreements;
+          row["worst"] = one.worst;
+          row["seconds"] = one.seconds;
+          of_devices.append(row);
+        }
+        return nb::make_tuple(report.agrees(), of_devices, report.text, report.json);
+      },
+      nb::arg("scene").none(), nb::arg("devices"), nb::arg("rays"), nb::arg("seed"));
+
+  nb::class_<caplet::Device>(m, "Device").def_prop_ro("info", [](const caplet::Device& device) { return told(device.info()); });
+  m.def("choose_devices", [](const std::string& choice) {
+    const nb::gil_scoped_release released;
+    return choice.empty() ? std::vector{caplet::choose_device()} : caplet::choose_devices(choice);
+  });
+
+  using caplet::Film;
+  nb::class_<Film>(m, "Film")
+      .def_prop_ro("width", &Film::width)
+      .def_prop_ro("height", &Film::height)
+      .def_prop_ro("x", &Film::x)
+      .def_prop_ro("y", &Film::y)
+      .def_prop_ro("spp", &Film::samples_per_pixel)
+      .def("samples",
+           [](const Film& film) {
+             std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+             for (const caplet::SampleRange& range : film.samples()) out.emplace_back(range.first, range.count);
+             return out;
+           })
+      .def("copy", [](const Film& film) { return Film(film); })
+      .def("add", &Film::add, nb::call_guard<nb::gil_scoped_release>())
+      .def("save",
+           [](const Film& film, const std::string& file) {
+             const nb::gil_scoped_release released;
+             film.save(file);
+           })
+      .def_static("load",
+                  [](const std::string& file, const caplet::Scene& scene) {
+                    const nb::gil_scoped_release released;
+                    return Film::load(file, scene);
+                  })
+      .def("channels", &Film::channels, nb::call_guard<nb::gil_scoped_release>())
+      .def("values",
+           [](const Film& film, const std::string& channel) {
+             const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
+             std::vector<float> values;
+             {
+               const nb::gil_scoped_release released;
+               values = film.values(channel);
+             }
+             return array_of<float, 2>(std::move(values), shape);
+           })
+      .def("ids",
+           [](const Film& film, const std::string& channel) {
+             const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
+             std::vector<std::uint32_t> ids;
+             {
+               const nb::gil_scoped_release released;
+               ids = film.ids(channel);
+             }
+             return array_of<std::uint32_t, 2>(std::move(ids), shape);
+           })
+      .def("write_exr",
+           [](const Film& film, const std::string& file) {
+             const nb::gil_scoped_release released;
+             film.write_exr(file);
+           })
+      .def("write_preview", [](const Film& film, const std::string& file) {
+        const nb::gil_scoped_release released;
+        film.write_preview(file);
+      });
+
+  nb::class_<HeldSession>(m, "Session")
+      .def("__init__",
+           [](HeldSession* self, const caplet::Scene& scene, const std::vector<caplet::Device>& devices) {
+             std::optional<caplet::Session> session;
+             run_interruptibly([&] { session.emplace(scene, devices); }, [] {}, [] {});
+             new (self) HeldSession(*std::move(session));
+           })
+      .def("update",
+           [](HeldSession& held, const caplet::Scene& scene) {
+             run_interruptibly(
+                 [&] {
+                   const std::lock_guard lock(held.mutex);
+                   held.session.update(scene);
+                 },
+                 [] {}, [] {});
+           })
+      .def(
+          "render",
+          [](HeldSession& held, int samples, std::optional<double> time_limit, const nb::object& progress) {
+            int done = 0;
+            std::atomic<double> fraction = 0, speed = 0;
+            std::atomic<bool> under_way = false;
+            run_interruptibly(
+                [&] {
+                  const std::lock_guard lock(held.mutex);
+                  under_way = true;
+                  caplet::RenderOptions options;
+                  options.time_limit = time_limit;
+                  options.progress = [&](const caplet::RenderProgress& now) {
+                    fraction = now.fraction;
+                    speed = now.samples_per_second;
+                  };
+                  done = held.session.render(samples, options);
+                  under_way = false;
+                },
+                [&] { held.session.cancel(); },
+                [&] {
+                  if (!progress.is_none()) progress(fraction.load(), speed.load());
+                });
+            return done;
+          },
+          nb::arg("samples"), nb::arg("time_limit").none(), nb::arg("progress").none())
+      .def("cancel", [](HeldSession& held) { held.session.cancel(); })
+      .def("film",
+           [](HeldSession& held) {
+             const nb::gil_scoped_release released;
+             const std::lock_guard lock(held.mutex);
+             return held.session.film();
+           })
+      .def("resume", [](HeldSession& held, const Film& film) {
+        const nb::gil_scoped_release released;
+        const std::lock_guard lock(held.mutex);
+        held.session.resume(film);
+      });
+}
+
+}  // namespace caplet_python

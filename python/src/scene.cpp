@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Scenes: reading, writing, building, editing.
+#include <caplet/import.h>
+#include <caplet/write.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "binding.h"
+
+namespace caplet_python {
+
+namespace {
+
+caplet::Parameter parameter_of(nb::handle value) {
+  if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value);
+  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
+  if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value)) return nb::cast<double>(value);
+  if (nb::isinstance<nb::list>(value)) return nb::cast<std::vector<std::string>>(value);
+  if (nb::isinstance<nb::tuple>(value)) {
+    const auto tuple = nb::cast<nb::tuple>(value);
+    const auto word = nb::cast<std::string>(tuple[0]);
+    if (word == "texture") return caplet::TextureNumber{nb::cast<std::uint32_t>(tuple[1])};
+    if (word == "blackbody") return caplet::Blackbody{nb::cast<double>(tuple[1])};
+    if (word == "materials")
+      return std::array<std::uint32_t, 2>{nb::cast<std::uint32_t>(tuple[1]), nb::cast<std::uint32_t>(tuple[2])};
+    if (word == "rgb") return caplet::Rgb{nb::cast<double>(tuple[1]), nb::cast<double>(tuple[2]), nb::cast<double>(tuple[3])};
+  }
+  if (nb::ndarray_check(value)) {
+    const auto array = nb::cast<Array>(value);
+    std::vector<double> numbers(array.ndim() == 1 ? array.shape(0) : 0);
+    with_floats(array, [&](auto read) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = read(i, 0);
+    });
+    if (numbers.size() == 3) return std::array<double, 3>{numbers[0], numbers[1], numbers[2]};
+    return numbers;
+  }
+  throw nb::type_error("a parameter is a number, a text, a switch, an array, a list of texts or a tuple of a word and numbers");
+}
+
+/// The same of values for many shapes, which stay in their array.
+caplet::Parameters each_of(const nb::dict& given) {
+  caplet::Parameters out;
+  for (const auto& [name, value] : given) {
+    const auto array = nb::cast<Array>(value);
+    std::vector<double> numbers(array.shape(0));
+    with_floats(array, [&](auto read) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = read(i, 0);
+    });
+    out[nb::cast<std::string>(name)] = std::move(numbers);
+  }
+  return out;
+}
+
+caplet::ShapeOptions options_of(const nb::dict& given) {
+  caplet::ShapeOptions out;
+  const auto has = [&](const char* name) { return given.contains(name) && !given[name].is_none(); };
+  if (has("name")) out.name = nb::cast<std::string>(given["name"]);
+  if (has("object")) out.object = nb::cast<std::string>(given["object"]);
+  if (has("transform")) out.transform = transform_of(nb::cast<Array>(given["transform"]));
+  if (has("materials")) out.materials = nb::cast<std::vector<std::uint32_t>>(given["materials"]);
+  if (has("emission")) out.emission = parameters_of(nb::cast<nb::dict>(given["emission"]));
+  if (has("inside")) out.inside = nb::cast<std::uint32_t>(given["inside"]);
+  if (has("outside")) out.outside = nb::cast<std::uint32_t>(given["outside"]);
+  if (has("reverse_orientation")) out.reverse_orientation = nb::cast<bool>(given["reverse_orientation"]);
+  return out;
+}
+
+/// (n, 3, 4) of 64-bit floats, one behind the other.
+std::vector<caplet::Transform> transforms_of(const Array& array) {
+  if (array.ndim() != 2 || array.shape(1) != 12) throw nb::value_error("an array of another shape");
+  std::vector<caplet::Transform> out(array.shape(0));
+  with_floats(array, [&](auto read) {
+    for (std::size_t i = 0; i < out.size(); ++i)
+      for (std::size_t k = 0; k < 12; ++k) out[i][k] = read(i, k);
+  });
+  return out;
+}
+
+caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array& radius0, const std::optional<Array>& radius1,
+                                  const std::optional<Array>& materials, std::size_t count) {
+  caplet::CapsuleArrays out;
+  out.p0 = rows_of<3>(p0, count);
+  out.p1 = rows_of<3>(p1, count);
+  out.radius0 = floats_of(radius0, count);
+  if (radius1) out.radius1 = floats_of(*radius1, count);
+  if (materials) out.materials = numbers_of(*materials);
+  return out;
+}
+
+nb::ndarray<nb::numpy, float, nb::ndim<2>> points_array(const std::vector<std::array<float, 3>>& points) {
+  std::vector<float> flat(3 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    std::copy(points[i].begin(), points[i].end(), flat.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  return array_of<float, 2>(std::move(flat), {points.size(), 3});
+}
+
+nb::ndarray<nb::numpy, double, nb::ndim<2>> transform_array(const caplet::Transform& transform) {
+  std::vector<double> flat(transform.begin(), transform.end());
+  for (const double last : {0, 0, 0, 1}) flat.push_back(last);
+  return array_of<double, 2>(std::move(flat), {4, 4});
+}
+
+caplet::Statement statement_named(const std::string& name) {
+  using caplet::Statement;
+  static const std::vector<std::pair<const char*, Statement>> names = {
+      {"shape", Statement::shape},   {"light", Statement::light},     {"emission", Statement::emission},
+      {"medium", Statement::medium}, {"camera", Statement::camera},   {"film", Statement::film},
+      {"filter", Statement::filter}, {"sampler", Statement::sampler}, {"integrator", Statement::integrator}};
+  for (const auto& [known, statement] : names)
+    if (name == known) return statement;
+  throw nb::value_error("no such kind of statement");
+}
+
+nb::object triple(const std::array<double, 3>& v) { return nb::make_tuple(v[0], v[1], v[2]); }
+
+}  // namespace
+
+caplet::Parameters parameters_of(const nb::dict& given) {
+  caplet::Parameters out;
+  for (const auto& [name, value] : given) out[nb::cast<std::string>(name)] = parameter_of(value);
+  return out;
+}
+
+caplet::Transform transform_of(const Array& rows) {
+  if (rows.ndim() != 1 || rows.shape(0) != 12) throw nb::value_error("an array of another shape");
+  caplet::Transform out{};
+  with_floats(rows, [&](auto read) {
+    for (std::size_t k = 0; k < 12; ++k) out[k] = read(k, 0);
+  });
+  return out;
+}
+
+std::vector<float> floats_of(const Array& array, std::size_t count) {
+  if (array.ndim() != 1 || (array.shape(0) != count && array.shape(0) != 1)) throw nb::value_error("an array of another shape");
+  std::vector<float> out(count);
+  const std::size_t step = array.shape(0) == 1 ? 0 : 1;
+  with_floats(array, [&](auto read) {
+    for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(read(i * step, 0));
+  });
+  return out;
+}
+
+std::vector<std::uint32_t> numbers_of(const Array& array) {
+  if (array.ndim() != 1 || array.dtype() != nb::dtype<std::uint32_t>())
+    throw nb::type_error("an array of 32-bit unsigned integers");
+  std::vector<std::uint32_t> out(array.shape(0));
+  with_rows<std::uint32_t>(array, [&](auto read) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = read(i, 0);
+  });
+  return out;
+}
+
+void bind_scene(nb::module_& m) {
+  using caplet::Scene;
+  m.def("statement_types", [](const std::string& kind) { return caplet::statement_types(statement_named(kind)); });
+  m.def("statement_parameters", [](const std::string& kind, const std::string& type) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> out;
+    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement_named(kind), type))
+      out.emplace_back(one.name, one.types);
+    return out;
+  });
+  m.def("material_types", &caplet::material_types);
+  m.def("texture_types", &caplet::texture_types);
+  m.def("material_parameters", &caplet::material_parameters);
+  m.def("texture_parameters", &caplet::texture_parameters);
+  m.def("formats", [] {
+    std::vector<std::pair<std::string, std::vector<std::string>>> out;
+    for (const caplet::SceneFormat& format : caplet::scene_formats()) out.emplace_back(format.name, format.extensions);
+    return out;
+  });
+  m.def(
+      "load",
+      [](const std::string& file) {
+        std::optional<Scene> scene;
+        run_interruptibly([&] { scene = caplet::import_scene(file); }, [] {}, [] {});
+        return *std::move(scene);
+      },
+      "Reads a scene of any known format.");
+
+  nb::class_<Scene>(m, "Scene")
+      .def(nb::init<>())
+      .def("copy", [](const Scene& scene) { return Scene(scene); })
+      .def("save",
+           [](const Scene& scene, const std::string& file) {
+             const nb::gil_scoped_release released;
+             caplet::write_scene(scene, file);
+           })
+      .def("bounds",
+           [](const Scene& scene) {
+             const caplet::Bounds bounds = scene.bounds();
+             return nb::make_tuple(triple(bounds.min), triple(bounds.max));
+           })
+      .def("primitives", &Scene::primitives)
+      .def("materials", &Scene::materials)
+      .def("media", &Scene::media)
+      .def("objects", &Scene::objects)
+      .def("shapes", &Scene::shapes)
+      .def("shape", &Scene::shape)
+      .def("shape_in", &Scene::shape_in)
+      .def("place", &Scene::place)
+      .def_prop_ro("width", &Scene::width)
+      .def_prop_ro("height", &Scene::height)
+      .def("set_size", &Scene::set_size)
+      .def("set_crop", &Scene::set_crop)
+      .def_prop_rw("spp", &Scene::samples_per_pixel, &Scene::set_samples_per_pixel)
+      .def_prop_rw("max_depth", &Scene::max_depth, &Scene::set_max_depth)
+      .def_prop_rw("seed", &Scene::seed, &Scene::set_seed)
+      .def_prop_ro("lights", &Scene::lights)
+      .def_prop_ro("instances", &Scene::instances)
+      .def("capsules", &Scene::capsules)
+      .def("present",
+           [](Scene& scene) {
+             const nb::gil_scoped_release released;
+             scene.present();
+           })
+      .def("look_at", &Scene::look_at)
+      .def_prop_ro("fov", &Scene::fov)
+      .def("set_fov", &Scene::set_fov)
+      .def("camera", [](const Scene& scene) { return transform_array(scene.camera()); })
+      .def("set_camera", [](Scene& scene, const std::string& type, const nb::dict& given,
+                            const Array& transform) { scene.set_camera(type, parameters_of(given), transform_of(transform)); })
+      .def("set_camera_medium", &Scene::set_camera_medium, nb::arg("medium").none())
+      .def("set_option", [](Scene& scene, const std::string& kind, const std::string& type,
+                            const nb::dict& given) { scene.set_option(statement_named(kind), type, parameters_of(given)); })
+      .def("transform", [](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); })
+      .def("set_transform",
+           [](Scene& scene, std::uint32_t shape, const Array& to) { scene.set_transform(shape, transform_of(to)); })
+      .def("instance", [](const Scene& scene, std::uint32_t number) { return transform_array(scene.instance(number)); })
+      .def("set_instance",
+           [](Scene& scene, std::uint32_t number, const Array& to) { scene.set_instance(number, transform_of(to)); })
+      .def("add_instances", [](Scene& scene, const std::string& object,
+                               const Array& transforms) { return scene.add_instances(object, transforms_of(transforms)); })
+      .def("add_material",
+           [](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given) {
+             return scene.add_material(name, caplet::NamedMaterial{type, parameters_of(given)});
+           })
+      .def("set_material",
+           [](Scene& scene, std::uint32_t number, const std::string& type, const nb::dict& given) {
+             scene.set_material(number, caplet::NamedMaterial{type, parameters_of(given)});
+           })
+      .def("add_texture",
+           [](Scene& scene, const std::string& type, bool is_float, const nb::dict& given, const Array& transform) {
+             return scene.add_texture({type, is_float, parameters_of(given), transform_of(transform)}).number;
+           })
+      .def("add_medium",
+           [](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given, const Array& transform) {
+             return scene.add_medium(name, type, parameters_of(given), transform_of(transform));
+           })
+      .def("add_light",
+           [](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
+             return scene.add_light(type, parameters_of(given), transform_of(transform));
+           })
+      .def("remove_lights", &Scene::remove_lights)
+      .def("light_scale", &Scene::light_scale)
+      .def("set_light",
+           [](Scene& scene, std::uint32_t light, const std::array<double, 3>& rgb, double scale) {
+             scene.set_light(light, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
+           })
+      .def("set_emission",
+           [](Scene& scene, std::uint32_t shape, const std::array<double, 3>& rgb, double scale) {
+             scene.set_emission(shape, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
+           })
+      .def("set_shape_materials", &Scene::set_shape_materials)
+      .def("add_shape", [](Scene& scene, const std::string& type, const nb::dict& given,
+                           const nb::dict& options) { return scene.add_shape(type, parameters_of(given), options_of(options)); })
+      .def(
+          "add_shapes",
+          [](Scene& scene, const std::string& type, std::size_t count, const nb::dict& shared, const nb::dict& each,
+             const std::optional<Array>& transforms, const std::optional<Array>& materials, const nb::dict& options) {
+            const caplet::Parameters of_all = parameters_of(shared), of_each = each_of(each);
+            const caplet::ShapeOptions given = options_of(options);
+            std::vector<caplet::Transform> places;
+            if (transforms) places = transforms_of(*transforms);
+            std::vector<std::uint32_t> numbers;
+            if (materials) numbers = numbers_of(*materials);
+            const nb::gil_scoped_release released;
+            return scene.add_shapes(type, count, of_all, of_each, places, numbers, given);
+          },
+          nb::arg("type"), nb::arg("count"), nb::arg("shared"), nb::arg("each"), nb::arg("transforms").none(),
+          nb::arg("materials").none(), nb::arg("options"))
+      .def(
+          "add_capsules",
+          [](Scene& scene, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
+             const std::optional<Array>& radius1, const std::optional<Array>& materials, const nb::dict& options) {
+            const caplet::ShapeOptions given = options_of(options);
+            const nb::gil_scoped_release released;
+            return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, count), given);
+          },
+          nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
+          nb::arg("materials").none(), nb::arg("options"))
+      .def(
+          "set_capsules",
+          [](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
+             const std::optional<Array>& radius1, const std::optional<Array>& materials) {
+            const nb::gil_scoped_release released;
+            scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, count));
+          },
+          nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
+          nb::arg("materials").none())
+      .def("capsule_arrays",
+           [](const Scene& scene, std::uint32_t shape) {
+             caplet::CapsuleArrays arrays = scene.capsule_arrays(shape);
+             if (arrays.radius1.empty()) arrays.radius1 = arrays.radius0;
+             const std::size_t count = arrays.p0.size(), named = arrays.materials.size();
+             return nb::make_tuple(points_array(arrays.p0), points_array(arrays.p1),
+                                   array_of<float, 1>(std::move(arrays.radius0), {count}),
+                                   array_of<float, 1>(std::move(arrays.radius1), {count}),
+                                   array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}));
+           })
+      .def(
+          "add_mesh",
+          [](Scene& scene, const Array& positions, const Array& triangles, const std::optional<Array>& normals,
+             const std::optional<Array>& uvs, const nb::dict& options) {
+            const caplet::ShapeOptions given = options_of(options);
+            caplet::MeshArrays mesh;
+            mesh.positions = rows_of<3>(positions, positions.shape(0));
+            if (normals) mesh.normals = rows_of<3>(*normals, normals->shape(0));
+            if (uvs) mesh.uvs = rows_of<2>(*uvs, uvs->shape(0));
+            const std::vector<std::uint32_t> corners = numbers_of(triangles);
+            for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+              mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+            const nb::gil_scoped_release released;
+            return scene.add_mesh(mesh, given);
+          },
+          nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("options"));
+}
+
+}  // namespace caplet_python

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Rays in arrays -> crossings in arrays.
+#include <caplet/pick.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include "session.h"
+
+namespace caplet_python {
+
+namespace {
+
+using caplet::Crossing;
+using caplet::Ray;
+
+/// A picker, and whose turn it is.
+struct HeldPicker {
+  explicit HeldPicker(caplet::Picker of) : session(std::move(of)) {}
+  caplet::Picker session;  // by the name that HeldSession has for what answers
+  std::mutex mutex;
+};
+
+constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
+
+/// Rays [first, first + count) of arrays whose first dimension may be 1, which is repeated.
+class Rays {
+ public:
+  Rays(std::size_t count, const Array& origins, const Array& directions, const Array& t_min, const Array& t_max)
+      : count_(count), origins_(origins), directions_(directions), t_min_(t_min), t_max_(t_max) {
+    for (const Array* points : {&origins, &directions})
+      if (points->ndim() != 2 || points->shape(1) != 3 || (points->shape(0) != count && points->shape(0) != 1))
+        throw nb::value_error("rays are arrays of shape (n, 3)");
+    for (const Array* ends : {&t_min, &t_max})
+      if (ends->ndim() != 1 || (ends->shape(0) != count && ends->shape(0) != 1))
+        throw nb::value_error("ends of rays: shape (n,)");
+  }
+  std::size_t count() const { return count_; }
+
+  void read(std::size_t first, std::span<Ray> out) const {
+    points(origins_, first, out, &Ray::origin);
+    points(directions_, first, out, &Ray::direction);
+    ends(t_min_, first, out, &Ray::t_min);
+    ends(t_max_, first, out, &Ray::t_max);
+  }
+
+ private:
+  static void points(const Array& from, std::size_t first, std::span<Ray> out, std::array<float, 3> Ray::*to) {
+    const std::size_t step = from.shape(0) == 1 ? 0 : 1;
+    with_floats(from, [&](auto read) {
+      for (std::size_t i = 0; i < out.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) (out[i].*to)[k] = static_cast<float>(read((first + i) * step, k));
+    });
+  }
+  static void ends(const Array& from, std::size_t first, std::span<Ray> out, float Ray::*to) {
+    const std::size_t step = from.shape(0) == 1 ? 0 : 1;
+    with_floats(from, [&](auto read) {
+      for (std::size_t i = 0; i < out.size(); ++i) out[i].*to = static_cast<float>(read((first + i) * step, 0));
+    });
+  }
+
+  std::size_t count_;
+  Array origins_, directions_, t_min_, t_max_;
+};
+
+void check_signals() {
+  const nb::gil_scoped_acquire acquired;
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+/// `out`: bytes of as many crossings, which a structured array lends.
+template <class Held>
+void nearest(Held& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min, const Array& t_max,
+             nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
+  const Rays rays(count, origins, directions, t_min, t_max);
+  if (out.shape(0) != count * sizeof(Crossing)) throw nb::value_error("room for other rays");
+  std::uint8_t* const to = out.data();
+  const nb::gil_scoped_release released;
+  const std::lock_guard lock(held.mutex);
+  std::vector<Ray> chunk;
+  std::vector<Crossing> hits;
+  for (std::size_t first = 0; first < count; first += rays_in_a_chunk) {
+    if (first > 0) check_signals();
+    chunk.resize(std::min(rays_in_a_chunk, count - first));
+    rays.read(first, chunk);
+    hits.resize(chunk.size());
+    held.session.nearest(chunk, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) hits[i].ray = static_cast<std::uint32_t>(first + i);
+    std::memcpy(to + first * sizeof(Crossing), hits.data(), hits.size() * sizeof(Crossing));
+  }
+}
+
+template <class Held>
+auto crossings(Held& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
+               const Array& t_max, std::size_t most) {
+  const Rays rays(count, origins, directions, t_min, t_max);
+  std::vector<std::uint8_t> bytes;
+  {
+    const nb::gil_scoped_release released;
+    const std::lock_guard lock(held.mutex);
+    std::vector<Ray> chunk;
+    const std::size_t at_once =
+        std::clamp<std::size_t>((std::size_t{1} << 22) / std::max<std::size_t>(most, 1), 1, rays_in_a_chunk);
+    for (std::size_t first = 0; first < count; first += at_once) {
+      if (first > 0) check_signals();
+      chunk.resize(std::min(at_once, count - first));
+      rays.read(first, chunk);
+      std::vector<Crossing> hits = held.session.crossings(chunk, most);
+      for (Crossing& hit : hits) hit.ray += static_cast<std::uint32_t>(first);
+      const std::size_t before = bytes.size();
+      bytes.resize(before + hits.size() * sizeof(Crossing));
+      if (!hits.empty()) std::memcpy(bytes.data() + before, hits.data(), hits.size() * sizeof(Crossing));
+    }
+  }
+  const std::size_t size = bytes.size();
+  return array_of<std::uint8_t, 1>(std::move(bytes), {size});
+}
+
+/// Names, NumPy's types and places of a crossing's numbers.
+std::vector<std::tuple<std::string, std::string, std::size_t, std::size_t>> layout() {
+  return {{"t", "f4", 1, offsetof(Crossing, t)},
+          {"error", "f4", 1, offsetof(Crossing, error)},
+          {"uv", "f4", 2, offsetof(Crossing, uv)},
+          {"object_id", "u4", 1, offsetof(Crossing, object_id)},
+          {"material_id", "u4", 1, offsetof(Crossing, material_id)},
+          {"primitive", "u4", 1, offsetof(Crossing, primitive)},
+          {"surface", "u4", 1, offsetof(Crossing, surface)},
+          {"shape", "u4", 1, offsetof(Crossing, shape)},
+          {"instance", "u4", 1, offsetof(Crossing, instance)},
+          {"leaving", "u4", 1, offsetof(Crossing, leaving)},
+          {"ray", "u4", 1, offsetof(Crossing, ray)},
+          {"point", "f4", 3, offsetof(Crossing, point)},
+          {"normal", "f4", 3, offsetof(Crossing, normal)}};
+}
+
+}  // namespace
+
+void bind_trace(nb::module_& m) {
+  m.attr("crossing_bytes") = sizeof(Crossing);
+  m.def("crossing_layout", [] {
+    nb::list out;
+    for (const auto& [name, type, count, offset] : layout()) out.append(nb::make_tuple(name, type, count, offset));
+    return out;
+  });
+  nb::class_<HeldPicker>(m, "Picker")
+      .def("__init__",
+           [](HeldPicker* self, const caplet::Scene& scene, const caplet::Device& device) {
+             std::optional<caplet::Picker> picker;
+             run_interruptibly([&] { picker.emplace(scene, device); }, [] {}, [] {});
+             new (self) HeldPicker(*std::move(picker));
+           })
+      .def("nearest", &nearest<HeldPicker>)
+      .def("crossings", &crossings<HeldPicker>)
+      .def("pixel", [](HeldPicker& held, int x, int y) -> nb::object {
+        std::optional<caplet::Hit> hit;
+        {
+          const nb::gil_scoped_release released;
+          const std::lock_guard lock(held.mutex);
+          hit = held.session.pixel(x, y);
+        }
+        if (!hit) return nb::none();
+        nb::dict out;
+        out["t"] = hit->t;
+        out["error"] = hit->error;
+        out["point"] = nb::make_tuple(hit->point[0], hit->point[1], hit->point[2]);
+        out["normal"] = nb::make_tuple(hit->normal[0], hit->normal[1], hit->normal[2]);
+        out["uv"] = nb::make_tuple(hit->uv[0], hit->uv[1]);
+        out["entering"] = hit->entering;
+        out["object"] = hit->object;
+        out["material"] = hit->material;
+        out["object_id"] = hit->object_id;
+        out["material_id"] = hit->material_id;
+        out["primitive"] = hit->primitive;
+        out["surface"] = hit->surface;
+        if (hit->instance)
+          out["instance"] = *hit->instance;
+        else
+          out["instance"] = nb::none();
+        return out;
+      });
+}
+
+}  // namespace caplet_python

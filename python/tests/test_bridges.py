@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""What comes from other packages is what they and the files themselves say. Each is skipped where its package is not installed."""
+import math
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import caplet
+
+DATA = pathlib.Path(os.environ["CAPLET_DATA"]) if "CAPLET_DATA" in os.environ else None
+
+
+def data(*parts):
+    if DATA is None or not DATA.joinpath(*parts).exists():
+        pytest.skip("needs the shared data folder (CAPLET_DATA)")
+    return str(DATA.joinpath(*parts))
+
+
+EVERY_GEOM = """<mujoco><asset>
+<hfield name="hills" nrow="7" ncol="9" size="2 3 0.7 0.1"/>
+<mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/>
+<material name="red" rgba="0.9 0.1 0.1 1"/></asset>
+<worldbody>
+<light pos="0 0 9" dir="0 0 -1"/><camera name="side" pos="0 -9 3" xyaxes="1 0 0 0 0.3 1" fovy="40"/>
+<geom name="floor" type="plane" size="20 20 1" pos="0 0 -1"/>
+<body pos="1 2 3" euler="10 20 30">
+<geom name="ball" type="sphere" size="0.4" material="red"/>
+<geom name="pill" type="capsule" size="0.2 0.6" pos="2 0 0" euler="40 0 10"/>
+<geom name="egg" type="ellipsoid" size="0.3 0.5 0.8" pos="-2 0 0" euler="0 50 0"/>
+<geom name="tin" type="cylinder" size="0.3 0.5" pos="0 2 0" euler="0 30 60"/>
+<geom name="crate" type="box" size="0.3 0.4 0.5" pos="0 -2 0" euler="5 6 7"/>
+<geom name="chip" type="mesh" mesh="wedge" pos="3 3 0"/>
+<geom name="land" type="hfield" hfield="hills" pos="-5 4 0"/>
+<geom name="ghost" type="sphere" size="0.4" pos="0 0 2" rgba="1 1 1 0"/>
+<geom name="collision" type="sphere" size="0.4" pos="0 0 3" group="3"/>
+</body></worldbody></mujoco>"""
+
+
+def rays_around(model, data, rng, count):
+    center, extent = np.asarray(model.stat.center), max(model.stat.extent, 0.5)
+    around = rng.standard_normal((count, 3))
+    origins = center + 2 * extent * around / np.linalg.norm(around, axis=1, keepdims=True)
+    targets = np.asarray(data.geom_xpos)[rng.integers(0, model.ngeom, count)] + rng.normal(0, 0.1 * extent, (count, 3))
+    way = targets - origins
+    return origins.astype(np.float32).astype(float), (way / np.linalg.norm(way, axis=1, keepdims=True)).astype(np.float32).astype(float)
+
+
+def mujoco_rays(mujoco, model, data, origins, directions, groups):
+    chosen = np.array([group in groups for group in range(6)], dtype=np.uint8)
+    t, geoms, found = np.empty(len(origins)), np.empty(len(origins), dtype=int), np.zeros((1, 1), dtype=np.int32)
+    for i, (at, way) in enumerate(zip(origins, directions)):
+        found = np.full((1, 1), -1, dtype=np.int32)
+        t[i] = mujoco.mj_ray(model, data, at, way, chosen, 1, -1, found)
+        geoms[i] = found[0, 0]
+    return np.where(t < 0, np.inf, t), geoms
+
+
+def same_hits(mujoco, model, data, scene, rng, count=3000, groups=(0, 1, 2)):
+    """The share of rays whose nearest hit is that of MuJoCo: within 1e-5 of the model's extent, and on the same geom."""
+    origins, directions = rays_around(model, data, rng, count)
+    t, geoms = mujoco_rays(mujoco, model, data, origins, directions, groups)
+    hits = caplet.trace(scene, origins, directions)
+    both = np.isfinite(t) & np.isfinite(hits["t"])
+    assert both.mean() > 0.2
+    at = scene.info["geom"][hits["shape"].clip(max=len(scene.info["geom"]) - 1)]
+    close = np.abs(np.where(both, hits["t"] - np.where(both, t, 0), 0)) < 1e-5 * max(1, 3 * model.stat.extent)
+    agree = (np.isfinite(t) == np.isfinite(hits["t"])) & close & (~both | (at == geoms))
+    return agree, origins, directions, t, geoms, hits
+
+
+def test_every_kind_of_geom_is_where_mujoco_has_it(rng):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(EVERY_GEOM)
+    field = rng.random(63)
+    model.hfield_data[:] = (field - field.min()) / (field.max() - field.min())
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    scene = caplet.from_mujoco(model, state)
+    assert scene.shapes == ["floor", "ball", "pill", "egg", "tin", "crate", "chip", "land"]
+    assert scene.primitives["sphere"] == 2 and scene.primitives["capsule"] == 1
+    pill = scene["pill"]
+    half = model.geom("pill").size[1]
+    ends = np.array([[0, 0, -half, 1], [0, 0, half, 1]])
+    place = np.eye(4)
+    place[:3, :3], place[:3, 3] = state.geom("pill").xmat.reshape(3, 3), state.geom("pill").xpos
+    got = np.concatenate([pill.p0, pill.p1]) @ pill.transform[:3, :3].T + pill.transform[:3, 3]
+    assert np.allclose(got, (ends @ place.T)[:, :3], atol=1e-6)
+    # MuJoCo's hulls of meshes are seen by rays as meshes; what touches edges may differ.
+    agree, *_ = same_hits(mujoco, model, state, scene, rng)
+    assert agree.mean() > 0.998, agree.mean()
+    state.qpos[:] = state.qpos
+    with pytest.raises(caplet.InputError, match="no camera"):
+        caplet.from_mujoco(model, state, camera="top")
+    with pytest.raises(caplet.InputError, match="studio"):
+        caplet.from_mujoco(model, state, lights="none")
+    assert len(caplet.from_mujoco(model, state, groups=None).shapes) == 9
+    seen = caplet.from_mujoco(model, state, camera="side", lights="model")
+    assert np.allclose(seen.camera[:3, 3], (0, -9, 3)) and seen.fov == pytest.approx(40)
+    image = caplet.render(seen, spp=2, size=(64, 48))
+    assert image.rgb.max() > 0 and {0, 1}.issubset(image.object_id.ravel().tolist())
+
+
+@pytest.mark.parametrize("path", ["mujoco/humanoid/humanoid.xml", "mujoco/humanoid/humanoid100.xml", "mujoco/replicate/helix.xml",
+                                  "dm_control_suite/humanoid.xml", "gymnasium/ant.xml"])
+def test_robots_of_the_data(path, rng):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_path(data("mjcf", path))
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    scene = caplet.from_mujoco(model, state)
+    shown = [i for i in range(model.ngeom) if model.geom_group[i] in (0, 1, 2) and caplet.bridges.mujoco._rgba(model, i)[3] > 0]
+    assert scene.info["geom"].tolist() == shown
+    for number, geom in enumerate(shown):
+        assert np.abs(scene.shape(number).transform[:3, 3] - state.geom_xpos[geom]).max() < 1e-6
+    agree, *_ = same_hits(mujoco, model, state, scene, rng, 1500)
+    assert agree.mean() > 0.995, agree.mean()
+
+
+def test_a_pose_is_followed(rng):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_path(data("mjcf", "mujoco/humanoid/humanoid.xml"))
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    scene = caplet.from_mujoco(model, state)
+    session = caplet.Session(scene, size=(32, 24))
+    session.render(1)
+    for _ in range(100):
+        mujoco.mj_step(model, state)
+    caplet.bridges.update_mujoco(scene, state)
+    session.update(scene)
+    agree, *_ = same_hits(mujoco, model, state, scene, rng, 1000)
+    assert agree.mean() > 0.995
+    session.render(1)
+    fresh = caplet.render(scene, spp=1, size=(32, 24))
+    assert np.array_equal(session.image().rgb, fresh.rgb)
+
+
+# --- Molecules ---
+
+
+def records(path):
+    """Atoms of a PDB file's first model that are shown: the first place of each, by its own records."""
+    seen, out = {}, []
+    for line in pathlib.Path(path).read_text().splitlines():
+        if line.startswith("ENDMDL"):
+            break
+        if line[:6] not in ("ATOM  ", "HETATM"):
+            continue
+        residue, name, place = line[17:27], line[12:16], line[16]
+        if seen.setdefault((residue, name), place) == place:
+            out.append([float(line[30:38]), float(line[38:46]), float(line[46:54])])
+    return np.array(out)
+
+
+def test_atoms_are_the_records():
+    gemmi = pytest.importorskip("gemmi")
+    files = sorted(pathlib.Path(data("mol", "pdb")).glob("*.pdb"))
+    if not files:
+        pytest.skip("no PDB files in the data")
+    for file in files:
+        structure = gemmi.read_structure(str(file))
+        expected = records(file)
+        scene = caplet.from_gemmi(structure, style="spheres")
+        assert len(scene["atoms"]) == len(expected) == len(scene.info["elements"]), file
+        assert np.abs(np.sort(scene.info["positions"], axis=0) - np.sort(expected, axis=0)).max() < 1e-6
+        assert np.allclose(scene["atoms"].p0, scene.info["positions"], atol=1e-3)
+
+
+def test_bonds_are_those_of_small_molecules():
+    gemmi = pytest.importorskip("gemmi")
+    # Benzene, by hand: a hexagon of 1.39 A with hydrogens at 2.48 A.
+    angles = np.arange(6) * math.pi / 3
+    positions = [(r * math.cos(a), r * math.sin(a), 0) for r in (1.39, 2.48) for a in angles]
+    structure = gemmi.Structure()
+    model, chain, residue = gemmi.Model(1), gemmi.Chain("A"), gemmi.Residue()
+    residue.name = "BNZ"
+    for i, at in enumerate(positions):
+        atom = gemmi.Atom()
+        atom.name, atom.element, atom.pos = f"X{i}", gemmi.Element("C" if i < 6 else "H"), gemmi.Position(*at)
+        residue.add_atom(atom)
+    chain.add_residue(residue)
+    model.add_chain(chain)
+    structure.add_model(model)
+    scene = caplet.from_gemmi(structure)
+    ring = {tuple(sorted((i, (i + 1) % 6))) for i in range(6)} | {(i, i + 6) for i in range(6)}
+    assert set(map(tuple, scene.info["bonds"].tolist())) == ring
+    assert len(scene["atoms"]) == 12 and len(scene["bonds"]) == 24
+    assert np.allclose(np.sort(scene["bonds"].p1[:, 0]), np.sort(np.repeat([(positions[a][0] + positions[b][0]) / 2 for a, b in sorted(ring)], 2)), atol=1e-6)
+    assert len(caplet.from_gemmi(structure, hydrogens=False)["atoms"]) == 6
+    for wrong in (dict(style="cartoon"), dict(color="pink"), dict(model=3)):
+        with pytest.raises(caplet.InputError):
+            caplet.from_gemmi(structure, **wrong)
+    with pytest.raises(caplet.InputError):
+        caplet.from_gemmi("benzene")
+
+
+def test_bonds_by_cells_are_those_of_all_pairs(rng):
+    pytest.importorskip("gemmi")
+    from caplet.bridges.gemmi import bonds_of
+    positions, radii = rng.random((400, 3)) * 12, rng.choice([0.31, 0.76, 1.05], 400)
+    away = np.linalg.norm(positions[:, None] - positions[None], axis=2)
+    i, j = np.nonzero(np.triu((away <= 1.3 * (radii[:, None] + radii[None])) & (away > 0.1), 1))
+    assert np.array_equal(bonds_of(positions, radii), np.stack([i, j], 1)) and len(i) > 50
+
+
+# --- Streamlines and meshes ---
+
+
+@pytest.mark.parametrize("name", ["standard.trk", "standard.tck", "simple.tck", "tracks300.trk"])
+def test_streamlines_are_their_points(name):
+    nibabel = pytest.importorskip("nibabel")
+    loaded = nibabel.streamlines.load(data("fibres", "streamlines", name))
+    scene = caplet.from_nibabel(loaded, radius=0.2)
+    lines = [line for line in loaded.streamlines if len(line) > 1]
+    shape = scene["streamlines"]
+    assert len(shape) == sum(len(line) - 1 for line in lines)
+    assert np.array_equal(shape.p0, np.concatenate([line[:-1] for line in lines])) and np.array_equal(shape.p1, np.concatenate([line[1:] for line in lines]))
+    assert (shape.radius == np.float32(0.2)).all() and len(scene.info["streamline"]) == len(shape)
+
+
+def test_meshes_are_their_faces(rng):
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    scene = caplet.from_trimesh(ball)
+    assert scene.primitives == {"triangle": len(ball.faces)} and np.allclose(scene.bounds, ball.bounds, atol=1e-6)
+    held = trimesh.Scene()
+    held.add_geometry(ball, geom_name="ball", node_name="one")
+    moved = np.eye(4)
+    moved[0, 3] = 5
+    held.add_geometry(trimesh.creation.box(), geom_name="box", node_name="two", transform=moved)
+    scene = caplet.from_trimesh(held)
+    assert scene.primitives == {"triangle": len(ball.faces) + 12} and np.allclose(scene.bounds, held.bounds, atol=1e-6)
+    with pytest.raises(caplet.InputError):
+        caplet.from_trimesh(3)
+    file = data("meshes", "2CylinderEngine", "2CylinderEngine.glb")
+    engine = trimesh.load(file)
+    scene = caplet.from_trimesh(engine)
+    assert scene.primitives["triangle"] == sum(len(engine.geometry[engine.graph[node][1]].faces) for node in engine.graph.nodes_geometry)
+    assert np.allclose(scene.bounds, engine.bounds, rtol=1e-5, atol=1e-4 * engine.extents.max())
+
+
+def test_xarray():
+    pytest.importorskip("xarray")
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 1)
+    image = caplet.render(scene, spp=1, size=(12, 8))
+    held = caplet.to_xarray(image)
+    assert held.rgb.shape == (8, 12, 3) and held.depth.dims == ("y", "x") and held.attrs["samples_per_pixel"] == 1
+    assert np.array_equal(held.object_id.values, image.object_id)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Pictures as arrays; sessions that are read, interrupted, cancelled and changed."""
+import os
+import signal
+import struct
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import caplet
+from caplet import cameras, lights, materials
+
+
+@pytest.fixture
+def ball():
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 1, color=(0.8, 0.4, 0.2), name="ball")
+    scene.camera = cameras.perspective(eye=(0, 0, 5), target=(0, 0, 0), fov=40)
+    scene.add_light(lights.infinite(L=(1, 1, 1)))
+    scene.size = 32, 24
+    return scene
+
+
+def equal(a, b):
+    return all(np.array_equal(a[name].view(np.uint32), b[name].view(np.uint32)) for name in a.channels)
+
+
+def test_layers_are_arrays(ball):
+    image = caplet.render(ball, spp=64)
+    assert image.size == (32, 24) and image.shape == (24, 32) and image.spp == 64 and image.samples == [(0, 64)]
+    for name in ("rgb", "normal", "position", "albedo", "variance"):
+        assert getattr(image, name).shape == (24, 32, 3) and getattr(image, name).dtype == np.float32
+    for name in ("depth", "alpha"):
+        assert getattr(image, name).shape == (24, 32) and getattr(image, name).dtype == np.float32
+    assert image.object_id.dtype == image.primitive_id.dtype == np.uint32
+    assert image.object_id[12, 16] == 0 and image.object_id[0, 0] == 0xffffffff
+    assert image.depth[12, 16] == pytest.approx(4, abs=0.01)
+    assert image.normal[12, 16] == pytest.approx([0, 0, 1], abs=0.1)
+    assert image.albedo[12, 16] == pytest.approx([0.8, 0.4, 0.2], abs=0.01)
+    # A convex diffuse solid under light of 1 from everywhere shows its reflectance.
+    assert image.rgb[8:16, 12:20].mean(axis=(0, 1)) == pytest.approx([0.8, 0.4, 0.2], abs=0.02)
+    with pytest.raises(caplet.InputError, match="nearest"):
+        image["albedo.Red"]
+
+
+def test_size_samples_and_seed_are_of_the_render_alone(ball):
+    a = caplet.render(ball, spp=2, size=(20, 10), seed=3)
+    assert a.size == (20, 10) and a.spp == 2 and ball.size == (32, 24) and ball.seed == 0
+    assert equal(a, caplet.render(ball, spp=2, size=(20, 10), seed=3))
+    assert not np.array_equal(a.rgb, caplet.render(ball, spp=2, size=(20, 10), seed=4).rgb)
+    for wrong in (dict(spp=0), dict(spp=1.5), dict(spp=2**30), dict(size=(0, 1)), dict(device="no such"), dict(device=99), dict(device=1.5), dict(seed=-1)):
+        with pytest.raises((caplet.InputError, TypeError)):
+            caplet.render(ball, **{"spp": 1, **wrong})
+    with pytest.raises(caplet.InputError, match="caplet.Scene"):
+        caplet.render("ball")
+
+
+def test_files(ball, tmp_path):
+    image = caplet.render(ball, spp=2)
+    image.save(tmp_path / "a.exr")
+    assert (tmp_path / "a.exr").read_bytes()[:4] == b"\x76\x2f\x31\x01"
+    try:
+        image.save(tmp_path / "a.png")
+    except caplet.InputError:
+        pytest.skip("built without OpenImageIO")
+    png = (tmp_path / "a.png").read_bytes()
+    assert png[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", png[16:24]) == (32, 24)
+    assert image._repr_png_() == png
+    with pytest.raises(caplet.InputError):
+        image.save(tmp_path / "a.xyz")
+    with pytest.raises(caplet.RunError):
+        image.save(tmp_path / "none" / "a.exr")
+
+
+def test_a_session_goes_on_and_films_add_up(ball, tmp_path):
+    session = caplet.Session(ball)
+    assert session.render(3) == 3 and session.render(5) == 5 and session.spp == 8
+    whole = caplet.render(ball, spp=8)
+    assert equal(session.image(), whole)
+    first = caplet.Session(ball)
+    first.render(3)
+    first.image().save_film(tmp_path / "film.exr")
+    second = caplet.Session(ball)
+    second.resume(caplet.load_film(tmp_path / "film.exr", ball))
+    second.render(5)
+    assert equal(second.image(), whole)
+    with pytest.raises(caplet.InputError):
+        whole + whole  # the same samples twice
+
+
+def test_a_session_follows_edits(ball):
+    session = caplet.Session(ball)
+    session.render(2)
+    ball.shape("ball").transform = np.diag([0.5, 0.5, 0.5, 1])
+    ball.set_material(0, materials.conductor(alpha=0.3))
+    session.update(ball)
+    session.render(2)
+    assert equal(session.image(), caplet.render(ball, spp=2))
+    ball.add_spheres((1.5, 0, 0), 0.3)
+    session.update(ball)
+    session.render(2)
+    assert equal(session.image(), caplet.render(ball, spp=2))
+
+
+def test_progress_is_told(ball, capsys):
+    told = []
+    caplet.Session(ball).render(64, progress=lambda fraction, speed: told.append((fraction, speed)))
+    big = caplet.Session(ball, size=(640, 480))
+    big.render(32, progress=lambda fraction, speed: told.append((fraction, speed)))
+    fractions = [fraction for fraction, _ in told]
+    assert told and all(0 <= fraction <= 1 for fraction in fractions)
+    assert big.render(1, progress=True) == 1
+
+    def stop(fraction, speed):
+        raise ValueError("enough")
+    with pytest.raises(ValueError, match="enough"):
+        big.render(4096, progress=stop)
+    assert big.render(1) == 1
+
+
+def test_a_time_limit_ends_a_render(ball):
+    session = caplet.Session(ball, size=(320, 240))
+    session.render(1)
+    start = time.monotonic()
+    done = session.render(1 << 20, time_limit=0.5)
+    assert 0 < done < 1 << 20 and time.monotonic() - start < 60
+
+
+def test_an_interrupt_leaves_a_usable_session(ball):
+    session = caplet.Session(ball, size=(320, 240))
+    session.render(1)
+    timer = threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        session.render(1 << 20)
+    timer.join()
+    done = session.spp
+    assert 1 <= done < 1 << 20 and np.isfinite(session.image().rgb).all()
+    assert session.render(2) == 2 and session.spp == done + 2
+
+
+def test_other_threads_run_and_read_while_it_renders(ball):
+    session = caplet.Session(ball, size=(160, 120))
+    session.render(1)
+    ticks, seen, stop = [0], [], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            ticks[0] += 1
+            time.sleep(0.001)
+
+    def read():
+        while not stop.is_set():
+            seen.append(session.image().spp)
+            time.sleep(0.01)
+    threads = [threading.Thread(target=count), threading.Thread(target=read)]
+    for thread in threads:
+        thread.start()
+    assert session.render(256) == 256
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert ticks[0] > 20 and seen == sorted(seen) and session.spp == 257
+
+
+def test_a_session_is_cancelled_from_another_thread(ball):
+    session = caplet.Session(ball, size=(320, 240))
+    session.render(1)
+    timer = threading.Timer(0.5, session.cancel)
+    timer.start()
+    assert session.render(1 << 20) < 1 << 20
+    timer.join()

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Scenes that are built through the public headers are those that files of the same statements hold.
+#include <caplet/import.h>
+#include <caplet/pick.h>
+#include <caplet/render.h>
+#include <caplet/session.h>
+#include <caplet/write.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using caplet::Statement;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+caplet::Device test_device() {
+  const char* named = std::getenv("CAPLET_TEST_DEVICE");
+  return caplet::choose_device(named ? named : "");
+}
+
+class LibraryBuild : public testing::Test {
+ protected:
+  LibraryBuild() : folder_(fs::temp_directory_path() / ("caplet-build-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~LibraryBuild() override { fs::remove_all(folder_); }
+
+  static bool same_pictures(caplet::Scene a, caplet::Scene b) {
+    for (caplet::Scene* scene : {&a, &b}) {
+      scene->set_size(24, 16);
+      scene->set_samples_per_pixel(2);
+    }
+    const caplet::Film one = caplet::render(a, test_device()), other = caplet::render(b, test_device());
+    if (one.channels() != other.channels()) return false;
+    for (const std::string& channel : one.channels()) {
+      if (channel.ends_with(".id") ? one.ids(channel) != other.ids(channel) : one.values(channel) != other.values(channel))
+        return false;
+    }
+    return true;
+  }
+  static caplet::Scene three_balls() {
+    caplet::Scene scene;
+    caplet::CapsuleArrays balls;
+    balls.p0 = balls.p1 = {{0, 0, 0}, {3, 0, 0}, {6, 0, 0}};
+    balls.radius0 = {1, 0.5F, 0.25F};
+    scene.add_capsules(balls, {.name = "balls"});
+    return scene;
+  }
+  template <class Make>
+  static std::string said(Make make) {
+    try {
+      make();
+    } catch (const caplet::InputError& error) {
+      return error.messages().at(0);
+    }
+    return {};
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(LibraryBuild, WhatStatementsSayIsWhatTextSays) {
+  std::ofstream(folder_ / "scene.pbrt") << R"(LookAt 3 2 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 30
+PixelFilter "triangle" "float xradius" 1
+Integrator "path" "integer maxdepth" 7
+WorldBegin
+LightSource "spot" "point3 from" [1 5 2] "point3 to" [0 0 0] "rgb I" [90 80 70]
+LightSource "infinite" "blackbody L" 5000
+Texture "squares" "float" "checkerboard" "float uscale" 4
+Material "hair" "rgb reflectance" [0.5 0.3 0.1]
+Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0 1 1 0] "float radius" [0.5 0.25]
+Material "dielectric" "float eta" 1.4
+MakeNamedMedium "fog" "string type" "homogeneous" "float sigma_a" 0.5 "float sigma_s" 2
+AttributeBegin
+Translate 2 0 0
+MediumInterface "fog" ""
+Shape "cylinder" "point3 p0" [0 0 0] "point3 p1" [0 1 0] "float radius" 0.5 "string caps" ["round" "flat"]
+AttributeEnd
+Material "diffuse"
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [2 1 1]
+Shape "disk" "texture alpha" "squares"
+AttributeEnd
+ObjectBegin "leaf"
+Shape "trianglemesh" "point3 P" [0 0 1 1 0 1 0 1 1] "integer indices" [0 1 2]
+ObjectEnd
+ObjectInstance "leaf"
+)";
+  caplet::Scene scene;
+  scene.set_option(Statement::filter, "triangle", {{"xradius", 1.0}});
+  scene.set_option(Statement::integrator, "path", {{"maxdepth", 7.0}});
+  scene.set_camera("perspective", {{"fov", 30.0}}, caplet::identity);
+  scene.look_at({3, 2, 6}, {0, 0.5, 0}, {0, 1, 0});
+  using Point = std::array<double, 3>;
+  scene.add_light("spot", {{"from", Point{1, 5, 2}}, {"to", Point{0, 0, 0}}, {"I", Point{90, 80, 70}}});
+  scene.add_light("infinite", {{"L", caplet::Blackbody{5000}}});
+  const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {{"uscale", 4.0}}});
+  const std::uint32_t hair = scene.add_material("", caplet::NamedMaterial{"hair", {{"reflectance", caplet::Rgb{0.5, 0.3, 0.1}}}});
+  const std::uint32_t glass = scene.add_material("", caplet::NamedMaterial{"dielectric", {{"eta", 1.4}}});
+  const std::uint32_t grey = scene.add_material("", caplet::Diffuse{});
+  caplet::CapsuleArrays two;
+  two.p0 = {{0, 0, 0}, {1, 0, 0}};
+  two.p1 = {{0, 1, 0}, {1, 1, 0}};
+  two.radius0 = {0.5F, 0.25F};
+  EXPECT_EQ(scene.add_capsules(two, {.materials = {hair}}), 0U);
+  const std::uint32_t fog = scene.add_medium("fog", "homogeneous", {{"sigma_a", 0.5}, {"sigma_s", 2.0}});
+  caplet::ShapeOptions in_fog{.materials = {glass}, .inside = fog};
+  in_fog.transform[3] = 2;
+  scene.add_shape(
+      "cylinder",
+      {{"p0", Point{0, 0, 0}}, {"p1", Point{0, 1, 0}}, {"radius", 0.5}, {"caps", std::vector<std::string>{"round", "flat"}}},
+      in_fog);
+  scene.add_shape("disk", {{"alpha", squares}}, {.materials = {grey}, .emission = caplet::Parameters{{"L", Point{2, 1, 1}}}});
+  caplet::MeshArrays mesh;
+  mesh.positions = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_EQ(scene.add_mesh(mesh, {.materials = {grey}, .object = "leaf"}), 3U);
+  EXPECT_EQ(scene.place(3), (std::pair<std::string, std::size_t>{"leaf", 0}));
+  EXPECT_EQ(scene.add_instances("leaf", std::vector{caplet::identity}), 0U);
+  scene.present();
+  EXPECT_TRUE(same_pictures(scene, caplet::import_scene(folder_ / "scene.pbrt")));
+  caplet::write_scene(scene, folder_ / "written.pbrt");
+  EXPECT_TRUE(same_pictures(scene, caplet::import_scene(folder_ / "written.pbrt")));
+}
+
+TEST_F(LibraryBuild, TypesAndParametersAreThoseOfTheLists) {
+  EXPECT_THAT(caplet::statement_types(Statement::light), IsSupersetOf({"point", "spot", "ies", "infinite"}));
+  EXPECT_THAT(caplet::statement_types(Statement::medium), IsSupersetOf({"homogeneous", "nanovdb"}));
+  EXPECT_THAT(caplet::statement_types(Statement::shape), IsSupersetOf({"box", "csg", "sphere"}));
+  const auto names = [](Statement statement, const std::string& type) {
+    std::vector<std::string> out;
+    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement, type)) out.push_back(one.name);
+    return out;
+  };
+  EXPECT_THAT(names(Statement::light, "spot"),
+              testing::UnorderedElementsAre("scale", "power", "I", "from", "to", "coneangle", "conedeltaangle"));
+  // Those of both kinds of cylinder, which no statement has at once.
+  EXPECT_THAT(names(Statement::shape, "cylinder"), IsSupersetOf({"p0", "p1", "caps", "zmin", "phimax"}));
+  for (const auto& one : caplet::statement_parameters(Statement::light, "spot")) {
+    if (one.name == "I") continue;
+    EXPECT_EQ(one.types, std::vector<std::string>{one.name == "from" || one.name == "to" ? "point3" : "float"}) << one.name;
+  }
+  for (const Statement statement : {Statement::shape, Statement::light, Statement::emission, Statement::medium, Statement::camera,
+                                    Statement::film, Statement::filter, Statement::sampler, Statement::integrator})
+    for (const std::string& type : caplet::statement_types(statement)) EXPECT_NO_THROW(names(statement, type)) << type;
+  EXPECT_THROW(names(Statement::light, "sun"), caplet::InputError);
+}
+
+TEST_F(LibraryBuild, WhatIsWrongIsToldAndChangesNothing) {
+  caplet::Scene scene = three_balls();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto capsules = [&](auto change) {
+    caplet::CapsuleArrays one{{{0, 0, 0}}, {{1, 0, 0}}, {1}, {}, {}};
+    change(one);
+    return said([&] { scene.add_capsules(one); });
+  };
+  EXPECT_THAT(capsules([](auto& one) { one.p0.clear(); }), HasSubstr("has 1 entries, and p0 0"));
+  EXPECT_THAT(capsules([](auto& one) { one.radius1 = {1, 2}; }), HasSubstr("radius1 has 2"));
+  EXPECT_THAT(capsules([&](auto& one) { one.p1[0][2] = nan; }), HasSubstr("finite"));
+  EXPECT_THAT(capsules([](auto& one) { one.materials = {9}; }), HasSubstr("no material 9"));
+  EXPECT_THAT(said([&] { scene.add_shape("sphre", {}); }), AllOf(HasSubstr("sphre"), HasSubstr("'sphere'")));
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"raduis", 1.0}}); }), AllOf(HasSubstr("raduis"), HasSubstr("radius")));
+  EXPECT_THAT(said([&] {
+                scene.add_shape("sphere", {{"radius", std::string("one")}});
+              }),
+              HasSubstr("must be of type float, not \"one\""));
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"radius", std::vector<double>{}}}); }), HasSubstr("has no value"));
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"radius", double{nan}}}); }), HasSubstr("not finite"));
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {}, {.inside = 4U}); }), HasSubstr("no medium 4"));
+  caplet::ShapeOptions flat;
+  flat.transform[0] = 0;
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {}, flat); }), HasSubstr("singular"));
+  EXPECT_THAT(said([&] { scene.add_light("spot", {{"from", std::vector<double>{1, 2}}}); }), HasSubstr("point3, not 2 numbers"));
+  EXPECT_THAT(said([&] {
+                scene.add_light("infinite", {{"L", std::vector<double>{1, 2, 3, 4, 5}}});
+              }),
+              HasSubstr("takes 1 value, not 5"));
+  EXPECT_THAT(said([&] { scene.add_medium("m", "homogeneous", {{"g", 2.0}}); }), HasSubstr("\"g\""));
+  EXPECT_THAT(said([&] { scene.add_instances("leaf", std::vector{caplet::identity}); }), HasSubstr("no object 'leaf'"));
+  EXPECT_THAT(said([&] { scene.set_option(Statement::light, "spot", {}); }), HasSubstr("an option is"));
+  EXPECT_THAT(said([&] {
+                scene.add_shapes("box", 2, {}, {{"p0", std::vector<double>{1, 2, 3}}}, {});
+              }),
+              HasSubstr("3 values for 2"));
+  EXPECT_THAT(said([&] { caplet::Scene().present(); }), HasSubstr("empty"));
+  EXPECT_EQ(scene.shapes(), std::vector<std::string>{"balls"});
+  EXPECT_EQ(scene.lights(), 0U);
+  EXPECT_TRUE(scene.media().empty());
+}
+
+TEST_F(LibraryBuild, ShapesInBulkHaveTheirOwnValues) {
+  caplet::Scene scene = three_balls();
+  const std::uint32_t red = scene.add_material("red", caplet::Diffuse{caplet::Rgb{1, 0, 0}});
+  caplet::Transform up = caplet::identity;
+  up[11] = 5;
+  const std::uint32_t first = scene.add_shapes("sphere", 2, {{"zmax", 9.0}}, {{"radius", std::vector<double>{1, 2}}},
+                                               std::vector{caplet::identity, up}, std::vector<std::uint32_t>{0, red});
+  EXPECT_EQ(first, 1U);
+  EXPECT_EQ(scene.primitives(), (std::map<std::string, std::uint64_t>{{"capsule", 3}, {"sphere", 2}}));
+  scene.present();
+  caplet::Picker picker(scene, test_device());
+  const auto hit = picker.nearest(caplet::Ray{{0, 0, 20}, {0, 0, -1}, 0, 100});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->object_id, 2U);
+  EXPECT_EQ(hit->material, "red");
+  EXPECT_FLOAT_EQ(hit->t, 13);
+}
+
+TEST_F(LibraryBuild, CrossingsInNumbersAreTheHits) {
+  caplet::Scene scene = three_balls();
+  scene.add_shape("box", {{"p0", std::array<double, 3>{-1, -1, -1}}, {"p1", std::array<double, 3>{1, 1, 1}}},
+                  {.object = "crate"});
+  caplet::Transform away = caplet::identity;
+  away[3] = 20;
+  scene.add_instances("crate", std::vector{caplet::identity, away});
+  scene.present();
+  caplet::Picker picker(scene, test_device());
+  std::vector<caplet::Ray> rays;
+  for (int i = 0; i < 300; ++i) rays.push_back({{static_cast<float>(i) * 0.1F - 2, 0.05F, 9}, {0, 0, -1}, 0, 100});
+  std::vector<caplet::Crossing> numbers(rays.size());
+  picker.nearest(rays, numbers);
+  const auto hits = picker.nearest(rays);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(numbers[i].ray, i);
+    ASSERT_EQ(std::isfinite(numbers[i].t), hits[i].has_value());
+    if (!hits[i]) {
+      EXPECT_EQ(numbers[i].shape, caplet::Crossing::none);
+      continue;
+    }
+    ++found;
+    EXPECT_EQ(numbers[i].t, hits[i]->t);
+    EXPECT_EQ(numbers[i].point, hits[i]->point);
+    EXPECT_EQ(numbers[i].normal, hits[i]->normal);
+    EXPECT_EQ(numbers[i].primitive, hits[i]->primitive);
+    EXPECT_EQ(numbers[i].object_id, hits[i]->object_id);
+    EXPECT_EQ(numbers[i].instance, hits[i]->instance.value_or(caplet::Crossing::none));
+    EXPECT_EQ(numbers[i].shape, hits[i]->instance ? 1U : 0U);
+    EXPECT_EQ(numbers[i].leaving == 0, hits[i]->entering);
+  }
+  EXPECT_GT(found, 50U);
+  const auto lists = picker.all(rays);
+  const std::vector<caplet::Crossing> every = picker.crossings(rays);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    for (const caplet::Hit& hit : lists[i]) {
+      ASSERT_LT(at, every.size());
+      EXPECT_EQ(every[at].ray, i);
+      EXPECT_EQ(every[at++].t, hit.t);
+    }
+  EXPECT_EQ(at, every.size());
+  EXPECT_THROW(picker.nearest(rays, std::span(numbers).first(3)), caplet::InputError);
+}
+
+TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
+  caplet::Scene scene = three_balls();
+  scene.present();
+  caplet::Session session(scene, test_device());
+  caplet::CapsuleArrays balls = scene.capsule_arrays(0);
+  EXPECT_EQ(balls.p0[2], (std::array<float, 3>{6, 0, 0}));
+  for (auto& p : balls.p1) p[1] += 1;
+  balls.radius0.pop_back();
+  EXPECT_THROW(scene.set_capsules(0, balls), caplet::InputError);
+  balls.p0.pop_back();
+  balls.p1.pop_back();
+  scene.set_capsules(0, balls);
+  EXPECT_EQ(scene.capsules(0), 2U);
+  session.update(scene);
+  const auto hit = session.nearest(caplet::Ray{{0, 9, 0}, {0, -1, 0}, 0, 100});
+  ASSERT_TRUE(hit);
+  EXPECT_FLOAT_EQ(hit->t, 7);
+  caplet::Scene box;
+  box.add_shape("box", {{"p0", std::array<double, 3>{0, 0, 0}}, {"p1", std::array<double, 3>{1, 1, 1}}});
+  EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);
+}
+
+// Of a shape that is checked again its textures and media are there.
+TEST_F(LibraryBuild, ShapesWithTexturesAndMediaAreMoved) {
+  caplet::Scene scene = three_balls();
+  const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {}});
+  const std::uint32_t paint = scene.add_material("", caplet::NamedMaterial{"principled", {{"metallic", squares}}});
+  const std::uint32_t fog = scene.add_medium("fog", "homogeneous", {});
+  const std::uint32_t ball = scene.add_shape("sphere", {{"alpha", squares}}, {.materials = {paint}, .inside = fog});
+  const std::uint32_t lamp = scene.add_shape("disk", {}, {.materials = {paint}, .emission = caplet::Parameters{}});
+  caplet::Transform up = caplet::identity;
+  up[11] = 3;
+  EXPECT_NO_THROW(scene.set_transform(ball, up));
+  EXPECT_EQ(scene.transform(ball), up);
+  EXPECT_NO_THROW(scene.set_emission(lamp, 2.0, 1));
+}
+
+TEST_F(LibraryBuild, TheOpenCameraFollowsUntilOneIsGiven) {
+  caplet::Scene scene = three_balls();
+  scene.present();
+  EXPECT_EQ(scene.lights(), 1U);  // the studio's
+  const caplet::Transform before = scene.camera();
+  scene.present();
+  EXPECT_EQ(scene.camera(), before);
+  caplet::ShapeOptions far;
+  far.transform[3] = 100;
+  scene.add_shape("sphere", {}, far);
+  EXPECT_EQ(scene.camera(), before);
+  scene.present();
+  EXPECT_NE(scene.camera(), before);
+  scene.look_at({0, 0, 9}, {0, 0, 0}, {0, 1, 0});
+  const caplet::Transform given = scene.camera();
+  scene.add_shape("sphere", {}, far);
+  scene.present();
+  EXPECT_EQ(scene.camera(), given);
+  scene.add_light("point", {});
+  EXPECT_EQ(scene.lights(), 1U);
+  scene.present();
+  EXPECT_EQ(scene.lights(), 1U);
+  scene.remove_lights();
+  scene.present();
+  EXPECT_EQ(scene.lights(), 0U);
+  // Moving what is there leaves the view as it is.
+  caplet::Scene other = three_balls();
+  other.present();
+  const caplet::Transform view = other.camera();
+  caplet::CapsuleArrays balls = other.capsule_arrays(0);
+  balls.p0[0][1] = 7;
+  other.set_capsules(0, balls);
+  other.present();
+  EXPECT_EQ(other.camera(), view);
+}
+
+}  // namespace
