@@ -96,7 +96,7 @@ def complaints(mutants):
         if count > 1:
             out.append(f"{name}: {count} mutants have this name")
     cmake = "\n".join(p.read_text() for p in sorted(ROOT.glob("tests/*/CMakeLists.txt")))
-    programs = set(re.findall(r"caplet_test\((\w+)", cmake))
+    programs = set(re.findall(r"(?:caplet_test|add_executable)\((\w+_tests)", cmake))
     sources = "\n".join(p.read_text() for p in sorted(ROOT.glob("tests/**/*.cpp")))
     tests = set(re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", sources))
     for m in mutants:
