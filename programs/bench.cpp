@@ -14,7 +14,7 @@
 int main(int argc, char** argv) {
   CLI::App app{"Traversal speed beside Embree (rtcIntersect1, all cores)"};
   caplet::bench::Options options;
-  app.add_option("scene", options.kind, "capsules, triangles, or another kind; shapes: all other kinds")
+  app.add_option("scene", options.kind, "capsules, triangles, or another kind; shapes: all other kinds; lights: the light tree")
       ->required()
       ->check(CLI::IsMember(caplet::bench::kinds()));
   app.add_option("--n", options.count, "primitives")->check(CLI::Range(std::size_t(1), std::size_t(1) << 27));

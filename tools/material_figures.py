@@ -19,6 +19,8 @@ MATERIALS = {
            'MakeNamedMaterial "b" "string type" "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k" "float roughness" 0.02\n'
            'Texture "squares" "float" "checkerboard" "float uscale" 12 "float vscale" 6 "float tex1" 0.9 "float tex2" 0.1\n'
            'Material "mix" "string materials" ["a" "b"] "texture amount" "squares"',
+    "interface": 'MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.05 0.1 0.3] "rgb sigma_s" [2 2 2]\n'
+                 'MediumInterface "fog" ""\nMaterial "interface"',
     "hair": 'Material "hair" "float eumelanin" 0.8 "float pheomelanin" 0.5',
     "principled": 'Texture "stripes" "float" "checkerboard" "float uscale" 1 "float vscale" 8 "float tex1" 1 "float tex2" 0\n'
                   'Material "principled" "rgb base_color" [0.75 0.3 0.1] "texture metallic" "stripes" "float roughness" 0.35 '

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <ctime>
 #include <optional>
 #include <span>
 
@@ -15,6 +17,7 @@
 #include "bench/detail/walks.h"
 #include "bench/device_tracer.h"
 #include "bench/peer.h"
+#include "lower/light_tree.h"
 #include "lower/lower.h"
 #include "shared/kinds.h"
 
@@ -193,15 +196,75 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
   }
 }
 
+/// As lowering has them: all around, of one side.
+TreeLights tree_lights(std::span<const FlatPrimitive> primitives) {
+  TreeLights out;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    double low[3], high[3];
+    primitive_box(primitives[i], low, high);
+    LightBounds bounds{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+    bounds.intensity = high[0] - low[0];
+    out.add(static_cast<std::uint32_t>(i), bounds);
+  }
+  return out;
+}
+
+/// Processor seconds of the whole program, the system's included.
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// What emissive capsules take beside those that are not, in processor seconds and in bytes on a device: the light tree beside
+/// the tree of the same capsules, and all that a light needs beside the scene without lights. Medians of five.
+void run_lights(const Options& options, const Say& line) {
+  constexpr int repetitions = 5;
+  const auto primitives = walk_capsules(options.count);
+  const TreeLights lights = tree_lights(primitives);
+  std::vector<double> geometry, trees, dark, bright;
+  FlatScene tree, with, without;
+  const auto timed = [](std::vector<double>& seconds, const auto& work) {
+    const double start = processor_seconds();
+    work();
+    seconds.push_back(processor_seconds() - start);
+  };
+  for (int i = 0; i < repetitions; ++i) {
+    timed(geometry, [&] {
+      std::vector<float> nodes, leaves;
+      encode_tree(primitives, nodes, leaves);
+    });
+    tree = FlatScene();
+    timed(trees, [&] { lower_light_tree(lights, lights.lights.size(), tree); });
+  }
+  Scene walks = walk_lamps(options.count, false);
+  for (int i = 0; i < repetitions; ++i) {
+    walks.shapes[0].emission.reset();
+    without = FlatScene();
+    timed(dark, [&] { without = lower(walks); });
+    walks.shapes[0].emission = AreaEmission{};
+    with = FlatScene();
+    timed(bright, [&] { with = lower(walks); });
+  }
+  const double n = static_cast<double>(options.count);
+  const auto told = [&](const char* name, double light, double other, const char* of, const char* unit) {
+    line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, \"{}\": {:.4g}, \"ratio\": {:.4g}, \"unit\": \"{}\"}}", name, light,
+                     of, other, light / other, unit));
+  };
+  told("light tree", median(trees), median(geometry), "geometry's tree", "processor s");
+  told("lights", median(bright) - median(dark), median(dark), "all of geometry", "processor s");
+  told("light tree memory", static_cast<double>((tree.light_nodes.size() + tree.light_places.size()) * sizeof(uint)) / n,
+       static_cast<double>(without.geometry_bytes()) / n, "geometry", "bytes/light");
+  told("lights memory", static_cast<double>(with.device_bytes() - without.device_bytes()) / n,
+       static_cast<double>(without.geometry_bytes()) / n, "geometry", "bytes/light");
+}
+
 }  // namespace
 
 std::vector<std::string> kinds() {
-  std::vector<std::string> out{"capsules", "triangles", "shapes"};
+  std::vector<std::string> out{"capsules", "triangles", "lights", "shapes"};
   out.insert(out.end(), walk_kinds().begin(), walk_kinds().end());
   return out;
 }
 
 void run(const Options& options, const Say& line) {
+  if (options.kind == "lights") return run_lights(options, line);
   const Device device = Device::choose(options.device);
   if (options.kind == "triangles" || options.kind == "capsules") return run_walks(device, options, line);
   for (const std::string& one : walk_kinds())

@@ -24,7 +24,8 @@ struct Options {
   bool sorted = false;          // also bounce rays sorted by origin and octant, for ours alone
 };
 
-/// What can be measured: capsules, triangles, another shape, or "shapes": all others.
+/// What can be measured: capsules, triangles, another shape, or "shapes": all others; "lights": what emissive capsules take to
+/// lower, in processor seconds and bytes, without rays.
 std::vector<std::string> kinds();
 
 using Say = std::function<void(const std::string& line)>;

@@ -181,6 +181,24 @@ Scene walk_scene(const std::string& kind, std::size_t count, std::vector<FlatPri
   return scene;
 }
 
+Scene walk_lamps(std::size_t count, bool emit) {
+  Scene scene;
+  scene.materials.emplace_back();
+  CapsulesShape capsules;
+  capsules.p0.reserve(count);
+  capsules.p1.reserve(count);
+  capsules.radius0.reserve(count);
+  walk(count, [&](Vec a, Vec b, float r) {
+    capsules.p0.emplace_back(a.x, a.y, a.z);
+    capsules.p1.emplace_back(b.x, b.y, b.z);
+    capsules.radius0.push_back(r);
+  });
+  Shape& shape = scene.shapes.emplace_back();
+  shape.geometry = std::move(capsules);
+  if (emit) shape.emission = AreaEmission{};
+  return scene;
+}
+
 std::vector<RayRecord> camera_rays(int size) {
   std::vector<RayRecord> out;
   out.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));

@@ -25,9 +25,14 @@ constexpr std::size_t max_bins = 32;
 constexpr std::uint32_t parallel_threshold = 4096;  // references below which a subtree is one task
 constexpr std::uint32_t chunk = 16384;              // references a task near the root
 constexpr std::uint32_t grid_pays_from = 65536;     // references
-constexpr std::uint32_t references_per_cell = 32;   // of the grid, roughly
 constexpr int max_cell_bits = 6;                    // an axis
-constexpr std::size_t least_cells = 64;             // a subtree of fewer cells is split by its references
+
+/// How far the grid of large trees goes.
+struct Cells {
+  std::uint32_t references;  // a cell, roughly
+  std::size_t least;         // a subtree of fewer cells is split by its references
+};
+constexpr Cells cells_of(Effort effort) { return effort == Effort::full ? Cells{32, 64} : Cells{8, 8}; }
 
 // x, y, z and a fourth lane of no account, which instructions of four lanes have anyway.
 typedef float Float4 __attribute__((vector_size(16)));
@@ -128,8 +133,11 @@ struct Split {
 
 class Builder {
  public:
-  Builder(BinaryTree& tree, std::uint32_t single_group)
-      : tree_(tree), scratch_(std::make_unique_for_overwrite<Reference[]>(tree.count)), single_group_(single_group) {}
+  Builder(BinaryTree& tree, std::uint32_t single_group, Effort effort)
+      : tree_(tree),
+        scratch_(std::make_unique_for_overwrite<Reference[]>(tree.count)),
+        single_group_(single_group),
+        cell_size_(cells_of(effort)) {}
 
   void run(std::span<const Reference> references) {
     next_ = 1;
@@ -359,7 +367,7 @@ class Builder {
   /// Into scratch_, stable within a cell; those that are empty are left out of cells_.
   void sort_into_cells(std::span<const Reference> references, const Bounds& all) {
     const std::uint32_t count = tree_.count;
-    const int bits = std::clamp(static_cast<int>(std::bit_width(count / references_per_cell) - 1) / 3, 1, max_cell_bits);
+    const int bits = std::clamp(static_cast<int>(std::bit_width(count / cell_size_.references) - 1) / 3, 1, max_cell_bits);
     const Binning grid(all.centroids.box(), std::size_t{1} << bits);
     const std::uint32_t cell_count = 1u << (3 * bits);
     const std::uint32_t parts = std::min<std::uint32_t>(16, (count + chunk - 1) / chunk);
@@ -414,7 +422,7 @@ class Builder {
     }
     const int needed = static_cast<int>(std::bit_width(count)) + 2;
     std::uint32_t middle = begin, left = 0;
-    if (end - begin >= least_cells && depth + needed < max_depth) {
+    if (end - begin >= cell_size_.least && depth + needed < max_depth) {
       const Binning binning(centers.box(), count);
       Bins bins(binning.bins);
       for (std::uint32_t i = begin; i < end; i++) {
@@ -446,6 +454,7 @@ class Builder {
   BinaryTree& tree_;
   std::unique_ptr<Reference[]> scratch_;
   std::uint32_t single_group_;
+  Cells cell_size_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> cell_order_;
   std::vector<Top> tops_;
@@ -454,12 +463,12 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group) {
+BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group, Effort effort) {
   BinaryTree tree;
   tree.count = static_cast<std::uint32_t>(references.size());
   tree.items = std::make_unique_for_overwrite<Reference[]>(tree.count);
   tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * references.size());
-  Builder(tree, single_group).run(references);
+  Builder(tree, single_group, effort).run(references);
   return tree;
 }
 

@@ -164,10 +164,10 @@ class Collapser {
 
 Tree collapse(const BinaryTree& binary) { return Collapser(binary).run(); }
 
-Tree build(std::span<const Reference> references, std::uint32_t single_group) {
+Tree build(std::span<const Reference> references, std::uint32_t single_group, Effort effort) {
   CHECK_LT_(std::size_t(0), references.size());
   CHECK_LT_(references.size(), std::size_t(1) << 31);
-  return collapse(build_binary(references, single_group));
+  return collapse(build_binary(references, single_group, effort));
 }
 
 }  // namespace caplet::bvh

@@ -290,7 +290,7 @@ Statement material_statement(const Scene& scene, std::uint32_t material, const N
 }
 
 Statement medium_statement(const Medium& medium, const std::string& name, const Stream& stream) {
-  const auto& [model, own_name, where] = medium;
+  const auto& [model, own_name, where, subsurface] = medium;
   static constexpr const char* types[] = {
 #define MEDIUM_MODEL(row, Type) #row,
 #include "scene/media.def"
@@ -298,6 +298,7 @@ Statement medium_statement(const Medium& medium, const std::string& name, const 
   Statement out("MakeNamedMedium " + quoted(name, where), "medium", where);
   out.text("type", types[model.index()]);
   std::visit([&](const auto& m) { m.fields(m, MediumWriter{out, stream}); }, model);
+  if (subsurface) out.boolean("subsurface", true);
   return out;
 }
 

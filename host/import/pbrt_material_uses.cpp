@@ -13,7 +13,6 @@ namespace caplet::pbrt {
 
 namespace {
 
-constexpr int few_scatterings = 32;
 constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
 
 /// Calls `visit` with every index of a material that a shape has.
@@ -114,6 +113,12 @@ class Parser::MaterialMaking {
       if (made.sound && made.within) out.emplace(made.index, *made.within);
     return out;
   }
+  std::map<std::size_t, PartlyThere> partly_there() const {
+    std::map<std::size_t, PartlyThere> out;
+    for (std::size_t i = 0; i < made_.size(); ++i)
+      if (made_[i].partly_there) out.emplace(i, *made_[i].partly_there);
+    return out;
+  }
   std::size_t left_out = 0;
   std::string first_left_out;
 
@@ -124,6 +129,7 @@ class Parser::MaterialMaking {
     std::uint32_t index = 0;  // in the scene
     bool sound = false;
     std::optional<Medium> within = {};
+    std::optional<PartlyThere> partly_there = {};
   };
 
   void make_unseen(std::size_t number) {
@@ -140,12 +146,16 @@ class Parser::MaterialMaking {
       made.index = interface_material;
     } else {
       statement.parameters.report_to(diagnostics);
-      const PartFinder part_named = [this](const std::string& name, std::string& problem) { return part(name, problem); };
+      const PartFinder part_named = [this, &made](const std::string& name, std::string& problem) {
+        return part(name, made, problem);
+      };
       Material material = make_material(statement.type, statement.parameters, parser_.textures_, parser_.texture_context().images,
                                         part_named, parser_.scene_, made.within);
       material.name = statement.name;
       made.index = static_cast<std::uint32_t>(parser_.scene_.materials.size());
       made.sound = !aside.has_errors();
+      if (const auto* mix = std::get_if<MixMaterial>(&material.model); mix && made.sound && part_interface(*mix, material, made))
+        return;
       if (made.sound) parser_.scene_.materials.push_back(std::move(material));
     }
     if (!aside.has_errors()) return;
@@ -156,7 +166,23 @@ class Parser::MaterialMaking {
     }
   }
 
-  std::optional<std::uint32_t> part(const std::string& name, std::string& problem) {
+  /// A mix with an interface is its other material, there with a chance; of two interfaces it is one.
+  static bool part_interface(const MixMaterial& mix, const Material& material, Made& made) {
+    const bool first = mix.materials[0] == interface_material, second = mix.materials[1] == interface_material;
+    if (!first && !second) return false;
+    made.index = first && second ? interface_material : mix.materials[first ? 1 : 0];
+    if (first && second) {
+      made.sound = false;
+      return true;
+    }
+    PartlyThere& there = made.partly_there.emplace(PartlyThere{mix.amount, second, made.within.has_value()});
+    for (const TexturedField& field : material.textures)
+      if (field.field == "amount") there.amount.texture = field.texture;
+    return true;
+  }
+
+  /// A part of the mix `whole`.
+  std::optional<std::uint32_t> part(const std::string& name, Made& whole, std::string& problem) {
     const auto found = parser_.named_materials_.find(name);
     if (found == parser_.named_materials_.end()) {
       problem =
@@ -169,13 +195,19 @@ class Parser::MaterialMaking {
       return std::nullopt;
     }
     make(found->second);
-    if (made.sound && made.within) {
-      problem = "names the material " + in_quotes(name) + ", a subsurface, of which no mix is made";
+    if (made.partly_there) {
+      problem = "names the material " + in_quotes(name) + ", a mix with an interface, of which no other mix is made";
       return std::nullopt;
     }
-    if (made.sound) return made.index;
-    problem = "names the material " + in_quotes(name) +
-              (made.index == interface_material ? ", an interface, of which no mix is made yet" : ", which is wrong itself");
+    if (made.sound && made.within) {
+      if (whole.within && whole.within->where.to_string() != made.within->where.to_string()) {
+        problem = "names the material " + in_quotes(name) + ", a second subsurface: one alone can be within";
+        return std::nullopt;
+      }
+      whole.within = made.within;
+    }
+    if (made.sound || made.index == interface_material) return made.index;
+    problem = "names the material " + in_quotes(name) + ", which is wrong itself";
     return std::nullopt;
   }
 
@@ -194,6 +226,7 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
         {}, making.first_left_out + " (no shape has this material" +
                 (making.left_out > 1 ? ", nor " + std::to_string(making.left_out - 1) + " others that are wrong)" : ")"));
   media_within_ = making.media_within();
+  partly_there_ = making.partly_there();
   return making.indices();
 }
 
@@ -209,6 +242,13 @@ void Parser::resolve_materials() {
       diagnostics_.error(use.where,
                          "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
   }
+  take_out_interfaces([&](std::uint32_t number) -> const PartlyThere* {
+    const MaterialUse& use = uses_[number];
+    const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
+    if (number == 0 || (!use.statement && named == named_materials_.end())) return nullptr;
+    const auto found = partly_there_.find(use.statement ? *use.statement : named->second);
+    return found == partly_there_.end() ? nullptr : &found->second;
+  });
   drop_interfaces(index_of_use);
   if (std::ranges::find(index_of_use, interface_material) != index_of_use.end()) {
     const auto interface = static_cast<std::uint32_t>(scene_.materials.size());
@@ -254,9 +294,58 @@ void Parser::fill_subsurfaces() {
   for (Shape& shape : scene_.shapes) visit(shape);
   for (Object& object : scene_.objects)
     for (Shape& shape : object.shapes) visit(shape);
-  if (const int depth = scene_.integrator.max_depth; !index_of.empty() && depth < few_scatterings)
-    diagnostics_.warning({main_file_}, "\"maxdepth\" counts what scatters within a \"subsurface\" as well: " +
-                                           std::to_string(depth) + " leave it darker than it is");
+}
+
+std::uint32_t Parser::float_texture(Texture texture) {
+  texture.is_float = true;
+  texture.where = {main_file_};
+  scene_.textures.push_back(std::move(texture));
+  return static_cast<std::uint32_t>(scene_.textures.size() - 1);
+}
+
+/// Where a mix is of an interface, rays go on as if nothing were there: an alpha says so. `partly_there`: of a use of a material,
+/// or null.
+void Parser::take_out_interfaces(const std::function<const PartlyThere*(std::uint32_t use)>& partly_there) {
+  if (partly_there_.empty()) return;
+  const auto visit = [&](Shape& shape) {
+    const PartlyThere* of = nullptr;
+    bool all = true, some = false;
+    each_surface(shape, [&](std::uint32_t use) {
+      const PartlyThere* const own = partly_there(use);
+      all = all && own && (!some || own == of);
+      some = some || own;
+      of = own ? own : of;
+    });
+    if (!some) return;
+    if (!all) return diagnostics_.error(shape.where, "all of a shape has one material where one is a mix with an interface");
+    if (shape.emission)
+      return diagnostics_.error(shape.where, "the shape is an area light, whose material is no mix with an interface");
+    if (shape.media.differ() || of->subsurface)
+      return diagnostics_.error(shape.where,
+                                "the shape parts media, and its material is a mix with an interface: it would be both");
+    TextureOperand alpha = of->amount;
+    if (of->inverted && alpha.texture) {
+      MixTexture rest;
+      rest.tex1 = 1;
+      rest.tex2 = 0;
+      rest.amount = alpha;
+      alpha = 0;
+      alpha.texture = float_texture({rest, true, "", {}});
+    } else if (of->inverted) {
+      alpha = 1 - std::get<ConstantSpectrum>(alpha.value).value;
+    }
+    if (shape.alpha) {
+      ScaleTexture both;
+      both.tex = *shape.alpha;
+      both.scale = alpha;
+      alpha = 0;
+      alpha.texture = float_texture({both, true, "", {}});
+    }
+    shape.alpha = alpha;
+  };
+  for (Shape& shape : scene_.shapes) visit(shape);
+  for (Object& object : scene_.objects)
+    for (Shape& shape : object.shapes) visit(shape);
 }
 
 /// Takes out shapes whose material lets all light pass: what parts no media is not seen.

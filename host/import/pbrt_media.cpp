@@ -149,6 +149,7 @@ Medium make_medium(const std::string& type, const std::string& name, Parameters&
     medium.model = std::move(model);                                  \
   }
 #include "scene/media.def"
+  medium.subsurface = parameters.boolean("subsurface", false);
   parameters.finish();
   return medium;
 }

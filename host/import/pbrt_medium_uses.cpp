@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 //
 // Media by their names, and the surfaces that part them.
+#include <functional>
+#include <memory>
+
 #include "import/detail/pbrt_media.h"
 #include "import/detail/pbrt_parser.h"
 
@@ -41,6 +44,25 @@ void Parser::medium_interface() {
   state_.media.outside = lexer_->peek().kind == Token::Kind::string ? side() : state_.media.inside;
 }
 
+/// A csg is one solid, of one medium: that at its statement, or where nothing is said there that of its operands, of all that add
+/// to it.
+MediumSides Parser::media_of_csg(const Shape& shape) {
+  const auto& csg = std::get<CsgShape>(shape.geometry);
+  if (csg.operands.empty()) return shape.media;
+  const bool difference = csg.operation == CsgShape::Operation::set_difference;
+  const MediumSides sides = shape.media.differ() ? shape.media : csg.operands[0]->media;
+  for (std::size_t i = 0; i < (difference ? 1 : csg.operands.size()); ++i) {
+    const Shape& operand = *csg.operands[i];
+    const bool says_nothing = shape.media.differ() && !operand.media.differ();
+    if (says_nothing || operand.media == sides || (!operand.media.differ() && !sides.differ())) continue;
+    diagnostics_.error(operand.where, "the operand of a csg has another MediumInterface than " +
+                                          std::string(shape.media.differ() ? "the csg itself" : "the first operand") +
+                                          ": a csg is of one medium (" + shape.where.to_string() + ")");
+    return shape.media;
+  }
+  return sides.differ() ? sides : shape.media;
+}
+
 /// Names become indices of the scene's media, which are those that something has.
 void Parser::resolve_media() {
   std::vector<bool> said(medium_uses_.size());
@@ -64,9 +86,22 @@ void Parser::resolve_media() {
     }
     side = statement.index;
   };
-  const auto visit = [&](Shape& shape) {
+  const std::function<void(Shape&)> visit = [&](Shape& shape) {
     resolve(shape.media.inside);
     resolve(shape.media.outside);
+    if (auto* csg = std::get_if<CsgShape>(&shape.geometry)) {
+      for (std::shared_ptr<const Shape>& operand : csg->operands) {
+        auto own = std::make_shared<Shape>(*operand);
+        visit(*own);
+        operand = std::move(own);
+      }
+      shape.media = media_of_csg(shape);
+      for (std::shared_ptr<const Shape>& operand : csg->operands) {
+        auto own = std::make_shared<Shape>(*operand);
+        own->media = {};
+        operand = std::move(own);
+      }
+    }
   };
   resolve(scene_.camera.medium);
   for (Shape& shape : scene_.shapes) visit(shape);

@@ -129,7 +129,7 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
       of.scale = 1 / scale;  // of the free path
     }
   }
-  return {model, name, parameters.where()};
+  return {model, name, parameters.where(), true};
 }
 
 }  // namespace caplet::pbrt

@@ -126,10 +126,12 @@ double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves) 
   }
 }
 
-double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const glm::dmat4& m,
+AreaMap::AreaMap(const glm::dmat4& map) : m(map), similarity(similarity_scale(map)) {}
+
+double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const AreaMap& map,
                    std::span<const std::uint32_t> surfaces) {
-  const glm::dmat3 a(m);
-  if (const double scale = similarity_scale(m); scale > 0 && surfaces.empty()) return primitive_area(p, leaves) * (scale * scale);
+  if (map.similarity > 0 && surfaces.empty()) return primitive_area(p, leaves) * (map.similarity * map.similarity);
+  const glm::dmat3 a(map.m);
   const auto counted = [&](std::uint32_t surface) {
     return surfaces.empty() || std::ranges::find(surfaces, surface) != surfaces.end();
   };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <string_view>
@@ -130,6 +131,36 @@ std::uint8_t encoded(const std::array<float, 256>& decoded, float value) {
   return static_cast<std::uint8_t>(at == 256 || value - decoded[at - 1] <= decoded[at] - value ? at - 1 : at);
 }
 
+/// Values of a level that are few enough for 16 bits to number them, as those of images of 16 bits and of halves are.
+class FewValues {
+ public:
+  static constexpr std::size_t most = 65536;
+
+  /// False where there are more than `most`.
+  bool take(const std::vector<float>& values) {
+    for (const float value : values) {
+      const auto bits = std::bit_cast<std::uint32_t>(value);
+      std::uint32_t& slot = slot_of(bits);
+      if (slot != 0) continue;
+      if (all_.size() == most) return false;
+      all_.push_back(bits);
+      slot = narrow<std::uint32_t>(all_.size());
+    }
+    return true;
+  }
+  const std::vector<std::uint32_t>& all() const { return all_; }
+  std::uint16_t number_of(float value) { return static_cast<std::uint16_t>(slot_of(std::bit_cast<std::uint32_t>(value)) - 1); }
+
+ private:
+  /// Of a hash table: the number of the value that has it + 1, or 0.
+  std::uint32_t& slot_of(std::uint32_t bits) {
+    std::size_t at = (bits * 0x9e3779b1u) >> 14;
+    while (slots_[at] != 0 && all_[slots_[at] - 1] != bits) at = (at + 1) % slots_.size();
+    return slots_[at];
+  }
+  std::vector<std::uint32_t> all_, slots_ = std::vector<std::uint32_t>(std::size_t{1} << 18, 0);
+};
+
 class ImageLowering {
  public:
   ImageLowering(const ImageUse& use, FlatScene& out)
@@ -149,17 +180,26 @@ class ImageLowering {
     if (is_new) level = resampled(level, channels_, *wrap_);
     record.levels = wrap_ ? narrow<uint>(std::bit_width(std::max(level.width, level.height))) : 1;
     record.levels_begin = narrow<uint>(out_.texels.size());
-    out_.texels.resize(out_.texels.size() + 3 * std::size_t{record.levels});
+    out_.texels.resize(out_.texels.size() + 4 * std::size_t{record.levels});
     for (uint i = 0; i < record.levels; ++i) {
       if (i > 0) level = halved(level, channels_);
-      uint* of = &out_.texels[record.levels_begin + 3 * i];
-      of[0] = narrow<uint>(out_.texels.size());
-      of[1] = narrow<uint>(level.width);
-      of[2] = narrow<uint>(level.height);
-      if (i > 0 || is_new)
-        add(level);
+      const std::vector<float>& floats = i > 0 || is_new ? level.values : image_.floats;
+      uint how = image_.bytes.empty() ? CAPLET_TEXELS_FLOATS : CAPLET_TEXELS_BYTES;
+      // One table an image: of the first level, which is the most of it.
+      if (FewValues few; i == 0 && how == CAPLET_TEXELS_FLOATS && floats.size() > 1024 && few.take(floats) &&
+                         few.all().size() + floats.size() / 2 < floats.size()) {
+        how = CAPLET_TEXELS_NUMBERS;
+        record.decode = narrow<uint>(out_.texels.size());
+        out_.texels.insert(out_.texels.end(), few.all().begin(), few.all().end());
+        put_level(record, i, level, how);
+        add_numbers(floats, few);
+        continue;
+      }
+      put_level(record, i, level, how);
+      if (how == CAPLET_TEXELS_FLOATS)
+        add_floats(floats);
       else
-        image_.bytes.empty() ? add_floats(image_.floats) : add_bytes(image_.bytes);
+        i > 0 || is_new ? add(level) : add_bytes(image_.bytes);
     }
     return record;
   }
@@ -175,8 +215,16 @@ class ImageLowering {
     return out;
   }
 
+  /// What is said of a level before its texels.
+  void put_level(const ImageRecord& record, uint i, const Level& level, uint how) {
+    uint* const of = &out_.texels[record.levels_begin + 4 * i];
+    of[0] = narrow<uint>(out_.texels.size());
+    of[1] = narrow<uint>(level.width);
+    of[2] = narrow<uint>(level.height);
+    of[3] = how;
+  }
+
   void add(const Level& level) {
-    if (image_.bytes.empty()) return add_floats(level.values);
     std::vector<std::uint8_t> bytes(level.values.size());
     for (std::size_t i = 0; i < bytes.size(); ++i)
       bytes[i] = is_alpha(i) ? static_cast<std::uint8_t>(std::lround(std::min(level.values[i], 1.f) * 255.f))
@@ -186,6 +234,16 @@ class ImageLowering {
 
   void add_floats(const std::vector<float>& values) {
     for (const float value : values) out_.texels.push_back(std::bit_cast<uint>(value));
+  }
+
+  void add_numbers(const std::vector<float>& values, FewValues& few) {
+    std::vector<std::uint16_t> numbers;
+    numbers.reserve(values.size());
+    for (const float value : values) numbers.push_back(few.number_of(value));
+    const std::size_t at = out_.texels.size();
+    out_.texels.resize(at + (numbers.size() + 1) / 2);
+    // Two to a word as they lie in memory.
+    std::memcpy(&out_.texels[at], numbers.data(), numbers.size() * sizeof numbers[0]);
   }
 
   void add_bytes(const std::vector<std::uint8_t>& bytes) {

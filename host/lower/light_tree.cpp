@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "lower/detail/light_tree.h"
+#include "lower/light_tree.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -22,6 +25,8 @@ namespace {
 using glm::dvec3;
 
 constexpr int width = bvh::width;
+constexpr std::uint32_t ahead = 24;  // lights that are asked for before they are needed: they lie anywhere
+constexpr std::uint32_t no_group = 0xffffffff;
 constexpr double cells = 65535;  // of the grid, along each axis
 static_assert(CAPLET_LIGHT_NODE == 7 * width);
 
@@ -42,11 +47,30 @@ std::uint32_t octahedral_bits(const dvec3& n) {
 /// least 1/sqrt(3) away.
 constexpr double axis_error = 1e-4;
 
-/// In 65535ths of [-1, 1], of an angle that is `more` greater: never above the cosine that is meant.
-std::uint32_t cosine_bits(double cosine, double more) {
-  const double angle = std::min(std::acos(std::clamp(cosine, -1.0, 1.0)) + more, std::numbers::pi);
-  return static_cast<std::uint32_t>(std::clamp(std::floor((std::cos(angle) + 1) * 0.5 * 65535), 0.0, 65535.0));
+/// In 65535ths of [-1, 1], of an angle that is axis_error greater: never above the cosine that is meant. Of neighbours they are
+/// mostly the same, so that the last is kept.
+class CosineBits {
+ public:
+  std::uint32_t operator()(double cosine) {
+    if (cosine != cosine_) {
+      cosine_ = cosine;
+      const double angle = std::min(std::acos(std::clamp(cosine, -1.0, 1.0)) + axis_error, std::numbers::pi);
+      bits_ = static_cast<std::uint32_t>(std::clamp(std::floor((std::cos(angle) + 1) * 0.5 * 65535), 0.0, 65535.0));
+    }
+    return bits_;
+  }
+
+ private:
+  double cosine_ = std::numeric_limits<double>::quiet_NaN();
+  std::uint32_t bits_ = 0;
+};
+
+// Of a finite x.
+float next_up(float x) {
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
 }
+float next_down(float x) { return -next_up(-x); }
 
 /// The grid of the boxes' ends.
 struct Grid {
@@ -61,141 +85,211 @@ struct Grid {
     }
   }
   std::uint32_t ends(int k, double low, double high) const {
-    const auto down = static_cast<std::uint32_t>(std::clamp(std::floor((low - min[k]) / cell[k]), 0.0, cells));
-    const auto up = static_cast<std::uint32_t>(std::clamp(std::ceil((high - min[k]) / cell[k]), 0.0, cells));
-    return down | up << 16;
+    const double above = (high - min[k]) / cell[k];
+    const std::uint32_t down = whole((low - min[k]) / cell[k]), whole_above = whole(above);
+    return down | (whole_above + (whole_above < above && whole_above < cells ? 1 : 0)) << 16;
+  }
+
+ private:
+  static std::uint32_t whole(double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, cells)); }
+};
+
+/// The box of some lights.
+struct Extent {
+  dvec3 min{INFINITY}, max{-INFINITY};
+  void extend(const dvec3& low, const dvec3& high) {
+    min = glm::min(min, low);
+    max = glm::max(max, high);
   }
 };
 
 }  // namespace
 
-LightBounds united(const LightBounds& a, const LightBounds& b) {
-  LightBounds out;
-  out.min = glm::min(a.min, b.min);
-  out.max = glm::max(a.max, b.max);
-  out.intensity = a.intensity + b.intensity;
-  out.cos_reach = std::min(a.cos_reach, b.cos_reach);
+namespace {
+
+/// Of two cones the smallest one that holds both.
+void unite_cones(LightBounds& out, const LightBounds& b) {
+  const LightBounds a = out;
   const LightBounds &wide = a.cos_cone < b.cos_cone ? a : b, &narrow = a.cos_cone < b.cos_cone ? b : a;
-  if (wide.cos_cone <= -1) {  // as capsules are, all around: nothing to turn
-    out.axis = wide.axis;
-    out.cos_cone = wide.cos_cone;
-    return out;
-  }
   const double theta_wide = std::acos(std::clamp(wide.cos_cone, -1.0, 1.0)),
                theta_narrow = std::acos(std::clamp(narrow.cos_cone, -1.0, 1.0));
   const double between = std::acos(std::clamp(glm::dot(a.axis, b.axis), -1.0, 1.0));
   out.axis = wide.axis;
   out.cos_cone = wide.cos_cone;
-  if (std::min(between + theta_narrow, std::numbers::pi) <= theta_wide) return out;
+  if (std::min(between + theta_narrow, std::numbers::pi) <= theta_wide) return;
   const double theta = 0.5 * (theta_wide + between + theta_narrow);
   const dvec3 across = narrow.axis - wide.axis * glm::dot(narrow.axis, wide.axis);
   const double length = glm::length(across);
   if (theta >= std::numbers::pi || length < 1e-9) {
     out.cos_cone = -1;
-    return out;
+    return;
   }
   const double turn = theta - theta_wide;
   out.axis = glm::normalize(wide.axis * std::cos(turn) + across * (std::sin(turn) / length));
   out.cos_cone = std::cos(theta);
+}
+
+inline void unite(LightBounds& to, const LightBounds& b) {
+  for (int k = 0; k < 3; ++k) {
+    to.min[k] = std::min(to.min[k], b.min[k]);
+    to.max[k] = std::max(to.max[k], b.max[k]);
+  }
+  to.intensity += b.intensity;
+  to.cos_reach = std::min(to.cos_reach, b.cos_reach);
+  if (b.cos_cone <= -1) {  // as capsules are, all around: nothing to turn
+    to.axis = b.axis;
+    to.cos_cone = b.cos_cone;
+  } else if (to.cos_cone > -1) {
+    unite_cones(to, b);
+  }
+}
+
+}  // namespace
+
+LightBounds united(const LightBounds& a, const LightBounds& b) {
+  LightBounds out = a;
+  unite(out, b);
   return out;
 }
 
-void lower_light_tree(std::span<const TreeLight> lights, std::size_t light_count, FlatScene& out) {
+void TreeLights::add(std::uint32_t light, const LightBounds& of) {
+  One& one =
+      lights.emplace_back(One{{of.min.x, of.min.y, of.min.z}, {of.max.x, of.max.y, of.max.z}, of.intensity, light, all_around});
+  if (of.cos_cone <= -1 && of.cos_reach == 0) return;
+  one.cone = narrow<std::uint32_t>(cones.size());
+  cones.push_back({of.axis, of.cos_cone, of.cos_reach});
+}
+
+LightBounds TreeLights::bounds_of(const One& light) const {
+  LightBounds out;
+  out.min = {light.min[0], light.min[1], light.min[2]};
+  out.max = {light.max[0], light.max[1], light.max[2]};
+  out.intensity = light.intensity;
+  if (light.cone != all_around) {
+    const Cone& cone = cones[light.cone];
+    out.axis = cone.axis;
+    out.cos_cone = cone.cos_cone;
+    out.cos_reach = cone.cos_reach;
+  }
+  return out;
+}
+
+void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, FlatScene& out) {
+  const std::vector<TreeLights::One>& lights = all_lights.lights;
   out.light_nodes.clear();
   out.light_places.clear();
   LightingRecord& record = out.lighting;
-  record.tree_nodes = 0;
   for (int k = 0; k < 3; ++k) record.tree_min[k] = record.tree_cell[k] = 0;
   if (lights.empty()) return;
 
-  std::vector<bvh::Reference> boxes(lights.size());
-  tbb::parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
-    const LightBounds& of = lights[i].bounds;
-    for (int k = 0; k < 3; ++k) {
-      boxes[i].min[k] = std::nextafter(static_cast<float>(of.min[k]), -INFINITY);
-      boxes[i].max[k] = std::nextafter(static_cast<float>(of.max[k]), INFINITY);
-    }
-    boxes[i].primitive = static_cast<std::uint32_t>(i);
-    boxes[i].group = 0;
-  });
-  const bvh::Tree tree = bvh::build(boxes);
+  const auto boxes = std::make_unique_for_overwrite<bvh::Reference[]>(lights.size());
+  const Extent extent = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, lights.size(), 4096), Extent{},
+      [&](const tbb::blocked_range<std::size_t>& range, Extent all) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const TreeLights::One& of = lights[i];
+          bvh::Reference& box = boxes[i];
+          for (int k = 0; k < 3; ++k) {
+            box.min[k] = next_down(static_cast<float>(of.min[k]));
+            box.max[k] = next_up(static_cast<float>(of.max[k]));
+          }
+          box.primitive = static_cast<std::uint32_t>(i);
+          box.group = 0;
+          all.extend({of.min[0], of.min[1], of.min[2]}, {of.max[0], of.max[1], of.max[2]});
+        }
+        return all;
+      },
+      [](Extent a, const Extent& b) {
+        a.extend(b.min, b.max);
+        return a;
+      });
+  const Grid grid(extent.min, extent.max);
+  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, no_group, bvh::Effort::quick);
 
   // Leaves of several lights become nodes, behind the others.
-  std::vector<std::int32_t> node_of_leaf(tree.leaves.size(), -1);
+  std::vector<std::uint32_t> node_of_leaf(tree.leaves.size(), CAPLET_NONE);
   std::size_t count = tree.nodes.size();
   for (std::size_t i = 0; i < tree.leaves.size(); ++i)
-    if (tree.leaves[i].count > 1) node_of_leaf[i] = narrow<std::int32_t>(count++);
+    if (tree.leaves[i].count > 1) node_of_leaf[i] = narrow<std::uint32_t>(count++);
 
-  std::vector<LightBounds> bounds(count);
-  const auto bounds_of = [&](std::uint32_t ordered) -> const LightBounds& { return lights[tree.order[ordered]].bounds; };
-  tbb::parallel_for(std::size_t{0}, tree.leaves.size(), [&](std::size_t i) {
-    if (node_of_leaf[i] < 0) return;
-    const bvh::Leaf& leaf = tree.leaves[i];
-    LightBounds all = bounds_of(leaf.first);
-    for (std::uint32_t k = 1; k < leaf.count; ++k) all = united(all, bounds_of(leaf.first + k));
-    bounds[static_cast<std::size_t>(node_of_leaf[i])] = all;
-  });
-  struct Child {
-    LightBounds bounds;
-    std::uint32_t reference = CAPLET_NONE;
-  };
-  const auto child_of = [&](const bvh::Node& node, int slot) -> Child {
-    if (node.min[0][slot] > node.max[0][slot]) return {};
-    const std::int32_t child = node.child[slot];
-    if (child >= 0) return {bounds[static_cast<std::size_t>(child)], static_cast<std::uint32_t>(child)};
-    const auto leaf = static_cast<std::uint32_t>(~child);
-    if (node_of_leaf[leaf] >= 0)
-      return {bounds[static_cast<std::size_t>(node_of_leaf[leaf])], static_cast<std::uint32_t>(node_of_leaf[leaf])};
-    const std::uint32_t first = tree.leaves[leaf].first;
-    return {bounds_of(first), lights[tree.order[first]].light | CAPLET_LIGHT_LEAF};
-  };
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    bool some = false;
-    for (int slot = 0; slot < width; ++slot)
-      if (const Child child = child_of(tree.nodes[i], slot); child.reference != CAPLET_NONE) {
-        bounds[i] = some ? united(bounds[i], child.bounds) : child.bounds;
-        some = true;
-      }
-  }
-
-  const Grid grid(bounds[0].min, bounds[0].max);
   out.light_nodes.assign(count * CAPLET_LIGHT_NODE, 0);
   out.light_places.assign(light_count + count, CAPLET_NONE);
-  const auto write = [&](std::size_t node, const std::array<Child, width>& children) {
-    uint* const rows = &out.light_nodes[node * CAPLET_LIGHT_NODE];
-    for (std::uint32_t slot = 0; slot < width; ++slot) {
-      const Child& child = children[slot];
-      rows[48 + slot] = child.reference;
-      if (child.reference == CAPLET_NONE) continue;
-      const LightBounds& of = child.bounds;
-      for (int k = 0; k < 3; ++k) rows[static_cast<std::uint32_t>(k) * 8 + slot] = grid.ends(k, of.min[k], of.max[k]);
-      rows[24 + slot] = octahedral_bits(of.axis);
-      rows[32 + slot] = cosine_bits(of.cos_cone, axis_error) | cosine_bits(of.cos_reach, axis_error) << 16;
-      rows[40 + slot] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
-      const std::size_t place =
-          child.reference & CAPLET_LIGHT_LEAF ? child.reference & ~CAPLET_LIGHT_LEAF : light_count + child.reference;
+  std::vector<LightBounds> bounds(count);
+  struct Writer {
+    const Grid& grid;
+    FlatScene& out;
+    std::size_t light_count;
+    CosineBits cone, reach;
+
+    void write(std::size_t node, std::uint32_t slot, std::uint32_t reference, const LightBounds& of) {
+      uint* const rows = &out.light_nodes[node * CAPLET_LIGHT_NODE + slot];
+      for (int k = 0; k < 3; ++k) rows[8 * k] = grid.ends(k, of.min[k], of.max[k]);
+      rows[24] = octahedral_bits(of.axis);
+      rows[32] = cone(of.cos_cone) | reach(of.cos_reach) << 16;
+      rows[40] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
+      rows[48] = reference;
+      const std::size_t place = reference & CAPLET_LIGHT_LEAF ? reference & ~CAPLET_LIGHT_LEAF : light_count + reference;
       out.light_places[place] = narrow<uint>(node * width + slot);
     }
   };
-  tbb::parallel_for(std::size_t{0}, tree.nodes.size(), [&](std::size_t i) {
-    std::array<Child, width> children;
-    for (int slot = 0; slot < width; ++slot) children[static_cast<std::size_t>(slot)] = child_of(tree.nodes[i], slot);
-    write(i, children);
-  });
-  tbb::parallel_for(std::size_t{0}, tree.leaves.size(), [&](std::size_t i) {
-    if (node_of_leaf[i] < 0) return;
-    std::array<Child, width> children;
-    for (std::uint32_t k = 0; k < tree.leaves[i].count; ++k) {
-      const TreeLight& light = lights[tree.order[tree.leaves[i].first + k]];
-      children[k] = {light.bounds, light.light | CAPLET_LIGHT_LEAF};
+  const auto light_of = [&](std::size_t ordered) -> const TreeLights::One& { return lights[tree.order[ordered]]; };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.leaves.size(), 256),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      Writer to{grid, out, light_count, {}, {}};
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        if (node_of_leaf[i] == CAPLET_NONE) continue;
+                        const bvh::Leaf& leaf = tree.leaves[i];
+                        LightBounds& all = bounds[node_of_leaf[i]];
+                        for (std::uint32_t k = 0; k < width; ++k) {
+                          if (k >= leaf.count) {
+                            out.light_nodes[node_of_leaf[i] * std::size_t{CAPLET_LIGHT_NODE} + 48 + k] = CAPLET_NONE;
+                            continue;
+                          }
+                          __builtin_prefetch(&light_of(std::min(leaf.first + k + std::size_t{ahead}, lights.size() - 1)));
+                          const TreeLights::One& light = light_of(leaf.first + k);
+                          const LightBounds of = all_lights.bounds_of(light);
+                          if (k == 0)
+                            all = of;
+                          else
+                            unite(all, of);
+                          to.write(node_of_leaf[i], k, light.light | CAPLET_LIGHT_LEAF, of);
+                        }
+                      }
+                    });
+  Writer to{grid, out, light_count, {}, {}};
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {  // children before parents
+    const bvh::Node& node = tree.nodes[i];
+    bool some = false;
+    for (std::uint32_t slot = 0; slot < width; ++slot) {
+      if (node.min[0][slot] > node.max[0][slot]) {
+        out.light_nodes[i * CAPLET_LIGHT_NODE + 48 + slot] = CAPLET_NONE;
+        continue;
+      }
+      LightBounds of;
+      std::uint32_t reference;
+      if (node.child[slot] >= 0) {
+        reference = static_cast<std::uint32_t>(node.child[slot]);
+        of = bounds[reference];
+      } else if (const auto leaf = static_cast<std::uint32_t>(~node.child[slot]); node_of_leaf[leaf] != CAPLET_NONE) {
+        reference = node_of_leaf[leaf];
+        of = bounds[reference];
+      } else {
+        const TreeLights::One& light = light_of(tree.leaves[leaf].first);
+        reference = light.light | CAPLET_LIGHT_LEAF;
+        of = all_lights.bounds_of(light);
+      }
+      if (some)
+        unite(bounds[i], of);
+      else
+        bounds[i] = of;
+      some = true;
+      to.write(i, slot, reference, of);
     }
-    write(static_cast<std::size_t>(node_of_leaf[i]), children);
-  });
+  }
   for (int k = 0; k < 3; ++k) {
     record.tree_min[k] = static_cast<float>(grid.min[k]);
     record.tree_cell[k] = static_cast<float>(grid.cell[k]);
   }
-  record.tree_nodes = narrow<uint>(count);
 }
 
 }  // namespace caplet

@@ -12,7 +12,7 @@
 #include "base/check.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/light_table.h"
-#include "lower/detail/light_tree.h"
+#include "lower/light_tree.h"
 
 namespace caplet {
 
@@ -72,7 +72,7 @@ class LightLowering {
   double brightest() const { return brightest_; }
 
   /// `bounded`: takes the light where it is somewhere.
-  void add(const Light& light, std::vector<LightShare>& shares, std::vector<TreeLight>& bounded) {
+  void add(const Light& light, std::vector<LightShare>& shares, TreeLights& bounded) {
     light_ = &light;
     LightRecord record{};
     record.slot = record.instance = record.geometry = CAPLET_NONE;
@@ -88,9 +88,8 @@ class LightLowering {
           if constexpr (requires { model.reach(); }) {
             if (!(shares.back().power > 0)) return;
             const LightReach reach = model.reach();
-            bounded.push_back({narrow<uint>(shares.size() - 1),
-                               {reach.position, reach.position, reach.axis, std::cos(reach.cone), std::cos(reach.reach),
-                                power / reach.solid_angle}});
+            bounded.add(narrow<uint>(shares.size() - 1), {reach.position, reach.position, reach.axis, std::cos(reach.cone),
+                                                          std::cos(reach.reach), power / reach.solid_angle});
           }
         },
         light.model);
@@ -240,15 +239,19 @@ LightBounds bounds_of(const Emitter& emitter, double power) {
   return out;
 }
 
-/// Makes the tree of `bounded` and takes it for one choice of `shares`, beside the lights that are in none: half of the random
+/// Makes the tree of `bounded` and leaves in `shares` the lights that the table has beside it, `emitters` and what is in the tree
+/// not among them; the tree is one choice more: half of the random
 /// numbers by power, half evenly to groups, as light_table has it.
-void lower_many_lights(const std::vector<TreeLight>& bounded, std::vector<LightShare>& shares, FlatScene& out) {
-  lower_light_tree(bounded.size() >= CAPLET_LIGHT_TREE_FROM ? bounded : std::vector<TreeLight>{}, shares.size(), out);
+void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vector<LightShare>& shares, FlatScene& out) {
+  static const TreeLights none;
+  const bool many = bounded.lights.size() >= CAPLET_LIGHT_TREE_FROM;
+  lower_light_tree(many ? bounded : none, shares.size(), out);
   out.lighting.tree_share = 0;
-  if (out.lighting.tree_nodes == 0) return;
+  out.lighting.table_begin = 0;
+  if (!many) return;
   std::vector<std::uint32_t> groups;  // of the others
   double of_tree = 0, of_others = 0;
-  for (const TreeLight& light : bounded) of_tree += std::exchange(shares[light.light].power, 0);
+  for (const TreeLights::One& light : bounded.lights) of_tree += std::exchange(shares[light.light].power, 0);
   for (const LightShare& share : shares) {
     if (!(share.power > 0)) continue;
     of_others += share.power;
@@ -257,6 +260,9 @@ void lower_many_lights(const std::vector<TreeLight>& bounded, std::vector<LightS
   std::ranges::sort(groups);
   const auto others = static_cast<double>(std::distance(groups.begin(), std::ranges::unique(groups).begin()));
   const double chance = 0.5 * of_tree / (of_tree + of_others) + 0.5 / (1 + others);
+  // Rows for what may be chosen: emissive primitives stand first.
+  out.lighting.table_begin = others > 0 ? narrow<uint>(emitters) : out.lighting.light_count;
+  shares.erase(shares.begin(), shares.begin() + out.lighting.table_begin);
   out.lighting.tree_share = others > 0 ? static_cast<uint>(std::clamp(chance, 0x1p-8, 1 - 0x1p-8) * 0x1p32) : CAPLET_NONE;
 }
 
@@ -268,8 +274,9 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.light_data.clear();
   images.begin();
   std::vector<LightShare> shares;
-  std::vector<TreeLight> bounded;
+  TreeLights bounded;
   double brightest = 0;
+  bounded.lights.reserve(emitters.size());
   out.lights.reserve(emitters.size() + scene.lights.size());
   shares.reserve(emitters.size() + scene.lights.size());
   for (const Emitter& emitter : emitters) {
@@ -308,7 +315,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     brightest = std::max(brightest, luminance);
     const double power = pi * emitter.area * luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
-    if (shares.back().power > 0) bounded.push_back({narrow<uint>(shares.size() - 1), bounds_of(emitter, power)});
+    if (shares.back().power > 0) bounded.add(narrow<uint>(shares.size() - 1), bounds_of(emitter, power));
   }
   LightLowering lowering(spectra, images, out);
   for (const Light& light : scene.lights)
@@ -321,7 +328,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   out.lighting.light_count = narrow<uint>(out.lights.size());
   out.lighting.sampled_light_count =
       narrow<uint>(std::ranges::count_if(shares, [](const LightShare& share) { return share.power > 0; }));
-  lower_many_lights(bounded, shares, out);
+  lower_many_lights(bounded, emitters.size(), shares, out);
   out.light_alias = light_table(shares);
 }
 

@@ -130,6 +130,7 @@ void lower_media(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
           MediumRecord record{};
           record.kind = kind_of<std::decay_t<decltype(model)>>;
           record.data = narrow<uint>(out.media_data.size());
+          record.flags = medium.subsurface ? CAPLET_MEDIUM_SUBSURFACE : 0u;
           out.media_data.resize(out.media_data.size() + medium_floats[record.kind]);
           FamilyData data(medium_fields[record.kind], &out.media_data[record.data]);
           model.fields(model, MediumWriter{data, medium_fields[record.kind], spectra, out});

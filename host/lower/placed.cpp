@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 //
 // Trees as placed: their records, boxes and lights.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -45,26 +48,39 @@ Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
   return box;
 }
 
+/// Of lights that are placed together.
+struct Placement {
+  explicit Placement(const Matrix& m)
+      : world_from_part(m), stays(m == Matrix(1)), normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
+  Matrix world_from_part;
+  bool stays;
+  glm::dmat3 normals;
+};
+
 /// The image of the primitive's box, and the side of a flat one that emits.
-void set_reach(const FlatPrimitive& p, const Matrix& world_from_part, bool flipped, Emitter& emitter) {
+void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitter& emitter) {
   double low[3], high[3];
   primitive_box(p, low, high);
-  Bounds box;
-  for (int corner = 0; corner < 8; ++corner) {
-    dvec3 x;
-    for (int k = 0; k < 3; ++k) x[k] = (corner >> k) & 1 ? high[k] : low[k];
-    box.extend(apply_point(world_from_part, x));
+  Bounds box{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  if (!to.stays) {
+    box = {};
+    for (int corner = 0; corner < 8; ++corner) {
+      dvec3 x;
+      for (int k = 0; k < 3; ++k) x[k] = (corner >> k) & 1 ? high[k] : low[k];
+      box.extend(apply_point(to.world_from_part, x));
+    }
   }
   dvec3 normal(0);
+  double length = 0;
   if (p.shape == shape_triangle) {
     const auto corner = [&](int at) { return dvec3(p.data[at], p.data[at + 1], p.data[at + 2]); };
     const dvec3 v0 = corner(triangle_at_v0);
-    normal = glm::cross(corner(triangle_at_v1) - v0, corner(triangle_at_v2) - v0);
+    normal = to.normals * glm::cross(corner(triangle_at_v1) - v0, corner(triangle_at_v2) - v0);
+    length = glm::length(normal);
   } else if (p.shape == shape_disk) {
-    normal = dvec3(p.data[disk_at_n], p.data[disk_at_n + 1], p.data[disk_at_n + 2]);
+    normal = to.normals * dvec3(p.data[disk_at_n], p.data[disk_at_n + 1], p.data[disk_at_n + 2]);
+    length = glm::length(normal);
   }
-  normal = glm::transpose(glm::inverse(glm::dmat3(world_from_part))) * normal;
-  const double length = glm::length(normal);
   const bool one_way = !emitter.two_sided && std::isfinite(length) && length > 0;
   for (int k = 0; k < 3; ++k) {
     emitter.min[k] = box.min[k];
@@ -130,12 +146,19 @@ void set_instance_box(const Part& part, const Matrix& world_from_part, FlatPrimi
 void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const Matrix& world_from_part,
                   std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out) {
   const AreaEmission& emission = *emissive.shape->emission;
+  const AreaMap area_map(world_from_part);
+  std::vector<double> areas(emissive.count);
+  const auto each = [&](const auto& of) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, emissive.count, 1024),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) of(i);
+                      });
+  };
+  each([&](std::size_t i) {
+    areas[i] = placed_area(part.primitives[emissive.first + i], flat.leaves, area_map, emission.surfaces);
+  });
   double total_area = 0;
-  std::vector<double> areas;
-  for (std::size_t i = 0; i < emissive.count; ++i) {
-    areas.push_back(placed_area(part.primitives[emissive.first + i], flat.leaves, world_from_part, emission.surfaces));
-    total_area += areas.back();
-  }
+  for (const double area : areas) total_area += area;
   Emitter emitter{};
   emitter.group = group;
   emitter.instance = instance;
@@ -153,18 +176,20 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
     emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
   }
   emitter.luminance = luminance * emitter.scale;
-  for (std::size_t i = 0; i < emissive.count; ++i) {
+  const Placement placement(world_from_part);
+  each([&](std::size_t i) {
     const std::size_t at = emissive.first + i;
-    emitter.slot = part.tree.slots[at];
-    emitter.geometry = flat.primitive_geometry[part.primitives[at].id];
-    emitter.area = areas[i];
-    set_ball(part.primitives[at], world_from_part, emitter);
-    set_reach(part.primitives[at], world_from_part, (flat.geometries[emitter.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,
-              emitter);
+    const FlatPrimitive& p = part.primitives[at];
+    Emitter& to = out[i];
+    to = emitter;
+    to.slot = part.tree.slots[at];
+    to.geometry = flat.primitive_geometry[p.id];
+    to.area = areas[i];
+    set_ball(p, world_from_part, to);
+    set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, to);
     // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
-    if (part.primitives[at].shape == shape_csg) emitter.area = 2 * std::numbers::pi * emitter.ball[3] * emitter.ball[3];
-    *out++ = emitter;
-  }
+    if (p.shape == shape_csg) to.area = 2 * std::numbers::pi * to.ball[3] * to.ball[3];
+  });
 }
 
 void set_world_bounds(const EncodedTree& tree, WorldRecord& world) {

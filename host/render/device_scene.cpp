@@ -19,7 +19,7 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       kernels_(device, options_),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),
-      has_light_tree_(scene.lighting.tree_nodes > 0),
+      has_light_tree_(!scene.light_nodes.empty()),
       has_media_(scene.has_media()),
       has_camera_stage_(camera_stage_pays(device)),
       bvh_nodes_(scene.bvh_nodes) {}
@@ -28,7 +28,7 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bytes_updated_ += buffers_.update(device_, scene, changes);
   world_ = scene.world;
   light_radiance_ = scene.lighting.radiance;
-  has_light_tree_ = scene.lighting.tree_nodes > 0;
+  has_light_tree_ = !scene.light_nodes.empty();
   has_media_ = scene.has_media();
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has gone may come back: what knows it stays, and no picture waits for a compiler.

@@ -25,6 +25,8 @@ struct Medium {
       model;
   std::string name;
   SourceLocation where;
+  /// What scatters within counts, together with the surface that light came in through, as one against the integrator's maxdepth.
+  bool subsurface = false;
 };
 
 /// The media on both sides of a surface, by index in Scene::media: inside is where the normal points away from.

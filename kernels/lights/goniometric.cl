@@ -12,15 +12,11 @@
 static inline int goniometric_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
   (void)u;
   __global const float* data = light_data_of(&scene->lights, light);
-  s->target = load3(goniometric_position(data));
-  s->pdf = 1.0f;
-  float weight = point_weight(s->target, p, &s->wi);
+  float3 w;
+  const float weight = lamp_weight(goniometric_position(data), goniometric_light_from_world(data), p, &w, s);
   if (!(weight > 0.0f)) return 0;
   const Picture picture = picture_of(&scene->lights, goniometric_picture(data));
-  weight *= picture.texels[picture_nearest(&picture, sphere_to_square(light_turned(goniometric_light_from_world(data), -s->wi)))];
-  if (!(weight > 0.0f)) return 0;
-  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
-  return 1;
+  return lamp_shines(scene, light, lambda, weight * picture.texels[picture_nearest(&picture, sphere_to_square(w))], s);
 }
 
 #endif

@@ -34,15 +34,11 @@ static inline float ies_intensity(const Picture* profile, float3 w) {
 static inline int ies_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
   (void)u;
   __global const float* data = light_data_of(&scene->lights, light);
-  s->target = load3(ies_position(data));
-  s->pdf = 1.0f;
-  float weight = point_weight(s->target, p, &s->wi);
+  float3 w;
+  const float weight = lamp_weight(ies_position(data), ies_light_from_world(data), p, &w, s);
   if (!(weight > 0.0f)) return 0;
   const Picture profile = picture_of(&scene->lights, ies_profile(data));
-  weight *= ies_intensity(&profile, light_turned(ies_light_from_world(data), -s->wi));
-  if (!(weight > 0.0f)) return 0;
-  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
-  return 1;
+  return lamp_shines(scene, light, lambda, weight * ies_intensity(&profile, w), s);
 }
 
 #endif

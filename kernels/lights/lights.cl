@@ -30,15 +30,25 @@ enum {
 #undef LIGHT
 };
 
+// The first light that the table has. With a tree, emissive primitives are not in it.
+static inline uint light_table_begin(const Lights* lights) {
+#ifdef CAPLET_LIGHT_TREE
+  return lights->lighting->table_begin;
+#else
+  (void)lights;
+  return 0u;
+#endif
+}
+
 // A light with its chance of being chosen by the random number u. In whole numbers: row u n >> 32 of n, and the rest of u n
 // within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/detail/light_table.h).
 static inline uint light_select(const Lights* lights, uint u, float* probability) {
-  const uint count = lights->lighting->light_count;
+  const uint begin = light_table_begin(lights), count = lights->lighting->light_count - begin;
   const uint i = mul_hi(u, count);
   __global const AliasRecord* row = lights->light_alias + i;
   const uint chosen = u * count < row->keep ? i : row->alias;
   *probability = lights->light_alias[chosen].probability;
-  return chosen;
+  return begin + chosen;
 }
 
 // One of all lights for what `at` takes, and the chance of that; CAPLET_NONE: none. u: 32 random bits.
@@ -65,7 +75,9 @@ static inline float light_chance(const Lights* lights, uint light, const LightRe
 #ifdef CAPLET_LIGHT_TREE
   const uint share = lights->lighting->tree_share;
   if (lights->light_places[light] != CAPLET_NONE) return (float)share * 0x1p-32f * light_tree_chance(lights, light, at);
-  return (float)(share == CAPLET_NONE ? 0u : 0u - share) * 0x1p-32f * lights->light_alias[light].probability;
+  const uint begin = light_table_begin(lights);
+  if (share == CAPLET_NONE || light < begin) return 0.0f;
+  return (float)(0u - share) * 0x1p-32f * lights->light_alias[light - begin].probability;
 #else
   (void)at;
   return lights->light_alias[light].probability;

@@ -17,14 +17,28 @@ static inline float point_weight(float3 position, float3 p, float3* wi) {
   return 1.0f / distance_squared;
 }
 
+// What lamps share that send each way another light: fills where they are and wi, and in *w the direction of the light that goes to p in the lamp's
+// own space. Returns point_weight.
+static inline float lamp_weight(__global const float* position, __global const float* light_from_world, float3 p, float3* w, LightSample* s) {
+  s->target = load3(position);
+  s->pdf = 1.0f;
+  const float weight = point_weight(s->target, p, &s->wi);
+  if (!(weight > 0.0f)) return 0.0f;
+  *w = light_turned(light_from_world, -s->wi);
+  return weight;
+}
+// The lamp's spectrum by that weight, with what it sends along w. 0: nothing.
+static inline int lamp_shines(const Scene* scene, __global const LightRecord* light, float4 lambda, float weight, LightSample* s) {
+  if (!(weight > 0.0f)) return 0;
+  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
+  return 1;
+}
+
 static inline int point_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
   (void)u;
   s->target = load3(point_position(light_data_of(&scene->lights, light)));
   s->pdf = 1.0f;
-  const float weight = point_weight(s->target, p, &s->wi);
-  if (!(weight > 0.0f)) return 0;
-  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
-  return 1;
+  return lamp_shines(scene, light, lambda, point_weight(s->target, p, &s->wi), s);
 }
 
 #endif

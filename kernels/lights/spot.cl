@@ -20,12 +20,9 @@ static inline int spot_light_sample(const Scene* scene, __global const LightReco
   __global const float* data = light_data_of(&scene->lights, light);
   s->target = load3(spot_position(data));
   s->pdf = 1.0f;
-  float weight = point_weight(s->target, p, &s->wi);
+  const float weight = point_weight(s->target, p, &s->wi);
   if (!(weight > 0.0f)) return 0;
-  weight *= spot_falloff(-dot(s->wi, load3(spot_axis(data))), spot_cos_total(data), spot_cos_falloff_start(data));
-  if (!(weight > 0.0f)) return 0;
-  s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);
-  return 1;
+  return lamp_shines(scene, light, lambda, weight * spot_falloff(-dot(s->wi, load3(spot_axis(data))), spot_cos_total(data), spot_cos_falloff_start(data)), s);
 }
 
 #endif

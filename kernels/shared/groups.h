@@ -146,6 +146,7 @@
   GROUP_BEGIN(Immersion, immersion)                                                                         \
   BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/immersion.cl) */ \
   BUFFER(path_around, uint, STATE_MEDIA)                                                                    \
+  BUFFER(path_within, uint, STATE_MEDIA) /* scatterings that do not count: within subsurfaces (stages/within.cl) */ \
   BUFFER(path_near, uint, STATE_MEDIA) /* whether other surfaces are where it comes to: CAPLET_ALONE, ... (kinds.h) */ \
   /* densities with which scattering, and a light sample, would have made the path at each wavelength, over the mean of the first (media/travel.cl) */ \
   BUFFER(path_ratio, float4, STATE_MEDIA)                                                                   \

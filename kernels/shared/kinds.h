@@ -131,6 +131,12 @@ enum {
 
 // HitRecord.slot of a path that has come to its end, or has been scattered, before what it hit
 #define CAPLET_SCATTERED 0xfffffffeu
+// Texels of a level: as floats, as bytes, or as halves of words that number the table's values
+#define CAPLET_TEXELS_FLOATS 0u
+#define CAPLET_TEXELS_BYTES 1u
+#define CAPLET_TEXELS_NUMBERS 2u
+// MediumRecord.flags
+#define CAPLET_MEDIUM_SUBSURFACE 1u  // what scatters within counts as one with the boundary
 // BoundaryRecord.flags
 #define CAPLET_BOUNDARY_SHEET 1u   // surfaces without an inside of their own: their normals say which side is in
 #define CAPLET_BOUNDARY_CLOSED 2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within

@@ -11,6 +11,7 @@
 #include "stages/outbox.cl"
 #include "stages/path.cl"
 #include "stages/sort_key.cl"
+#include "stages/within.cl"
 
 static inline Held path_held(const Stage* g, uint path) {
   const Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};

@@ -196,7 +196,13 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float3 wo_local = to_local(&frame, wo);
   Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
+#ifdef SHADE_IN_MEDIA
+  const uint within = g->immersion.path_within[path];
+  const int is_within = boundary_is_met_within(g, path, &hit);
+  if (!is_within && depth - within >= g->view.view->max_depth) return;
+#else
   if (depth >= g->view.view->max_depth) return;
+#endif
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
     // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
@@ -226,6 +232,12 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 
   if (!path_survives(at, depth, scatter.y, &throughput)) return;
   if (!(max4(fabs(throughput)) > 0.0f)) return;
+#ifdef SHADE_IN_MEDIA
+  if (is_within) {
+    if (!within_survives(within, within_number(path_hash(at, depth), within), &throughput)) return;
+    g->immersion.path_within[path] = within + 1u;
+  }
+#endif
 
   if (has_cones) {
     if (sample.specular) {

@@ -45,6 +45,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     weights.scattering = weights.light = (float4)(1.0f);
     g->immersion.path_ratio[path] = weights.scattering;
     g->immersion.path_light_ratio[path] = weights.light;
+    g->immersion.path_within[path] = 0u;
   } else {
     held = path_held(g, path);
     weights.scattering = g->immersion.path_ratio[path];
@@ -54,7 +55,9 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const uint medium = held_medium(&g->media, &here);
   if (medium == CAPLET_NONE) return;
 
-  const uint max_depth = g->view.view->max_depth;
+  const uint within = g->immersion.path_within[path];
+  const int is_within = medium_is_within(&g->media, medium);
+  const int may_scatter = is_within || depth - within < g->view.view->max_depth;
   const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
   MediumNumbers numbers = {hash_combine(path_hash(at, depth) ^ 0x2c1b3c6du, as_uint(ray.t_min)), 0u};
   const float u = ray.t_min == 0.0f ? sampler_1d(at.seed, at.sample, MEDIUM_SAMPLE(depth)) : medium_number(&numbers);
@@ -63,7 +66,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   weights.throughput = g->carried.path_throughput[path];
   float4 emitted = (float4)(0.0f);
   float t;
-  const int end = medium_travel(&g->media, &g->spectra, medium, wavelengths, o, d, ray.t_min, hit.t, depth < max_depth, u, &numbers, &weights, &emitted, &t);
+  const int end = medium_travel(&g->media, &g->spectra, medium, wavelengths, o, d, ray.t_min, hit.t, may_scatter, u, &numbers, &weights, &emitted, &t);
   if (max4(fabs(emitted)) > 0.0f) g->radiance.path_radiance[path] += emitted;
   float4 throughput = weights.throughput;
   if (end == medium_passed) {
@@ -95,6 +98,10 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   scatter.x = pdf;
   scatter.z = as_float(CAPLET_NONE);
   if (!path_survives(at, depth, scatter.y, &throughput)) return;
+  if (is_within) {
+    if (!within_survives(within, within_number(path_hash(at, depth), within), &throughput)) return;
+    g->immersion.path_within[path] = within + 1u;
+  }
   g->rays.path_ray[path] = path_onward(p, wi);
   g->carried.path_throughput[path] = throughput;
   g->carried.path_scatter[path] = scatter;

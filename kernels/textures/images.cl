@@ -17,7 +17,7 @@ static inline int repeated(int x, int n) {
 // Texel (x, y) of a level, which may lie beyond its edges: grey in all channels, or red, green, blue and alpha.
 static inline float4 image_texel(const Materials* materials, __global const ImageRecord* image, uint level, uint wrap, int x, int y) {
   __global const uint* texels = materials->texels;
-  __global const uint* of = texels + image->levels_begin + 3u * level;
+  __global const uint* of = texels + image->levels_begin + 4u * level;
   const int width = (int)of[1], height = (int)of[2];
   if (wrap == CAPLET_WRAP_REPEAT) {
     x = repeated(x, width);
@@ -30,13 +30,18 @@ static inline float4 image_texel(const Materials* materials, __global const Imag
   x = clamp(x, 0, width - 1);
   y = clamp(y, 0, height - 1);
   const uint channels = image->channels, at = ((uint)y * (uint)width + (uint)x) * channels;
-  if (image->decode == CAPLET_NONE) {
+  if (of[3] == CAPLET_TEXELS_FLOATS) {
     __global const float* values = (__global const float*)(texels + of[0]) + at;
     if (channels == 1u) return (float4)(values[0]);
     return (float4)(values[0], values[1], values[2], channels == 4u ? values[3] : 1.0f);
   }
-  __global const uchar* bytes = (__global const uchar*)(texels + of[0]) + at;
   __global const float* decoded = (__global const float*)(texels + image->decode);
+  if (of[3] == CAPLET_TEXELS_NUMBERS) {
+    __global const ushort* numbers = (__global const ushort*)(texels + of[0]) + at;
+    if (channels == 1u) return (float4)(decoded[numbers[0]]);
+    return (float4)(decoded[numbers[0]], decoded[numbers[1]], decoded[numbers[2]], channels == 4u ? decoded[numbers[3]] : 1.0f);
+  }
+  __global const uchar* bytes = (__global const uchar*)(texels + of[0]) + at;
   if (channels == 1u) return (float4)(decoded[bytes[0]]);
   return (float4)(decoded[bytes[0]], decoded[bytes[1]], decoded[bytes[2]], channels == 4u ? (float)bytes[3] * (1.0f / 255.0f) : 1.0f);
 }
@@ -49,7 +54,7 @@ static inline float2 image_st(float2 st, uint wrap) {
 
 // Texels about a point with its weights; (0, 0) is the corner of the first texel, (1, 1) that of the last.
 static inline float4 image_bilinear(const Materials* materials, __global const ImageRecord* image, uint level, uint wrap, float2 st) {
-  __global const uint* of = materials->texels + image->levels_begin + 3u * level;
+  __global const uint* of = materials->texels + image->levels_begin + 4u * level;
   const float x = st.x * (float)of[1] - 0.5f, y = st.y * (float)of[2] - 0.5f;
   const int x0 = (int)floor(x), y0 = (int)floor(y);
   const float u = x - floor(x), v = y - floor(y);
@@ -59,7 +64,7 @@ static inline float4 image_bilinear(const Materials* materials, __global const I
 }
 
 static inline float4 image_point(const Materials* materials, __global const ImageRecord* image, uint level, uint wrap, float2 st) {
-  __global const uint* of = materials->texels + image->levels_begin + 3u * level;
+  __global const uint* of = materials->texels + image->levels_begin + 4u * level;
   return image_texel(materials, image, level, wrap, (int)floor(st.x * (float)of[1]), (int)floor(st.y * (float)of[2]));
 }
 

@@ -78,8 +78,8 @@ struct Census {
   }
 };
 
-Tree check(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu) {
-  Tree tree = build(references, single_group);
+Tree check(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu, Effort effort = Effort::full) {
+  Tree tree = build(references, single_group, effort);
   Census census{tree, references, single_group, std::vector<int>(references.size(), 0),
                 std::vector<bool>(tree.nodes.size(), false)};
   census.visit(0, 1);
@@ -148,6 +148,16 @@ TEST(Structure, CellsFindNearlyTheTreeThatReferencesDo) {
     boxes.pop_back();
     const double by_references = check(boxes).sah;
     EXPECT_NEAR(by_cells / by_references, 1, 0.02) << size;
+  }
+}
+
+TEST(Structure, QuickTreesAreNearlyAsGood) {
+  for (const float size : {0.001f, 0.02f, 0.3f}) {
+    auto boxes = random_boxes(200000, 1, size);
+    const double quick = check(boxes, 0xffffffff, Effort::quick).sah, full = check(boxes).sah;
+    EXPECT_NEAR(quick / full, 1, 0.03) << size;
+    boxes.resize(1000);
+    EXPECT_TRUE(same(build(boxes), build(boxes, 0xffffffff, Effort::quick)));
   }
 }
 

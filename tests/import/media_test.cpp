@@ -164,6 +164,48 @@ TEST(Media, AreHeldBySomethingClosed) {
   EXPECT_THAT(said(fog + "\nMediumInterface \"\" \"fog\" Shape \"disk\""), IsEmpty());
 }
 
+// A csg is one solid: of the medium at its statement, or of that of its operands.
+TEST(Media, OfACsg) {
+  const auto ball = [](const std::string& name, const std::string& media) {
+    return "AttributeBegin " + media + " ObjectBegin \"" + name + "\" Shape \"sphere\" ObjectEnd AttributeEnd\n";
+  };
+  const std::string two = fog + "\n" + std::string(fog).replace(fog.find("fog"), 3, "tea") + "\n";
+  const std::string of_fog = "MediumInterface \"fog\" \"\"", of_tea = "MediumInterface \"tea\" \"\"";
+  const auto csg = [](const std::string& operation) {
+    return "Shape \"csg\" \"string operation\" \"" + operation + "\" \"string operands\" [ \"a\" \"b\" ]\n";
+  };
+  const auto inside = [&](const std::string& text) {
+    const Scene scene = world_of(two + text);
+    const Shape& shape = scene.shapes.at(0);
+    for (const auto& operand : std::get<CsgShape>(shape.geometry).operands) EXPECT_EQ(operand->media, MediumSides{});
+    return shape.media.inside ? scene.media.at(*shape.media.inside).name : "";
+  };
+  EXPECT_EQ(inside(ball("a", "") + ball("b", "") + csg("union")), "");
+  EXPECT_EQ(inside(ball("a", "") + ball("b", "") + of_fog + " " + csg("union")), "fog");
+  EXPECT_EQ(inside(ball("a", of_fog) + ball("b", of_fog) + csg("union")), "fog");
+  EXPECT_EQ(inside(ball("a", of_fog) + ball("b", of_fog) + csg("intersection")), "fog");
+  EXPECT_EQ(inside(ball("a", of_fog) + ball("b", "") + of_fog + " " + csg("union")), "fog");
+  // What is taken away leaves nothing of its own.
+  EXPECT_EQ(inside(ball("a", of_fog) + ball("b", of_tea) + csg("difference")), "fog");
+  EXPECT_EQ(inside(ball("a", "") + ball("b", of_tea) + csg("difference")), "");
+  // Nested.
+  EXPECT_EQ(inside("AttributeBegin " + of_fog + " " + ball("c", of_fog) + ball("d", of_fog) +
+                   " ObjectBegin \"a\" Shape \"csg\" \"string operation\" \"union\" \"string operands\" [ \"c\" \"d\" ] "
+                   "ObjectEnd AttributeEnd\n" +
+                   ball("b", of_fog) + csg("union")),
+            "fog");
+  EXPECT_THAT(
+      said(two + ball("a", of_fog) + ball("b", of_tea) + csg("union")),
+      ElementsAre(HasSubstr("scene.pbrt:5:57: the operand of a csg has another MediumInterface than the first operand: a csg is "
+                            "of one medium (scene.pbrt:6:1)")));
+  EXPECT_THAT(said(two + ball("a", of_fog) + ball("b", "") + csg("union")),
+              ElementsAre(HasSubstr("has another MediumInterface than the first operand")));
+  EXPECT_THAT(said(two + ball("a", of_fog) + ball("b", of_fog) + of_tea + " " + csg("union")),
+              ElementsAre(HasSubstr("has another MediumInterface than the csg itself")));
+  EXPECT_THAT(said(two + ball("a", "MediumInterface \"mist\" \"\"") + ball("b", "") + csg("difference")),
+              ElementsAre(HasSubstr("the medium \"mist\" is not defined")));
+}
+
 TEST(Subsurface, IsAMediumBehindABoundary) {
   const Scene scene = world_of(
       "Material \"subsurface\" \"string name\" \"Skin1\" \"float scale\" 3 \"float roughness\" .25 \"bool remaproughness\" false "
@@ -173,6 +215,7 @@ TEST(Subsurface, IsAMediumBehindABoundary) {
       "Material \"subsurface\" \"rgb reflectance\" [.5 .5 .5] \"rgb mfp\" [2 2 2] \"float scale\" .5 Shape \"sphere\" Material "
       "\"subsurface\" Shape \"sphere\"");
   ASSERT_EQ(scene.media.size(), 4u);
+  for (const Medium& medium : scene.media) EXPECT_TRUE(medium.subsurface);
   const auto at = [&](std::size_t shape) -> const ScatteringProperties& {
     return std::get<HomogeneousMedium>(scene.media.at(*scene.shapes.at(shape).media.inside).model).scattering;
   };
@@ -201,6 +244,62 @@ TEST(Subsurface, WhatIsWrongHasItsPlace) {
   EXPECT_THAT(wrong("\"rgb reflectance\" [.5 .5 .5] \"string name\" \"Skin1\""), ElementsAre(HasSubstr("takes one of")));
   EXPECT_THAT(said("Material \"subsurface\"\nShape \"disk\""),
               ElementsAre(HasSubstr("scene.pbrt:3:1: the medium subsurface is on an open surface")));
+}
+
+TEST(Subsurface, OfAMix) {
+  const std::string parts =
+      "MakeNamedMaterial \"wax\" \"string type\" \"subsurface\" \"string name\" \"Skin1\"\n"
+      "MakeNamedMaterial \"tallow\" \"string type\" \"subsurface\"\n"
+      "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\"\n"
+      "MakeNamedMaterial \"gone\" \"string type\" \"interface\"\n";
+  const auto mix = [](const std::string& a, const std::string& b) {
+    return "Material \"mix\" \"string materials\" [ \"" + a + "\" \"" + b + "\" ] \"float amount\" 0.25\n";
+  };
+  const Scene scene = world_of(parts + mix("paint", "wax") + "Shape \"sphere\"");
+  ASSERT_EQ(scene.media.size(), 1u);
+  EXPECT_EQ(scene.shapes[0].media.inside, 0u);
+  EXPECT_TRUE(std::holds_alternative<MixMaterial>(scene.materials.at(scene.shapes[0].material).model));
+  EXPECT_THAT(said(parts + mix("tallow", "wax") + "Shape \"sphere\""),
+              ElementsAre(HasSubstr("names the material \"wax\", a second subsurface: one alone can be within")));
+  EXPECT_THAT(said(parts + mix("wax", "wax") + "Shape \"sphere\""), IsEmpty());
+  EXPECT_THAT(said(parts + mix("wax", "gone") + "Shape \"sphere\""),
+              ElementsAre(HasSubstr("scene.pbrt:7:1: the shape parts media, and its material is a mix with an interface")));
+}
+
+// What is there with a chance is stopped by an alpha.
+TEST(Interface, OfAMixIsAnAlpha) {
+  const std::string parts =
+      "Texture \"t\" \"float\" \"checkerboard\"\n"
+      "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\" \"rgb reflectance\" [ .1 .2 .3 ]\n"
+      "MakeNamedMaterial \"gone\" \"string type\" \"interface\"\n";
+  const auto mix = [](const std::string& a, const std::string& b, const std::string& amount = "\"float amount\" 0.25") {
+    return "Material \"mix\" \"string materials\" [ \"" + a + "\" \"" + b + "\" ] " + amount + "\n";
+  };
+  const auto alpha = [&](const std::string& text) {
+    const Scene scene = world_of(parts + text);
+    const Shape& shape = scene.shapes.at(0);
+    EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(scene.materials.at(shape.material).model));
+    return shape.alpha && !shape.alpha->texture ? std::get<ConstantSpectrum>(shape.alpha->value).value : -1;
+  };
+  EXPECT_EQ(alpha(mix("paint", "gone") + "Shape \"sphere\""), 0.75);
+  EXPECT_EQ(alpha(mix("gone", "paint") + "Shape \"sphere\""), 0.25);
+  const Scene textured =
+      world_of(parts + mix("paint", "gone", "\"texture amount\" \"t\"") + "Shape \"disk\" \"float alpha\" 0.5");
+  const auto& both = std::get<ScaleTexture>(textured.textures.at(*textured.shapes[0].alpha->texture).model);
+  EXPECT_EQ(std::get<ConstantSpectrum>(both.tex.value).value, 0.5);
+  const auto& rest = std::get<MixTexture>(textured.textures.at(*both.scale.texture).model);
+  EXPECT_EQ(std::get<ConstantSpectrum>(rest.tex1.value).value, 1);
+  EXPECT_EQ(std::get<ConstantSpectrum>(rest.tex2.value).value, 0);
+  EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(textured.textures.at(*rest.amount.texture).model));
+  // Of nothing but interfaces there is nothing.
+  EXPECT_EQ(world_of(parts + mix("gone", "gone") + "Shape \"sphere\" Material \"diffuse\" Shape \"disk\"").shapes.size(), 1u);
+  EXPECT_THAT(said(parts + mix("paint", "gone") + "AreaLightSource \"diffuse\" Shape \"sphere\""),
+              ElementsAre(HasSubstr("the shape is an area light, whose material is no mix with an interface")));
+  EXPECT_THAT(said(parts + fog + "\n" + mix("paint", "gone") + "MediumInterface \"fog\" \"\" Shape \"sphere\""),
+              ElementsAre(HasSubstr("the shape parts media, and its material is a mix with an interface")));
+  EXPECT_THAT(said(parts + "MakeNamedMaterial \"lace\" \"string type\" \"mix\" \"string materials\" [ \"paint\" \"gone\" ]\n" +
+                   mix("lace", "paint") + "Shape \"sphere\""),
+              ElementsAre(HasSubstr("names the material \"lace\", a mix with an interface, of which no other mix is made")));
 }
 
 // Parts of even light that go out again, by walks (tests/media/walks.py; 2e5 of them).

@@ -273,16 +273,6 @@ TEST(Subsurface, TexturesCountByTheirMeans) {
 }
 
 // Every scattering within is one of the path's, where pbrt-v4 counts one for all of them.
-TEST(Subsurface, FewScatteringsAreWarnedOf) {
-  const auto warned = [](const char* integrator) {
-    LogOf log;
-    scene_of(integrator + std::string("\nCamera \"perspective\"\nWorldBegin\nMaterial \"subsurface\"\nShape \"sphere\""));
-    return log.text().find("5 leave it darker than it is") != std::string::npos;
-  };
-  EXPECT_TRUE(warned("Integrator \"volpath\""));
-  EXPECT_FALSE(warned("Integrator \"volpath\" \"integer maxdepth\" 100"));
-}
-
 // Statements as they stand in pbrt-v4's scenes, of shapes and files of our own.
 TEST(Statements, OfTheCollection) {
   const char* const texts[] = {

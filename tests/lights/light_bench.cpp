@@ -139,7 +139,7 @@ Program& program_of(const Device& device, const RowMasks& rows, bool has_tree) {
 }  // namespace
 
 LightBench::LightBench(const FlatScene& scene, const RowMasks& rows)
-    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows, scene.lighting.tree_nodes > 0)) {}
+    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows, !scene.light_nodes.empty())) {}
 
 cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
   cl_uint index = 0;

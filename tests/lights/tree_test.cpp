@@ -5,6 +5,7 @@
 // go by the light that comes. Expectations are closed forms.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -12,7 +13,7 @@
 #include <random>
 
 #include "light_bench.h"
-#include "lower/detail/light_tree.h"
+#include "lower/light_tree.h"
 #include "lower/lower.h"
 #include "support/chi_square.h"
 
@@ -95,7 +96,7 @@ double above(const Receiver& at, const dvec3& direction) { return at.normal == d
 TEST(LightTree, ChancesAreWhatItDoes) {
   const Scene scene = lamps(300, 1);
   const FlatScene flat = lower(scene);
-  ASSERT_GT(flat.lighting.tree_nodes, 30u);
+  ASSERT_GT(flat.light_nodes.size() / CAPLET_LIGHT_NODE, 30u);
   LightBench bench(flat);
   Random random(2);
   for (int i = 0; i < 12; ++i) {
@@ -312,9 +313,106 @@ TEST(LightTree, IsOneChoiceBesideASun) {
   EXPECT_NEAR(suns, 25000, 5 * std::sqrt(100000 * 0.25 * 0.75));
 }
 
+/// Lamps of one shape.
+Shape capsule_lamps(std::size_t count, unsigned seed) {
+  Random random(seed);
+  CapsulesShape lamps;
+  for (std::size_t i = 0; i < count; ++i) {
+    const dvec3 at = random.in_box(5);
+    lamps.p0.emplace_back(at);
+    lamps.p1.emplace_back(at + 0.1 * random.direction());
+    lamps.radius0.push_back(static_cast<float>(random.in(0.01, 0.05)));
+  }
+  Shape out;
+  out.geometry = lamps;
+  out.emission = AreaEmission{};
+  return out;
+}
+
+// The table has rows for what stands in no tree, and none where all does.
+TEST(LightTree, TheTableHasWhatTheTreeHasNot) {
+  Scene scene = ground();
+  scene.shapes.push_back(capsule_lamps(40, 21));
+  scene.lights.emplace_back();
+  scene.lights.back().model = InfiniteLight{};
+  FlatScene flat = lower(scene);
+  EXPECT_TRUE(flat.light_alias.empty());
+  const Receiver at{{0.3, 0.1, 0.2}, {0, 0, 0}};
+  EXPECT_EQ(LightBench(flat).chances(at, 41)[40], 0);
+
+  // Three suns, of which one has no power, and a point, which is in the tree.
+  for (const double scale : {1.0, 0.0, 3.0}) {
+    Light sun;
+    sun.model = DistantLight{};
+    sun.scale = scale;
+    scene.lights.insert(scene.lights.begin(), sun);
+  }
+  scene.lights.insert(scene.lights.begin() + 1, point_light({1, 2, 3}, 0.1));
+  // An emitter that gives nothing is in neither.
+  Shape dark = capsule_lamps(3, 22);
+  dark.emission->scale = 0;
+  scene.shapes.push_back(dark);
+  flat = lower(scene);
+  ASSERT_EQ(flat.lighting.table_begin, 43u);
+  ASSERT_EQ(flat.light_alias.size(), 5u);
+  LightBench bench(flat);
+  const std::vector<double> chances = bench.chances(at, 48);
+  double sum = 0;
+  for (const double chance : chances) sum += chance;
+  EXPECT_NEAR(sum, 1, 1e-5);
+  for (const std::size_t none : {40u, 41u, 42u, 45u, 47u}) EXPECT_EQ(chances[none], 0) << none;
+  EXPECT_GT(chances[44], 0);
+  // By power and evenly: suns of 3 and of 1.
+  const double suns = chances[43] + chances[46];
+  EXPECT_NEAR(chances[43] / suns, 0.5 * 0.75 + 0.25, 1e-6);
+  constexpr std::size_t draws = 200000;
+  std::vector<double> seen(48, 0), expected;
+  for (const Choice& choice : bench.choose(at, Random(23).numbers(draws))) {
+    ASSERT_LT(choice.light, 48u);
+    seen[choice.light] += 1;
+    ASSERT_NEAR(choice.chance, chances[choice.light], 1e-5 * chances[choice.light]);
+  }
+  for (const double chance : chances) expected.push_back(chance * draws);
+  EXPECT_GT(chi_square(seen, expected).p_value, 1e-6);
+}
+
+// From 65,536 on the builder goes by cells of a grid.
+TEST(LightTree, EachOfVeryManyLightsHasOnePlace) {
+  constexpr std::size_t n = 70000;
+  Scene scene = ground();
+  scene.shapes.push_back(capsule_lamps(n, 24));
+  const FlatScene flat = lower(scene);
+  const std::size_t nodes = flat.light_nodes.size() / CAPLET_LIGHT_NODE;
+  ASSERT_EQ(flat.light_places.size(), n + nodes);
+  std::vector<int> named(n + nodes, 0);
+  std::vector<double> sums(nodes, 0), of_node(nodes, 0);
+  for (std::size_t node = 0; node < nodes; ++node)
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
+      const std::uint32_t* const rows = &flat.light_nodes[node * CAPLET_LIGHT_NODE + slot];
+      if (rows[48] == CAPLET_NONE) continue;
+      const bool leaf = (rows[48] & CAPLET_LIGHT_LEAF) != 0;
+      const std::size_t who = leaf ? rows[48] & ~CAPLET_LIGHT_LEAF : n + rows[48];
+      ASSERT_LT(who, n + nodes);
+      ++named[who];
+      EXPECT_EQ(flat.light_places[who], node * 8 + slot);
+      const double intensity = std::bit_cast<float>(rows[40]);
+      sums[node] += intensity;
+      if (!leaf) of_node[rows[48]] = intensity;
+      // All around.
+      EXPECT_EQ(rows[32] & 0xffff, 0u);
+    }
+  EXPECT_EQ(named[n], 0);  // the root
+  for (std::size_t i = 0; i < n + nodes; ++i) {
+    if (i != n) {
+      EXPECT_EQ(named[i], 1) << i;
+    }
+  }
+  for (std::size_t node = 1; node < nodes; ++node) EXPECT_NEAR(of_node[node] / sums[node], 1, 1e-6);
+}
+
 TEST(LightTree, FewLightsAreChosenByTheTable) {
-  EXPECT_EQ(lower(lamps(CAPLET_LIGHT_TREE_FROM - 1, 9)).lighting.tree_nodes, 0u);
-  EXPECT_GT(lower(lamps(CAPLET_LIGHT_TREE_FROM, 9)).lighting.tree_nodes, 0u);
+  EXPECT_TRUE(lower(lamps(CAPLET_LIGHT_TREE_FROM - 1, 9)).light_nodes.empty());
+  EXPECT_FALSE(lower(lamps(CAPLET_LIGHT_TREE_FROM, 9)).light_nodes.empty());
 }
 
 // The grid's boxes, read as the kernel does, hold the points that they are made of, all the way up.

@@ -183,5 +183,53 @@ TEST(Subsurface, SendsBackItsReflectance) {
   }
 }
 
+// What follows the refraction into it counts for nothing: with one scattering a path all of the light is there.
+TEST(Subsurface, CountsAsOneScattering) {
+  for (const double reflectance : {0.5, 0.95}) {
+    const double from_above = reflectance == 0.5 ? 0.4843 : 0.9475;
+    const std::string value = std::to_string(reflectance);
+    const std::string half = "Material \"subsurface\" \"rgb reflectance\" [" + value + " " + value + " " + value +
+                             "] \"float eta\" 1.33 Shape \"box\" \"point3 p0\" [-3000 -3000 0] \"point3 p1\" [3000 3000 2000]\n";
+    const double mirrored = std::pow(0.33 / 2.33, 2);
+    const double expected = mirrored + (1 - mirrored) * from_above;
+    const Mean one = seen(parallel_view(0.01, 1) + "WorldBegin\n" + white_sky() + half, 64);
+    EXPECT_NEAR(one.value, expected, 4 * one.error + 0.01 * expected) << reflectance;
+    EXPECT_EQ(seen(parallel_view(0.01, 0) + "WorldBegin\n" + white_sky() + half, 4).value, 0);
+  }
+  // A ball that absorbs nothing, of any medium that says so; else each scattering counts.
+  const std::string ball = medium("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [6 6 6] \"bool subsurface\" true") +
+                           "Material \"dielectric\" \"float eta\" 1.4 MediumInterface \"m\" \"\" Shape \"sphere\"\n";
+  EXPECT_TRUE(agrees(seen(parallel_view(1, 1) + "WorldBegin\n" + white_sky() + ball, 256), 1));
+  const std::string counts = std::string(ball).replace(ball.find("true"), 4, "false");
+  EXPECT_LT(seen(parallel_view(1, 1) + "WorldBegin\n" + white_sky() + counts, 64).value, 0.5);
+}
+
+// What is in it counts: light that a white ball sends back has been scattered twice.
+TEST(Subsurface, WhatIsWithinCounts) {
+  const std::string clear = medium("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1e-6 1e-6 1e-6] \"bool subsurface\" true");
+  const std::string scene =
+      "WorldBegin\n" + white_sky() + clear +
+      "Material \"dielectric\" \"float eta\" 1.00001 MediumInterface \"m\" \"\" Shape \"box\" \"point3 p0\" "
+      "[-90 -90 0] \"point3 p1\" [90 90 50]\n"
+      "MediumInterface \"\" Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
+      "Shape \"box\" \"point3 p0\" [-20 -20 20] \"point3 p1\" [20 20 30]\n";
+  EXPECT_LT(seen(parallel_view(0.1, 1) + scene, 16).value, 1e-3);
+  EXPECT_TRUE(agrees(seen(parallel_view(0.1, 2) + scene, 64), 1));
+}
+
+// Of a mix, what enters does so by the part that is a subsurface: nothing is lost.
+TEST(Subsurface, IsAPartOfAMix) {
+  const std::string ball =
+      "MakeNamedMaterial \"wax\" \"string type\" \"subsurface\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [4 4 4]\n"
+      "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
+      "Material \"mix\" \"string materials\" [ \"wax\" \"paint\" ] \"float amount\" 0.4 Shape \"sphere\"\n";
+  EXPECT_TRUE(agrees(seen(parallel_view(1, 4000) + "WorldBegin\n" + white_sky() + ball, 256), 1));
+  // As the paint absorbs: brighter than paint alone, darker than wax alone.
+  const std::string black = std::string(ball).replace(ball.find("[1 1 1]"), 7, "[0 0 0]");
+  const double value = seen(parallel_view(0.5, 4000) + "WorldBegin\n" + white_sky() + black, 64).value;
+  EXPECT_GT(value, 0.05);
+  EXPECT_LT(value, 0.6);
+}
+
 }  // namespace
 }  // namespace caplet::test

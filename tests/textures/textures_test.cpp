@@ -370,6 +370,46 @@ TEST(Images, OfBytesAreWhatTheyStandFor) {
   }
 }
 
+// Images of 16 bits and of halves have no more than 65,536 values: texels are their numbers, and what is looked up is the same to
+// the bit.
+TEST(Images, OfFewValuesAreNumbers) {
+  const auto value_of = [](int i) { return 0.1f + static_cast<float>(i * 37 % 900) / 1900; };
+  for (const int channels : {1, 3, 4}) {
+    std::vector<float> values;
+    for (int i = 0; i < 64 * 64 * channels; ++i) values.push_back(value_of(i));
+    ImagemapTexture map;
+    map.image = image_of(64, 64, channels, values);
+    map.filter = CAPLET_FILTER_POINT;
+    map.wrap = CAPLET_WRAP_CLAMP;
+    const FlatScene flat = lower(scene_of(DiffuseMaterial{}, {{map, true, "t", {}}}, {}));
+    const ImageRecord& image = flat.images.at(0);
+    EXPECT_EQ(flat.texels[image.levels_begin + 3], CAPLET_TEXELS_NUMBERS);
+    // The next level is of means, and as floats; the table has 900 values.
+    EXPECT_EQ(flat.texels[image.levels_begin + 7], CAPLET_TEXELS_FLOATS);
+    EXPECT_EQ(flat.texels[image.levels_begin + 4] - flat.texels[image.levels_begin],
+              64u * 64u * static_cast<unsigned>(channels) / 2);
+    for (const int at : {0, 1, 63, 64, 2000, 4095}) {
+      const double u = (at % 64 + 0.5) / 64, v = 1 - (at / 64 + 0.5) / 64;
+      const auto texel = [&](int c) { return values[static_cast<std::size_t>(at * channels + c)]; };
+      const float expected = channels == 4 ? texel(3) : channels == 1 ? texel(0) : (texel(0) + texel(1) + texel(2)) / 3;
+      if (channels == 3)
+        EXPECT_NEAR(number_of(map, u, v), expected, 1e-6) << at;
+      else
+        EXPECT_EQ(number_of(map, u, v), expected) << channels << " " << at;
+    }
+  }
+  // Of more values than that would save something, and of few texels: floats.
+  std::vector<float> all;
+  for (int i = 0; i < 64 * 64; ++i) all.push_back(static_cast<float>(i) / 5000);
+  ImagemapTexture map;
+  map.image = image_of(64, 64, 1, all);
+  FlatScene flat = lower(scene_of(DiffuseMaterial{}, {{map, true, "t", {}}}, {}));
+  EXPECT_EQ(flat.texels[flat.images.at(0).levels_begin + 3], CAPLET_TEXELS_FLOATS);
+  map.image = image_of(8, 8, 1, std::vector<float>(64, 0.5f));
+  flat = lower(scene_of(DiffuseMaterial{}, {{map, true, "t", {}}}, {}));
+  EXPECT_EQ(flat.texels[flat.images.at(0).levels_begin + 3], CAPLET_TEXELS_FLOATS);
+}
+
 // Levels of a checkerboard of texels are grey; of sides that are no powers of two the mean stays, within the filter's ripple.
 TEST(Images, HaveMipLevelsOfTheirMeans) {
   std::vector<float> checks;

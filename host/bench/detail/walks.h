@@ -26,6 +26,9 @@ const std::vector<std::string>& walk_kinds();
 /// primitives that Embree has, empty for other kinds.
 Scene walk_scene(const std::string& kind, std::size_t count, std::vector<FlatPrimitive>& peer);
 
+/// walk_capsules as one shape of a scene of its own, which emits or does not.
+Scene walk_lamps(std::size_t count, bool emit);
+
 /// size x size pinhole rays from (0, 0, 3) towards the origin; the cube's side fills the picture.
 std::vector<RayRecord> camera_rays(int size);
 /// One cosine-distributed ray from each hit, starting a little off the surface.

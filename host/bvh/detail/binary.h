@@ -50,7 +50,7 @@ struct BinaryTree {
 };
 
 /// Node 0 is the root. Numbers of the other nodes depend on timing; the tree's shape does not.
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group);
+BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group, Effort effort);
 
 /// Wide nodes of least cost over the binary tree.
 Tree collapse(const BinaryTree& binary);

@@ -4,6 +4,7 @@
 // Reads pbrt-v4 statements in order, keeps the graphics state, and builds the scene. One method a directive.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -67,6 +68,12 @@ class Parser {
     SourceLocation where;
   };
   class MaterialMaking;
+  /// Of a mix with an interface: the chance of the other material, that is an alpha.
+  struct PartlyThere {
+    TextureOperand amount;
+    bool inverted;    // 1 - amount
+    bool subsurface;  // the other material has a medium within
+  };
   struct MediumStatement {
     Medium medium;
     bool sound = false;
@@ -178,6 +185,9 @@ class Parser {
   void make_hair_one_sided();
   void resolve_media();
   void fill_subsurfaces();
+  void take_out_interfaces(const std::function<const PartlyThere*(std::uint32_t use)>& partly_there);
+  std::uint32_t float_texture(Texture texture);
+  MediumSides media_of_csg(const Shape& shape);
   void resolve_instances();
   void present();
 
@@ -209,7 +219,8 @@ class Parser {
   std::map<std::string, std::uint32_t> uses_by_name_;
   std::map<std::string, MediumStatement> media_;
   std::vector<MediumUse> medium_uses_;
-  std::map<std::uint32_t, Medium> media_within_;  // of materials of the scene
+  std::map<std::uint32_t, Medium> media_within_;     // of materials of the scene
+  std::map<std::size_t, PartlyThere> partly_there_;  // of statements
   TextureTable textures_;
   std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images_;
   SharedParameters all_attributes_;

@@ -16,11 +16,18 @@ namespace caplet {
 /// it for patches without folds), all others in closed form.
 double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
 
-/// Area of the primitive's image under the affine map `m`, or of those `surfaces` of it (empty: of all; numbers without a surface
+/// An affine map, with what all primitives ask of it.
+struct AreaMap {
+  AreaMap(const glm::dmat4& m);  // NOLINT(google-explicit-constructor)
+  glm::dmat4 m;
+  double similarity;  // the factor of lengths where it is one for all directions; 0: it is not
+};
+
+/// Area of the primitive's image under the affine map, or of those `surfaces` of it (empty: of all; numbers without a surface
 /// add nothing). An element of area with unit normal n grows by |cof(M) n|, cof(M) = |det M| M^-T. Exact for flat surfaces; round
 /// ones by quadrature that converges geometrically: relative error 1e-9 where m stretches by less than ten to one, and 2e-5
 /// however it stretches. 0 for csg shapes.
-double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const glm::dmat4& m,
+double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const AreaMap& map,
                    std::span<const std::uint32_t> surfaces);
 
 }  // namespace caplet

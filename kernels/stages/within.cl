@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Subsurfaces: what light meets from where it comes in through the boundary until it is out again counts as one scattering, as where pbrt-v4 has a
+// profile of diffusion. All that follows the first is not held against the greatest depth of a path, but against a roulette of its own.
+#ifndef CAPLET_STAGES_WITHIN_CL
+#define CAPLET_STAGES_WITHIN_CL
+
+#include "math/rng.cl"
+#include "media/immersion.cl"
+
+static inline int medium_is_within(const Media* media, uint medium) {
+  return medium != CAPLET_NONE && (media->mediums[medium].flags & CAPLET_MEDIUM_SUBSURFACE) != 0u;
+}
+
+// Whether a ray meets the boundary of a subsurface from within.
+static inline int boundary_is_met_within(const Stage* g, uint path, const HitRecord* hit) {
+  const uint boundary = boundary_of(&g->tree, &g->surfaces, &g->media, hit);
+  if (boundary == CAPLET_NONE) return 0;
+  const uint medium = g->media.boundaries[boundary].inside;
+  if (!medium_is_within(&g->media, medium) || !boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, hit)) return 0;
+  const Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
+  const Held here = held_before(&g->tree, &g->surfaces, &g->media, hit, 1, held);
+  return held_medium(&g->media, &here) == medium;
+}
+
+// After `within` scatterings that did not count, one more: whether the path goes on, by the random number u. Light leaves half of space that absorbs
+// nothing with a tail of n^-1/2; going on with 1 - 1 / 2n leaves weights of such a tail with a finite mean and, beyond 2,048, none is endless.
+static inline int within_survives(uint within, float u, float4* throughput) {
+  if (within < 64u) return 1;
+  const float ends = fmax(0.5f / (float)within, 0x1p-12f);
+  if (u < ends) return 0;
+  *throughput /= 1.0f - ends;
+  return 1;
+}
+static inline float within_number(uint path_hash, uint within) { return (float)(hash_mix(hash_combine(path_hash ^ 0x51ed270bu, within)) >> 8) * 0x1p-24f; }
+
+#endif
