@@ -94,7 +94,8 @@ class Guest {
       if (stream_.got_text() || got.compare(0, 4, "CPLF") != 0) continue;
       std::uint32_t words[10];
       std::memcpy(words, got.data(), sizeof words);
-      if (words[4] == 1 && words[5] >= samples && words[2] == width && words[1] > after) return {words[1], words[2], words[4], words[5]};
+      if (words[4] == 1 && words[5] >= samples && words[2] == width && words[1] > after)
+        return {words[1], words[2], words[4], words[5]};
     }
   }
   websocket::stream<beast::tcp_stream>& stream() { return stream_; }
