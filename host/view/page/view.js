@@ -225,6 +225,7 @@ function draw() {
   mark();
   $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.device);
   stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
+  stage.dataset.view = picture.view;
   stage.dataset.right = has_right() && right_picture.scale === 1 ? right_picture.samples : 0;
 }
 
