@@ -61,7 +61,7 @@ const forms = new Forms({
 });
 
 const edits = new Edits({
-  shown: (...what) => forms.thing(...what),
+  shown: (...what) => forms.thing(...what), click: (event) => click(event),
   say, view: () => camera, stage, find: $,
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
 });
