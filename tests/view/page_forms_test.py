@@ -316,14 +316,14 @@ def within_reach(program, scenes, out):
 
 def figures(program, scenes, out):
     """The pictures of docs/viewer.md."""
-    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "16") as served, page(served.address) as shown:
         shown.driver.set_window_size(1280, 1000)
         at = Work(shown)
         at.choose("capsule 7")
         at.put("material", "kind", "conductor")
         at.put("material", "alpha_u", "0.25")
         at.put("material", "alpha_v", "0.25")
-        shown.until("64 samples", lambda: shown.samples() >= 64, 400)
+        shown.until("16 samples", lambda: shown.samples() >= 16, 400)
         shown.script("document.querySelector('#shapes').scrollIntoView()")
         shown.picture(out / "viewer-forms.png")
 
