@@ -40,15 +40,19 @@ class Work:
 
     def __init__(self, shown):
         self.shown = shown
-        shown.until("a picture of the page's size", lambda: shown.samples() >= 2 and shown.pixels()[0] > 100)
-        self.first = self.before = shown.pixels()
+        self.first = self.before = shown.until("a picture of the page's size", self.whole)
+
+    def whole(self):
+        """What is shown, once it is of the page's size and done; before that nothing."""
+        done, *now = self.shown.script("""const c = document.getElementById('picture'), s = document.getElementById('stage');
+            return [+s.dataset.samples >= 2 && c.width >= s.clientWidth - 2, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]""")
+        return now if done else None
 
     def edits(self):
         return int(self.shown.find("stage").get_attribute("data-edits") or 0)
 
     def changed(self, what):
-        self.shown.until(f"{what}: another picture", lambda: self.shown.apart(self.before, 2) > 0)
-        self.before = self.shown.pixels()
+        self.before = self.shown.until(f"{what}: another picture", lambda: (now := self.whole()) and mean_difference(self.before, now) > 0 and now)
 
     def choose(self, name):
         item = next(i for i in self.shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
@@ -216,6 +220,9 @@ def cameras(program, scenes, out):
         time.sleep(0.2)
         width, height, both = shown.pixels()
         rows = [both[4 * width * y:4 * width * (y + 1)] for y in range(height)]
+        shown.script("""const s = new WebSocket(location.href.replace(/^http/, 'ws').replace(/[^/]*$/, '') + 'socket'); window.camera = null;
+            s.onmessage = (e) => { if (typeof e.data === 'string' && JSON.parse(e.data).type === 'scene') { window.camera = JSON.parse(e.data).camera; s.close(); } };""")
+        camera = shown.until("the camera", lambda: shown.script("return window.camera"))
         for eye, side in ((0, -0.5), (1, 0.5)):
             view = [v for row in rows for v in row[4 * half * eye:4 * half * (eye + 1)]]
             shown.script("""const {Picture} = await import('./picture.js');
@@ -223,20 +230,15 @@ def cameras(program, scenes, out):
                 const p = new Picture(); window.by_hand = null; let turn = Promise.resolve(); window.other = s;
                 s.onmessage = (e) => { turn = turn.then(async () => {
                   if (typeof e.data === 'string') { const m = JSON.parse(e.data); if (m.type !== 'scene') return;
-                    const c = m.camera, right = [0, 4, 8].map((i) => c.world_from_camera[i]); [3, 7, 11].forEach((i, k) => { c.world_from_camera[i] += arguments[0] * right[k]; });
+                    const c = arguments[3], right = [0, 4, 8].map((i) => c.world_from_camera[i]); [3, 7, 11].forEach((i, k) => { c.world_from_camera[i] += arguments[0] * right[k]; });
                     s.send(JSON.stringify({...c, type: 'look', separation: 0, width: arguments[1], height: arguments[2]})); return; }
                   if (new DataView(e.data).getUint32(28, true) & 4) return;
                   await p.take(e.data);
-                  if (p.scale === 1 && p.samples >= 2 && p.width === arguments[1]) window.by_hand = Array.from(p.shown(0, 'film')); }); };
-                s.onopen = () => s.send(JSON.stringify({type: 'seen', seen: true}));""", side * separation, half, height)
-            # This page sees the look as another page's: it goes back to two eyes by undoing nothing, and is asked again.
+                  if (p.view > arguments[4] && p.scale === 1 && p.samples >= 2 && p.width === arguments[1]) window.by_hand = Array.from(p.shown(0, 'film')); }); };
+                s.onopen = () => s.send(JSON.stringify({type: 'seen', seen: true}));""", side * separation, half, height, camera, int(shown.find("stage").get_attribute("data-view")))
             shown.until("the view by hand", lambda: shown.script("return window.by_hand !== null"))
             assert shown.script("return window.by_hand") == view, eye
             shown.script("window.other.close()")
-            shown.driver.refresh()
-            shown.until("the page again", lambda: shown.samples() >= 2)
-            at.pick("stereo", "sbs")
-            shown.until("both eyes again", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2)
 
 
 def handles(program, scenes, out):
@@ -303,7 +305,7 @@ def within_reach(program, scenes, out):
             assert shown.script("return document.documentElement.scrollWidth <= innerWidth")
             # Text against what is behind it (WCAG 2.1, 1.4.3).
             low = shown.script("""const lum = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((v) => v / 255).map((v) => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-                const behind = (n) => { for (; n; n = n.parentElement) { const c = getComputedStyle(n).backgroundColor; if (!/, 0\\)$/.test(c)) return c; } return 'rgb(255, 255, 255)'; };
+                const behind = (n) => { for (; n; n = n.parentElement) { const c = getComputedStyle(n).backgroundColor; if (!/^rgba.*, 0\\)$/.test(c)) return c; } return 'rgb(255, 255, 255)'; };
                 return [...document.querySelectorAll('button, summary, h1, h2, label span, small, .field span, #tree li, footer output')].filter((n) => n.checkVisibility() && n.textContent.trim() && !n.disabled).map((n) => {
                   const a = lum(getComputedStyle(n).color), b = lum(behind(n)); return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), n.outerHTML.slice(0, 80)]; }).filter(([ratio]) => ratio < 4.5)""")
             assert not low, low
@@ -314,14 +316,14 @@ def within_reach(program, scenes, out):
 
 def figures(program, scenes, out):
     """The pictures of docs/viewer.md."""
-    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
+    with viewer(program, scenes / "gallery.pbrt", "--spp", "16") as served, page(served.address) as shown:
         shown.driver.set_window_size(1280, 1000)
         at = Work(shown)
         at.choose("capsule 7")
         at.put("material", "kind", "conductor")
         at.put("material", "alpha_u", "0.25")
         at.put("material", "alpha_v", "0.25")
-        shown.until("64 samples", lambda: shown.samples() >= 64, 400)
+        shown.until("16 samples", lambda: shown.samples() >= 16, 400)
         shown.script("document.querySelector('#shapes').scrollIntoView()")
         shown.picture(out / "viewer-forms.png")
 

@@ -28,8 +28,8 @@ const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; retur
 
 export class Edits {
   // `say` sends a message, `ask` one that is answered, `view` gives the camera, `stage` is what the picture fills.
-  constructor({ say, describe, view, stage, find, shown }) {
-    Object.assign(this, { say, describe, view, stage, find, shown });
+  constructor({ say, describe, view, stage, find, shown, click }) {
+    Object.assign(this, { say, describe, view, stage, find, shown, click });
     this.ids = [];
     this.primitive = 0;
     this.thing = null;
@@ -181,7 +181,7 @@ export class Edits {
     const t = dot(sub(center, from), normal) / dot(way, normal);
     return t > 0 || camera.parallel ? add(from, mul(way, t)) : null;
   }
-  // A handle whose way is a number; `matrix` is what comes to what has gone so far.
+  // A handle that is not moved lets the click through. Here one whose way is a number; `matrix` is what comes to what has gone so far.
   grip(shape, attributes, first, way, matrix) {
     const node = this.handles.appendChild(make(shape, { ...attributes, tabindex: -1 }));
     node.addEventListener("pointerdown", (start) => {
@@ -195,7 +195,7 @@ export class Edits {
         this.change({ what: "move", ids: this.ids, matrix: matrix(now, gone) }, moved++ > 0);
         gone = now;
       };
-      const end = () => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); };
+      const end = (event) => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); if (!moved && event.type === "pointerup") this.click(event); };
       node.addEventListener("pointermove", go);
       node.addEventListener("pointerup", end, { once: true });
       node.addEventListener("pointercancel", end, { once: true });
@@ -228,7 +228,7 @@ export class Edits {
         put(by);
         this.gone = by;
       };
-      const end = () => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); };
+      const end = (event) => { this.dragged = false; node.removeEventListener("pointermove", go); this.refresh(); if (!this.moved && event.type === "pointerup") this.click(event); };
       node.addEventListener("pointermove", go);
       node.addEventListener("pointerup", end, { once: true });
       node.addEventListener("pointercancel", end, { once: true });

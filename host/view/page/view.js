@@ -62,7 +62,7 @@ const forms = new Forms({
 });
 
 const edits = new Edits({
-  shown: (...what) => forms.thing(...what),
+  shown: (...what) => forms.thing(...what), click: (event) => click(event),
   say, view: () => camera, stage, find: $,
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
 });
@@ -238,6 +238,7 @@ function draw() {
   mark();
   $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.device);
   stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
+  stage.dataset.view = picture.view;
   stage.dataset.right = has_right() && right_picture.scale === 1 ? right_picture.samples : 0;
 }
 
