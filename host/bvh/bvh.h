@@ -48,8 +48,8 @@ struct Tree {
 /// has used up its share, so that the levels left always suffice. Holds for up to 2^31 references.
 inline constexpr int max_depth = 40;
 
-/// Of 65,536 and more references, `quick` looks at smaller cells of a grid, and farther down, before it looks at references one by
-/// one: a fifth less processor time for 0.4 to 0.8 % more area (1 M boxes). Fewer give the same tree.
+/// Of 65,536 and more references, `quick` looks at smaller cells of a grid, and farther down, before it looks at references one
+/// by one: a fifth less processor time for 0.4 to 0.8 % more area (1 M boxes). Fewer give the same tree.
 enum class Effort { full, quick };
 
 /// Same tree for any number of threads. `references` must not be empty, boxes finite with min <= max. References of group
