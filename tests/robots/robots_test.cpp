@@ -87,5 +87,26 @@ TEST(Urdf, SharedFilesHaveTheirGeometry) {
   }
 }
 
+TEST(Urdf, SharedFileLiesWhereMujocoPutsIt) {
+  CAPLET_NEEDS_DATA();
+  const Scene scene = scene_of(test::data_folder() / "urdf/ros_urdf_tutorial/04-materials.urdf", {{{"up", "y"}}});
+  std::vector<glm::dvec3> legs;
+  for (const Shape& shape : scene.shapes)
+    if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) {
+      expect_near(box->p1, {0.3, 0.05, 0.1});
+      legs.push_back(at(shape, {0, 0, 0}));
+      const glm::dvec3 x = at(shape, {1, 0, 0}) - legs.back();
+      EXPECT_NEAR(x.z, -1, 1e-8);
+      EXPECT_NEAR(x.x, 4.6e-5, 1e-6);
+    }
+  // geom_xpos of MuJoCo 4.0 with fusestatic and discardvisual off.
+  ASSERT_EQ(legs.size(), 2U);
+  if (legs[0].y > legs[1].y) std::swap(legs[0], legs[1]);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(legs[0][k], (glm::dvec3{0, -0.22, -0.05}[k]), 1e-6);
+    EXPECT_NEAR(legs[1][k], (glm::dvec3{0, 0.22, -0.05}[k]), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace caplet
