@@ -94,7 +94,7 @@ Shape read_shape(const ProgramStatement& statement, pbrt::Parameters& parameters
 
 void read_option(const ProgramStatement& statement, pbrt::Parameters& parameters, const glm::dmat4& world_from_camera,
                  Scene& scene) {
-  if (statement.directive == "Camera") pbrt::set_camera(parameters, world_from_camera, scene);
+  if (statement.directive == "Camera") pbrt::set_camera(statement.type, parameters, world_from_camera, scene);
   if (statement.directive == "Film") pbrt::set_film(statement.type, parameters, ColorSpace::srgb, scene);
   if (statement.directive == "PixelFilter") pbrt::set_filter(statement.type, parameters, scene);
   if (statement.directive == "Integrator") pbrt::set_integrator(statement.type, parameters, scene);

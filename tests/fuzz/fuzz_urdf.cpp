@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Any bytes as a URDF file.
+#include "import/detail/importers.h"
+#include "target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return caplet::test::fuzz_importer(caplet::import_urdf, data, size);
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Robots: the conventions of docs/formats/robots.md by hand, counts of the shared files, and bad input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "import/import.h"
+#include "support/data.h"
+#include "support/import_files.h"
+
+namespace caplet {
+namespace {
+
+using test::complaint;
+using testing::HasSubstr;
+
+Scene scene_of(const std::filesystem::path& path, const ImportOptions& options = {}) {
+  return import_scene(path, test::NoImages(), options);
+}
+Scene scene_of_text(const std::string& text, const ImportOptions& options = {}) {
+  return scene_of(test::write_file("robot.urdf", text), options);
+}
+glm::dvec3 at(const Shape& shape, glm::dvec3 p) { return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)); }
+void expect_near(glm::dvec3 a, glm::dvec3 b) {
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-9) << k;
+}
+
+const std::string arm = R"(<robot name="r"><link name="a"><visual><geometry><box size="2 4 6"/></geometry></visual></link>
+<link name="b"><visual><origin xyz="1 0 0"/><geometry><sphere radius="0.5"/></geometry></visual>
+<collision><geometry><capsule radius="0.1" length="2"/></geometry></collision></link>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 3" rpy="1.5707963267948966 0 1.5707963267948966"/>
+<axis xyz="0 0 2"/></joint></robot>)";
+
+TEST(Urdf, LinksLieWhereJointsPutThem) {
+  const Scene scene = scene_of_text(arm, {{{"up", "y"}}});
+  ASSERT_EQ(scene.shapes.size(), 2U);
+  const auto box = std::get<BoxShape>(scene.shapes[0].geometry);
+  expect_near(box.p1, {1, 2, 3});
+  // Fixed x, then z: the child's x is the parent's y, its y the parent's z, its z the parent's x.
+  expect_near(at(scene.shapes[1], {0, 0, 0}), {0, 1, 3});
+  expect_near(at(scene.shapes[1], {0, 0, 1}), {1, 1, 3});
+}
+
+TEST(Urdf, JointsTurnAboutTheirAxis) {
+  const Scene scene = scene_of_text(arm, {{{"up", "y"}, {"pose", "j=1.5707963267948966"}}});
+  expect_near(at(scene.shapes[1], {0, 0, 0}), {0, 0, 4});
+  EXPECT_THAT(complaint([] { scene_of_text(arm, {{{"pose", "k=1"}}}); }), HasSubstr("no joint 'k'"));
+  EXPECT_THAT(complaint([] { scene_of_text(arm, {{{"pose", "j"}}}); }), HasSubstr("JOINT=VALUE"));
+}
+
+TEST(Urdf, GroupsAreOnChoice) {
+  const Scene scene = scene_of_text(arm, {{{"groups", "collision"}}});
+  ASSERT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).p1[0], glm::vec3(0, 0, 1));
+  EXPECT_EQ(scene_of_text(arm, {{{"groups", "all"}}}).shapes.size(), 3U);
+}
+
+TEST(Urdf, BadFilesAreRefusedWithTheirPlace) {
+  const auto said = [](const std::string& text) { return complaint([&] { scene_of_text(text); }); };
+  EXPECT_THAT(said("<robot>\n<link"), HasSubstr("robot.urdf:2:"));
+  EXPECT_THAT(said("<mujoco/>"), HasSubstr("not <robot>"));
+  EXPECT_THAT(said("<robot>\n\n<joint name='j'><parent link='a'/></joint><link name='b'/></robot>"),
+              HasSubstr("robot.urdf:3:2: "));
+  EXPECT_THAT(said("<robot><link name='a'/><link name='b'/><joint><parent link='a'/><child link='b'/></joint>"
+                   "<joint><parent link='b'/><child link='a'/></joint></robot>"),
+              HasSubstr("cycle"));
+  EXPECT_THAT(said("<robot><link name='a'><visual><geometry><sphere radius='nan'/></geometry></visual></link></robot>"),
+              HasSubstr("not finite"));
+  EXPECT_EQ(said(arm + std::string(1, '\0')), "");
+}
+
+TEST(Urdf, SharedFilesHaveTheirGeometry) {
+  CAPLET_NEEDS_DATA();
+  // Boxes, cylinders and spheres within <visual> and <collision>, as Python's ElementTree counts them; the DAE meshes are not
+  // there.
+  struct Counts {
+    const char* name;
+    std::size_t visual, all;
+  };
+  for (const Counts& file :
+       {Counts{"01-myfirst", 1, 1}, Counts{"02-multipleshapes", 2, 2}, Counts{"03-origins", 2, 2}, Counts{"04-materials", 3, 3},
+        Counts{"05-visual", 12, 12}, Counts{"06-flexible", 12, 12}, Counts{"07-physics", 12, 24}}) {
+    const auto path = test::data_folder() / "urdf/ros_urdf_tutorial" / (std::string(file.name) + ".urdf");
+    EXPECT_EQ(scene_of(path).shapes.size(), file.visual) << file.name;
+    EXPECT_EQ(scene_of(path, {{{"groups", "all"}}}).shapes.size(), file.all) << file.name;
+  }
+}
+
+TEST(Urdf, SharedFileLiesWhereMujocoPutsIt) {
+  CAPLET_NEEDS_DATA();
+  const Scene scene = scene_of(test::data_folder() / "urdf/ros_urdf_tutorial/04-materials.urdf", {{{"up", "y"}}});
+  std::vector<glm::dvec3> legs;
+  for (const Shape& shape : scene.shapes)
+    if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) {
+      expect_near(box->p1, {0.3, 0.05, 0.1});
+      legs.push_back(at(shape, {0, 0, 0}));
+      const glm::dvec3 x = at(shape, {1, 0, 0}) - legs.back();
+      EXPECT_NEAR(x.z, -1, 1e-8);
+      EXPECT_NEAR(x.x, 4.6e-5, 1e-6);
+    }
+  // geom_xpos of MuJoCo 4.0 with fusestatic and discardvisual off.
+  ASSERT_EQ(legs.size(), 2U);
+  if (legs[0].y > legs[1].y) std::swap(legs[0], legs[1]);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(legs[0][k], (glm::dvec3{0, -0.22, -0.05}[k]), 1e-6);
+    EXPECT_NEAR(legs[1][k], (glm::dvec3{0, 0.22, -0.05}[k]), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace caplet
