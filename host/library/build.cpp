@@ -484,6 +484,9 @@ void Scene::present() {
   if (!data.open_camera) {
     model.camera = camera;
     model.automatic_camera = false;
+    // The studio stands around this camera.
+    const glm::dmat3 view(camera.world_from_camera);
+    if (needs_light) std::get<InfiniteLight>(model.lights.back().model).world_from_light = glm::dmat3(-view[2], view[0], view[1]);
   }
   data.studio_light = needs_light;
   if (needs_light || data.open_camera) data.as_a_whole();

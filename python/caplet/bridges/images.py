@@ -15,19 +15,3 @@ def to_xarray(image):
     held.update({name: (("y", "x"), getattr(image, name)) for name, channel in single.items() if channel in there})
     height, width = image.shape
     return xarray.Dataset(held, coords={"y": np.arange(height), "x": np.arange(width)}, attrs={"samples_per_pixel": image.spp})
-
-
-def denoise(image):
-    """The picture without noise, (height, width, 3) float32, scene-linear: Open Image Denoise (package pyoidn) with albedo and normals."""
-    import pyoidn
-    height, width = image.shape
-    device = pyoidn.Device()
-    device.commit()
-    run = pyoidn.Filter(device, "RT")
-    out = np.zeros((height, width, 3), dtype=np.float32)
-    for name, values in (("color", image.rgb), ("albedo", image.albedo), ("normal", image.normal), ("output", out)):
-        run.set_image(name, np.ascontiguousarray(values) if name != "output" else out, pyoidn.OIDN_FORMAT_FLOAT3, width, height)
-    run.set_bool("hdr", True)
-    run.commit()
-    run.execute()
-    return out

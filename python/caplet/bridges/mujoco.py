@@ -119,7 +119,7 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
     """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
 
     model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all. camera:
-    one of the model's, by name or number; None: one that frames what there is. lights: "studio", or "model" for the model's own.
+    one of the model's, by name or number; None: one that looks at the model's middle, z up. lights: "studio", or "model" for the model's own.
 
     Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Colours are taken as
     a screen's; what is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
@@ -150,6 +150,10 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
         raise InputError(f'lights: "studio" or "model" is needed, not {lights!r}')
     if camera is not None:
         _camera(scene, mujoco, model, data, camera)
+    elif geoms:  # MuJoCo's z is up
+        center, extent = np.asarray(model.stat.center, dtype=np.float64), max(float(model.stat.extent), 1e-6)
+        scene.look_at(center + 1.5 * extent * np.array([0.6, -0.7, 0.35]), center, (0, 0, 1))
+        scene.fov = 45
     return scene
 
 
