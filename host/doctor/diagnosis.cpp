@@ -47,7 +47,8 @@ constexpr Quirk quirks[] = {
      "not to, others (CAPLET_KERNELS) must, too"},
     // Seen with 2023.2.4, which calls itself 2024.16.
     {"Intel(R) OpenCL", "Intel(R)", "2023", "2024.17",
-     "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide one, which is its own"},
+     "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide one, which is its own; and "
+     "lacks functions of its own vector library (__ocl_svml_...), so that some scenes do not build: 2024.1 has them"},
     // https://docs.mesa3d.org/rusticl
     {"rusticl", "", "", "",
      "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, iris, llvmpipe)"},
