@@ -28,9 +28,9 @@ Scene scene_of(const std::string& world, const std::string& view) {
 Mean light_of(const Scene& scene, int samples, bool sampled) {
   FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);
-  // Csg shapes, whose area nobody knows, are sampled too.
-  for (uint i = 0; i < flat.lighting.light_count; ++i)
-    flat.light_alias[i] = {1, i, 1 / static_cast<float>(flat.lighting.light_count), 0};
+  // Csg shapes, whose area nobody knows, are sampled too. Lights of a tree are not in the table.
+  const auto count = static_cast<uint>(flat.light_alias.size());
+  for (uint i = 0; i < count; ++i) flat.light_alias[i] = {1, i, 1 / static_cast<float>(count), 0};
   flat.lighting.sampled_light_count = sampled ? flat.lighting.light_count : 0;
   RenderOptions options;
   options.samples_per_pixel = samples;
