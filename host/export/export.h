@@ -13,6 +13,9 @@
 
 namespace caplet {
 
+/// What the text of every scene that is written begins with.
+inline constexpr std::string_view written_first_line = "# pbrt-v4 text with Caplet's shapes\n";
+
 /// Replaces `file` (.pbrt, or what is no regular file) as write_atomically does. Images and other files that the scene was read
 /// from are named relative to the file's folder where they share a folder with it other than the root, else as they are.
 /// `cancelled` is asked now and then; when it says true a RunError is thrown and nothing is written.

@@ -38,7 +38,7 @@ class SceneWriter {
     order_materials();
     order_media();
     name_all();
-    stream_.text << "# pbrt-v4 text with Caplet's shapes\n";
+    stream_.text << written_first_line;
     set_space(stream_, film.space);
     write_camera(camera);
     write_film(film);

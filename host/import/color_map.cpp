@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+
+#include "scene/texture_image.h"
 
 namespace caplet {
 
@@ -21,8 +22,6 @@ const std::array<glm::dvec3, 9> knots = {{{0.267004, 0.004874, 0.329415},
                                           {0.678489, 0.863742, 0.189503},
                                           {0.993248, 0.906157, 0.143936}}};
 
-double linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
 }  // namespace
 
 glm::dvec3 viridis(double part) {
@@ -30,7 +29,7 @@ glm::dvec3 viridis(double part) {
   const std::size_t i = std::min(static_cast<std::size_t>(at), knots.size() - 2);
   const double f = at - static_cast<double>(i);
   const glm::dvec3 c = knots.at(i) * (1 - f) + knots.at(i + 1) * f;
-  return {linear(c.x), linear(c.y), linear(c.z)};
+  return {decoded_value({}, c.x), decoded_value({}, c.y), decoded_value({}, c.z)};
 }
 
 }  // namespace caplet

@@ -2,9 +2,8 @@
 // Copyright Caplet authors
 #include "import/import_options.h"
 
-#include <charconv>
-
 #include "base/error.h"
+#include "import/detail/text_file.h"
 
 namespace caplet {
 
@@ -44,8 +43,7 @@ std::uint32_t ImportOptions::number(const std::string& name, std::uint32_t other
   const std::optional<std::string> asked = text(name);
   if (!asked) return otherwise;
   std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(asked->data(), asked->data() + asked->size(), value);
-  if (error != std::errc() || end != asked->data() + asked->size() || value == 0)
+  if (!parse_number(std::string_view(*asked), value) || value == 0)
     throw InputError({"--" + name}, "'" + *asked + "' is no whole number from 1");
   return value;
 }

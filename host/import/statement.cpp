@@ -102,6 +102,17 @@ void read_option(const ProgramStatement& statement, pbrt::Parameters& parameters
     if (const auto seed = pbrt::set_sampler(statement.type, parameters, scene)) scene.sampler.seed = *seed;
 }
 
+/// What `work` makes of the statement's parameters. Throws InputError with all that is wrong with them.
+template <class Work>
+auto read(const ProgramStatement& statement, const Work& work) {
+  check_type(statement);
+  Diagnostics diagnostics;
+  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
+  auto out = work(parameters);
+  diagnostics.finish();
+  return out;
+}
+
 /// Asks for all that there is to ask for.
 void ask(const ProgramStatement& statement, pbrt::Parameters& parameters) {
   const NoImages images;
@@ -157,49 +168,32 @@ std::vector<KnownStatementParameter> statement_parameters(const std::string& dir
 }
 
 Shape shape_of(const ProgramStatement& statement, std::uint32_t material, const Scene& scene) {
-  check_type(statement);
-  Diagnostics diagnostics;
-  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
-  Shape shape = read_shape(statement, parameters, material, scene);
-  diagnostics.finish();
-  return shape;
+  return read(statement, [&](pbrt::Parameters& parameters) { return read_shape(statement, parameters, material, scene); });
 }
 
 Light light_of(const ProgramStatement& statement, const glm::dmat4& world_from_light, const ImageReader& images) {
-  check_type(statement);
-  Diagnostics diagnostics;
-  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
   pbrt::LightFiles files(images);
-  std::optional<Light> light = pbrt::make_light(statement.type, parameters, world_from_light, files);
-  diagnostics.finish();
-  return std::move(light).value();
+  return read(statement,
+              [&](pbrt::Parameters& parameters) { return pbrt::make_light(statement.type, parameters, world_from_light, files); })
+      .value();
 }
 
 AreaEmission emission_of(const ProgramStatement& statement, const ImageReader& images) {
-  check_type(statement);
-  Diagnostics diagnostics;
-  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
   pbrt::LightFiles files(images);
-  AreaEmission emission = pbrt::make_area_emission(parameters, files);
-  diagnostics.finish();
-  return emission;
+  return read(statement, [&](pbrt::Parameters& parameters) { return pbrt::make_area_emission(parameters, files); });
 }
 
 Medium medium_of(const ProgramStatement& statement, const std::string& name, const glm::dmat4& world_from_medium) {
-  check_type(statement);
-  Diagnostics diagnostics;
-  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
-  Medium medium = pbrt::make_medium(statement.type, name, parameters, world_from_medium);
-  diagnostics.finish();
-  return medium;
+  return read(statement, [&](pbrt::Parameters& parameters) {
+    return pbrt::make_medium(statement.type, name, parameters, world_from_medium);
+  });
 }
 
 void set_option(const ProgramStatement& statement, const glm::dmat4& world_from_camera, Scene& scene) {
-  check_type(statement);
-  Diagnostics diagnostics;
-  pbrt::Parameters parameters = parameters_of(statement, own_of(statement), diagnostics);
-  read_option(statement, parameters, world_from_camera, scene);
-  diagnostics.finish();
+  read(statement, [&](pbrt::Parameters& parameters) {
+    read_option(statement, parameters, world_from_camera, scene);
+    return true;
+  });
 }
 
 void make_hair_one_sided(const ProgramStatement& statement, const Scene& scene, Shape& shape) {

@@ -65,6 +65,24 @@ std::string_view take_line(std::string_view& text) {
   return line.substr(0, carriage_return);
 }
 
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> out;
+  std::size_t i = 0;
+  for (;;) {
+    while (i < line.size() && is_blank(line[i])) ++i;
+    if (i == line.size()) return out;
+    const std::size_t begin = i;
+    while (i < line.size() && !is_blank(line[i])) ++i;
+    out.push_back(line.substr(begin, i - begin));
+  }
+}
+
 NumberError parse_float(std::string_view token, float& value) {
   const bool plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
   const char* begin = token.data() + (plus ? 1 : 0);

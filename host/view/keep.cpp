@@ -30,7 +30,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int format = 1;
-constexpr std::string_view first_line = "# pbrt-v4 text with Caplet's shapes\n";  // of what write_scene writes
 constexpr std::size_t most_old = 1000;
 
 fs::path in_cache(const std::string& key, const char* ending) {
@@ -54,9 +53,9 @@ std::shared_future<T> ready(T value) {
 
 bool is_written_by_caplet(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string begin(first_line.size(), '\0');
+  std::string begin(written_first_line.size(), '\0');
   in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return in && begin == first_line;
+  return in && begin == written_first_line;
 }
 
 }  // namespace

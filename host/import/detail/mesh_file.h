@@ -31,8 +31,8 @@ class LineWords {
   std::string_view word(std::size_t i) const { return words_[i]; }
   /// From word i to the end of the line (file names with blanks).
   std::string_view rest(std::size_t i) const;
+  /// Word i as a number. Throws InputError, also when there is no such word.
   float number(std::size_t i) const;
-  /// In 0 to `below`, or InputError.
   std::int64_t whole(std::size_t i) const;
   [[noreturn]] void fail(std::size_t i, const std::string& message) const;
 
@@ -66,12 +66,13 @@ std::uint32_t add_plain_material(Scene& scene);
 /// A mesh's shape, with its material.
 Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
 
-/// The materials of an MTL file by name; `lights` of those that emit.
+/// What shapes of a material of an MTL file have.
 struct MtlMaterial {
   std::uint32_t material = 0;
   std::optional<AreaEmission> emission;
   std::optional<TextureOperand> alpha;
 };
+/// The materials of an MTL file by name, added to the scene. Throws InputError.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, const SourceLocation& named_at, Scene& scene,
                                             MeshImages& images);
 

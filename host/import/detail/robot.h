@@ -51,6 +51,7 @@ class XmlFile {
   SourceLocation place(std::ptrdiff_t offset) const;
   std::filesystem::path path_;
   std::string text_;
+  std::vector<std::size_t> line_begins_{0};
   pugi::xml_document document_;
 };
 

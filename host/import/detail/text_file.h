@@ -4,11 +4,13 @@
 // What line-based text formats share: a whole file in memory, its lines, and numbers in them.
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 
@@ -33,6 +35,20 @@ class TextFile {
 std::string_view take_line(std::string_view& text);
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+/// Without the blanks at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// The parts of a line between blanks.
+std::vector<std::string_view> words_of(std::string_view line);
+
+/// Whether the whole of `token` is a number of this type, as std::from_chars has it; then it is in `value`.
+template <class Number>
+bool parse_number(std::string_view token, Number& value) {
+  const char* end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, value);
+  return error == std::errc() && stop == end;
+}
 
 /// Why a number was refused; empty: it was not.
 enum class NumberError { none, not_a_number, not_finite, out_of_range };

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -52,10 +51,6 @@ class VtkReader {
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, at_, 0}, message); }
-  static std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-  }
   std::string_view line() {
     at_ = ++passed_;
     if (text_.empty()) fail("the file ends early");
@@ -82,8 +77,7 @@ class VtkReader {
   std::int64_t whole() {
     const std::string_view text = word();
     std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < 0) fail(quoted(text) + " is no count or index");
+    if (!parse_number(text, value) || value < 0) fail(quoted(text) + " is no count or index");
     return value;
   }
   template <class Number>

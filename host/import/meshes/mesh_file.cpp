@@ -2,30 +2,17 @@
 // Copyright Caplet authors
 #include "import/detail/mesh_file.h"
 
-#include <charconv>
-
 #include "base/check.h"
 #include "import/detail/text_file.h"
 
 namespace caplet {
 
 LineWords::LineWords(std::string_view line, const std::string& file, int number, char comment)
-    : line_(line.substr(0, line.find(comment))), file_(file), number_(number) {
-  std::size_t i = 0;
-  for (;;) {
-    while (i < line_.size() && is_blank(line_[i])) ++i;
-    if (i == line_.size()) return;
-    const std::size_t begin = i;
-    while (i < line_.size() && !is_blank(line_[i])) ++i;
-    words_.push_back(line_.substr(begin, i - begin));
-  }
-}
+    : line_(line.substr(0, line.find(comment))), file_(file), number_(number), words_(words_of(line_)) {}
 
 std::string_view LineWords::rest(std::size_t i) const {
   if (i >= words_.size()) return {};
-  std::string_view out = line_.substr(static_cast<std::size_t>(words_[i].data() - line_.data()));
-  while (!out.empty() && is_blank(out.back())) out.remove_suffix(1);
-  return out;
+  return trimmed(line_.substr(static_cast<std::size_t>(words_[i].data() - line_.data())));
 }
 
 float LineWords::number(std::size_t i) const {
@@ -40,8 +27,7 @@ std::int64_t LineWords::whole(std::size_t i) const {
   if (i >= words_.size()) fail(i, "a whole number is missing");
   const std::string_view text = words_[i];
   std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) fail(i, quoted(text) + " is no whole number");
+  if (!parse_number(text, value)) fail(i, quoted(text) + " is no whole number");
   return value;
 }
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <unordered_map>
 
 #include "base/check.h"
@@ -128,9 +127,8 @@ class ObjReader {
       const std::string_view field = text.substr(0, slash);
       if (!field.empty()) {
         std::int64_t value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
         const auto count = static_cast<std::int64_t>(counts[k]);
-        if (error != std::errc() || end != field.data() + field.size()) words.fail(i, quoted(words.word(i)) + " is no corner");
+        if (!parse_number(field, value)) words.fail(i, quoted(words.word(i)) + " is no corner");
         if (value == 0 || value > count || value < -count)
           words.fail(i, fmt::format("{}: there are {} before this line", quoted(words.word(i)), count));
         *fields[k] = value > 0 ? value - 1 : count + value;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <unordered_map>
@@ -180,8 +179,7 @@ class OffReader {
   std::int64_t whole() {
     const std::string_view text = word();
     std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) fail(quoted(text) + " is no whole number");
+    if (!parse_number(text, value)) fail(quoted(text) + " is no whole number");
     return value;
   }
   std::string_view text_, rest_;

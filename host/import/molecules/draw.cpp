@@ -53,7 +53,7 @@ class Painter {
     const Residue& residue = molecule_.residues[atom.residue];
     switch (by_) {
       case ColorBy::element:
-        return named(element_name(atom.element), [&] { return element_color(atom.element); });
+        return of_element(atom);
       case ColorBy::chain:
         return named("chain " + molecule_.chains[residue.chain], [&] { return palette_color(residue.chain); });
       case ColorBy::residue:

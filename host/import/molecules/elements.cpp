@@ -2,11 +2,11 @@
 // Copyright Caplet authors
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <gemmi/elem.hpp>
 
 #include "import/detail/molecule.h"
+#include "import/detail/text_file.h"
+#include "scene/texture_image.h"
 
 namespace caplet {
 
@@ -25,11 +25,6 @@ constexpr std::array<std::uint32_t, 110> jmol_colors = {
     0x007d00, 0x70abfa, 0x00baff, 0x00a1ff, 0x008fff, 0x0080ff, 0x006bff, 0x545cf2, 0x785ce3, 0x8a4fe3, 0xa136d4,
     0xb31fd4, 0xb31fba, 0xb30da6, 0xbd0d87, 0xc70066, 0xcc0059, 0xd1004f, 0xd90045, 0xe00038, 0xe6002e, 0xeb0026};
 
-double linear(std::uint32_t byte) {
-  const double v = byte / 255.0;
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
 /// gemmi has deuterium as an element of its own, after all others.
 constexpr int most_elements = 118;
 gemmi::El el_of(std::uint8_t element) { return static_cast<gemmi::El>(element); }
@@ -38,8 +33,7 @@ gemmi::El el_of(std::uint8_t element) { return static_cast<gemmi::El>(element); 
 
 std::uint8_t element_of(std::string_view symbol) {
   int number = 0;
-  const auto [end, error] = std::from_chars(symbol.data(), symbol.data() + symbol.size(), number);
-  if (error == std::errc() && end == symbol.data() + symbol.size())
+  if (parse_number(symbol, number))
     return number > 0 && number <= most_elements ? static_cast<std::uint8_t>(number) : std::uint8_t{0};
   std::size_t letters = 0;
   while (letters < symbol.size() && std::isalpha(static_cast<unsigned char>(symbol[letters]))) ++letters;
@@ -61,6 +55,7 @@ const char* element_name(std::uint8_t element) { return element == 0 ? "unknown"
 
 glm::dvec3 element_color(std::uint8_t element) {
   const std::uint32_t rgb = jmol_colors[element < jmol_colors.size() ? element : jmol_colors.size() - 1];
+  const auto linear = [](std::uint32_t byte) { return decoded_value({}, byte / 255.0); };
   return {linear(rgb >> 16), linear(rgb >> 8 & 255U), linear(rgb & 255U)};
 }
 

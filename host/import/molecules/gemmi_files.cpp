@@ -265,8 +265,7 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
       for (int column = 0; column < 4; ++column) {
         const std::string& word = words[static_cast<std::size_t>(column) + 2];
         double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+        if (!parse_number(std::string_view(word), value) || !std::isfinite(value))
           throw InputError({path, number, 0}, caplet::quoted(word) + " is no number of an operator");
         m[column][row] = value;
       }

@@ -5,7 +5,6 @@
 // them.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <unordered_map>
 
@@ -16,12 +15,6 @@
 namespace caplet {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 class Reader {
  public:
@@ -74,9 +67,7 @@ class Reader {
   Number fixed(std::string_view text, std::size_t begin, std::size_t size, const char* what) const {
     const std::string_view field = text.size() > begin ? trimmed(text.substr(begin, size)) : std::string_view();
     Number value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (field.empty() || error != std::errc() || end != field.data() + field.size())
-      fail(begin + 1, fmt::format("{}: {} is no number", what, quoted(field)));
+    if (!parse_number(field, value)) fail(begin + 1, fmt::format("{}: {} is no number", what, quoted(field)));
     return value;
   }
 
@@ -152,22 +143,10 @@ class Reader {
     }
   }
 
-  static std::vector<std::string_view> words_of(std::string_view text) {
-    std::vector<std::string_view> out;
-    while (!(text = trimmed(text)).empty()) {
-      std::size_t end = 0;
-      while (end < text.size() && !is_blank(text[end])) ++end;
-      out.push_back(text.substr(0, end));
-      text.remove_prefix(end);
-    }
-    return out;
-  }
-
   template <class Number>
   Number number(std::string_view word) const {
     Number value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail(1, quoted(word) + " is no number");
+    if (!parse_number(word, value)) fail(1, quoted(word) + " is no number");
     return value;
   }
 

@@ -5,8 +5,6 @@
 // what.
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "base/error.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
@@ -18,18 +16,6 @@ namespace {
 struct Columns {
   std::size_t species = 0, position = 1;
 };
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> out;
-  std::size_t i = 0;
-  for (;;) {
-    while (i < text.size() && is_blank(text[i])) ++i;
-    if (i == text.size()) return out;
-    const std::size_t begin = i;
-    while (i < text.size() && !is_blank(text[i])) ++i;
-    out.push_back(text.substr(begin, i - begin));
-  }
-}
 
 /// Of "Properties=species:S:1:pos:R:3:...": a name, a kind and a number of columns each.
 Columns columns_of(std::string_view comment) {
@@ -50,7 +36,7 @@ Columns columns_of(std::string_view comment) {
     if (fields[i] == "species") columns.species = column;
     if (fields[i] == "pos") columns.position = column;
     std::size_t count = 0;
-    std::from_chars(fields[i + 2].data(), fields[i + 2].data() + fields[i + 2].size(), count);
+    (void)parse_number(fields[i + 2], count);
     column += std::min<std::size_t>(count, 1000);
   }
   return columns;
@@ -101,9 +87,7 @@ class Reader {
     const std::vector<std::string_view> words = words_of(text);
     std::uint64_t count = 0;
     if (words.empty()) fail("the number of atoms is missing");
-    const auto [end, error] = std::from_chars(words[0].data(), words[0].data() + words[0].size(), count);
-    if (words.size() != 1 || error != std::errc() || end != words[0].data() + words[0].size())
-      fail(quoted(words[0]) + " is no number of atoms");
+    if (words.size() != 1 || !parse_number(words[0], count)) fail(quoted(words[0]) + " is no number of atoms");
     return count;
   }
 

@@ -4,7 +4,6 @@
 // The geoms of a robot as shapes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/check.h"
@@ -13,15 +12,11 @@
 #include "import/detail/robot.h"
 #include "import/import.h"
 #include "present/present.h"
+#include "scene/texture_image.h"
 
 namespace caplet {
 
 namespace {
-
-double linear(double v) {  // IEC 61966-2-1
-  v = std::clamp(v, 0.0, 1.0);
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
 
 class Drawing {
  public:
@@ -48,6 +43,7 @@ class Drawing {
  private:
   std::uint32_t material(const glm::dvec4& rgba) {
     const auto [entry, fresh] = materials_.try_emplace({rgba.r, rgba.g, rgba.b}, narrow<std::uint32_t>(scene_.materials.size()));
+    const auto linear = [](double v) { return decoded_value({}, std::clamp(v, 0.0, 1.0)); };
     if (fresh)
       scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{{linear(rgba.r), linear(rgba.g), linear(rgba.b)}}},
                                   "color " + std::to_string(materials_.size()),
@@ -79,18 +75,27 @@ class Drawing {
       Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: no such file");
       return;
     }
-    ImportOptions as_it_is;
-    as_it_is.set("up", "y");
-    Scene file = import_scene(geom.mesh, images_, as_it_is);
-    for (Shape& part : file.shapes)
-      if (std::holds_alternative<TriangleMeshShape>(part.geometry))
-        add(geom, std::move(part.geometry), glm::scale(glm::dmat4(1), geom.size));
+    for (const Geometry& part : meshes_of(geom.mesh)) add(geom, part, glm::scale(glm::dmat4(1), geom.size));
+  }
+
+  /// The meshes of a file, which is read once.
+  const std::vector<Geometry>& meshes_of(const std::filesystem::path& path) {
+    const auto [entry, fresh] = meshes_.try_emplace(path.string());
+    if (fresh) {
+      ImportOptions as_it_is;
+      as_it_is.set("up", "y");
+      Scene file = import_scene(path, images_, as_it_is);
+      for (Shape& part : file.shapes)
+        if (std::holds_alternative<TriangleMeshShape>(part.geometry)) entry->second.push_back(std::move(part.geometry));
+    }
+    return entry->second;
   }
 
   Scene& scene_;
   const ImageReader& images_;
   glm::dmat4 world_;
   std::map<std::array<double, 3>, std::uint32_t> materials_;
+  std::map<std::string, std::vector<Geometry>> meshes_;
 };
 
 }  // namespace

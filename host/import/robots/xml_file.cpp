@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "import/detail/gzip_file.h"
@@ -16,6 +15,8 @@ XmlFile::XmlFile(const std::filesystem::path& path, const SourceLocation& named_
     : path_(path), text_(read_file(path, named_at)) {
   while (!text_.empty() && text_.back() == '\0') text_.pop_back();
   check_text(text_, path_.string());
+  for (std::size_t i = 0; i < text_.size(); ++i)
+    if (text_[i] == '\n') line_begins_.push_back(i + 1);
   const pugi::xml_parse_result result =
       document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result) throw InputError(place(result.offset), std::string("no XML: ") + result.description());
@@ -23,10 +24,8 @@ XmlFile::XmlFile(const std::filesystem::path& path, const SourceLocation& named_
 
 SourceLocation XmlFile::place(std::ptrdiff_t offset) const {
   const std::size_t at = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size());
-  const std::string_view before = std::string_view(text_).substr(0, at);
-  const std::size_t line_begin = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-  return {path_.string(), static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1,
-          static_cast<int>(at - line_begin) + 1};
+  const auto line = std::ranges::upper_bound(line_begins_, at) - 1;
+  return {path_.string(), static_cast<int>(line - line_begins_.begin()) + 1, static_cast<int>(at - *line) + 1};
 }
 
 std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
@@ -41,9 +40,7 @@ std::vector<double> numbers_of(std::string_view text, std::size_t least, std::si
     text.remove_prefix(word.size());
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size())
-      throw InputError(where, what + ": " + quoted(word) + " is not a number");
+    if (!parse_number(digits, value)) throw InputError(where, what + ": " + quoted(word) + " is not a number");
     if (!(std::abs(value) <= static_cast<double>(largest_number)))
       throw InputError(where, what + ": " + quoted(word) + " is not finite or out of range");
     out.push_back(value);
