@@ -63,7 +63,7 @@ void run_view(const Options& options) {
   const Device device = choose_device(options.device, options.encoding);
   std::unique_ptr<view::Keeper> keeper;
   if (!options.read_only && std::filesystem::is_regular_file(options.scene))
-    keeper = std::make_unique<view::Keeper>(options.scene);
+    keeper = std::make_unique<view::Keeper>(options.scene, options.import_options.values());
   Scene scene =
       import_scene(keeper ? keeper->base() : std::filesystem::path(options.scene), FileImageReader(), options.import_options);
   if (keeper) {

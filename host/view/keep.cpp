@@ -60,7 +60,8 @@ bool is_written_by_caplet(const fs::path& file) {
 
 }  // namespace
 
-Keeper::Keeper(const fs::path& scene) : scene_(fs::absolute(scene).lexically_normal()) {
+Keeper::Keeper(const fs::path& scene, ReadAs read_as)
+    : read_as_(std::move(read_as)), scene_(fs::absolute(scene).lexically_normal()) {
   const std::string known_as = fs::weakly_canonical(scene_).string();
   const fs::path folder = scene_.parent_path(), name = scene_.filename();
   copy_ = folder / fmt::format(".{}.unsaved.pbrt", name.stem().string());
@@ -128,7 +129,7 @@ void Keeper::find_left(const fs::path& journal) try {
     return;
   }
   const bool begins_in_copy = head->value("copy", false);
-  bool fits = lines_.empty() && scene_hash_.get() == wanted;
+  bool fits = lines_.empty() && head->value("read_as", ReadAs{}) == read_as_ && scene_hash_.get() == wanted;
   if (begins_in_copy) fits = fits && file_hash(copy_) == head->value("content", "");
   Others others;
   const Json named = head->value("others", Json::object());
@@ -213,7 +214,9 @@ std::string Keeper::head() const {
   Json others = Json::object();
   if (others_.valid())
     for (const auto& [name, hash] : others_.get()) others[name] = hash;
-  return Json{{"caplet", format}, {"content", base_hash_.get()}, {"copy", base_is_copy_}, {"others", others}}.dump();
+  Json head{{"caplet", format}, {"content", base_hash_.get()}, {"copy", base_is_copy_}, {"others", others}};
+  if (!read_as_.empty()) head["read_as"] = read_as_;
+  return head.dump();
 }
 
 void Keeper::fail(const std::string& why) {

@@ -22,15 +22,18 @@ namespace caplet::view {
 ///
 /// Changes that are made are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that folder cannot be
 /// written, in the cache: what the page said, in its order, undos too, so that the same lines made again on the same content give
-/// the same scene with the same way back. Its first line names that content by a hash. The journal is there from the first change
+/// the same scene with the same way back. Its first line names that content by a hash, and how it was read. The journal is there from the first change
 /// to the next save. What the file held before it was saved over stays beside it, `.STEM.unsaved.pbrt`, while the session lasts:
 /// the lines of changes after that begin there, too.
 ///
 /// Of two sessions of one file at a time the second keeps nothing.
 class Keeper {
  public:
+  /// What a user asked of the file's reader, by name: another scene, to which changes of this one do not belong.
+  using ReadAs = std::map<std::string, std::string>;
+
   /// Looks for what an earlier session left. `scene` exists.
-  explicit Keeper(const std::filesystem::path& scene);
+  explicit Keeper(const std::filesystem::path& scene, ReadAs read_as = {});
   ~Keeper();
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
@@ -87,6 +90,7 @@ class Keeper {
   void write_journal();
   void fail(const std::string& why);
 
+  ReadAs read_as_;
   std::filesystem::path scene_, copy_, journal_, elsewhere_;  // elsewhere: the journal's second place
   std::filesystem::path lock_file_;
   int lock_ = -1;

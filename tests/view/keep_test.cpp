@@ -279,6 +279,26 @@ TEST(Keeping, ChangesOfAnotherContentAreAskedAbout) {
   EXPECT_THAT(names_in(file.parent_path()), ElementsAre("scene.pbrt"));
 }
 
+TEST(Keeping, TheSameFileReadOtherwiseIsAnotherContent) {
+  const fs::path file = scene_file();
+  const Keeper::ReadAs trace{{"style", "trace"}}, sticks{{"style", "sticks"}};
+  {
+    Keeper keeper(file, trace);
+    keeper.has_read({});
+    keeper.keep("{}");
+  }
+  {
+    Keeper keeper(file, trace);
+    EXPECT_THAT(keeper.lines(), ElementsAre("{}"));
+  }
+  for (const Keeper::ReadAs& other : {sticks, Keeper::ReadAs{}}) {
+    Keeper keeper(file, other);
+    EXPECT_THAT(keeper.lines(), IsEmpty());
+    ASSERT_NE(keeper.old(), nullptr);
+    EXPECT_THAT(keeper.old()->lines, ElementsAre("{}"));
+  }
+}
+
 TEST(Keeping, FilesThatTheSceneNamesCountToo) {
   const fs::path folder = test::temporary_folder(), file = folder / "whole.pbrt", part = folder / "part.pbrt";
   put(part, "Shape \"sphere\" \"float radius\" 1\n");

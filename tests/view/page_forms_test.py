@@ -55,9 +55,7 @@ class Work:
         self.before = self.shown.until(f"{what}: another picture", lambda: (now := self.whole()) and mean_difference(self.before, now) > 0 and now)
 
     def choose(self, name):
-        item = next(i for i in self.shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
-        self.shown.script("arguments[0].scrollIntoView()", item)
-        item.click()
+        self.shown.click("#tree li", name)
         self.shown.until(f"what {name} is", lambda: self.shown.find("edit").is_displayed() and len(self.shown.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
 
     def open(self, form):
@@ -81,13 +79,22 @@ class Work:
             before = self.edits()
             self.shown.script("document.getElementById('back').click()")
             self.shown.until("the program's word", lambda: self.edits() > before)
-        self.shown.until("the first picture again", lambda: self.shown.apart(self.first, 2) == 0)
+        try:
+            self.shown.until("the first picture again", lambda: self.shown.apart(self.first, 2) == 0)
+        except AssertionError as error:
+            width, _, then = self.first
+            now = self.shown.pixels()[2]
+            other = sorted({i // 4 for i, (a, b) in enumerate(zip(then, now)) if a != b})
+            raise AssertionError(f"{error}; {len(other)} pixels differ, columns {min(i % width for i in other)} to {max(i % width for i in other)}, "
+                                 f"rows {other[0] // width} to {other[-1] // width}; the first: {then[4 * other[0]:][:3]}, {now[4 * other[0]:][:3]}") from error
 
 
 @contextlib.contextmanager
 def work(program, out, *options):
     scene = out / "forms.pbrt"
     scene.write_text(SCENE)
+    for left in out.glob(".forms.*"):  # unsaved changes of a case that failed
+        left.unlink()
     with viewer(program, scene, "--spp", "2", *options) as served, page(served.address) as shown:
         one = Work(shown)
         one.address = served.address
@@ -117,7 +124,7 @@ def forms(program, scenes, out):
         at.pick("new-material", "dielectric")
         at.changed("glass of one's own")
         at.put("material", "name", "my glass")
-        shown.until("its name", lambda: any(o.text == "my glass" for o in shown.driver.find_elements(By.CSS_SELECTOR, "#palette button")))
+        shown.until("its name", lambda: "my glass" in shown.words("#palette button"))
         at.choose("box")
         at.pick("surface", "5")
         shown.script("document.querySelector('#palette [data-material=\"0\"]').click()")
@@ -156,7 +163,7 @@ def shapes(program, scenes, out):
             name = button.get_attribute("data-shape")
             shown.script("arguments[0].click()", button)
             shown.until(f"a new {name}", lambda: shown.find("more").text.endswith(f" of {count + i + 1}"))
-            shown.until(f"{name} is selected", lambda: [t.text.split(" ")[0] for t in shown.driver.find_elements(By.CSS_SELECTOR, "#tree [aria-selected=true]")] == [name.split(" ")[0]])
+            shown.until(f"{name} is selected", lambda: [t.split()[0] for t in shown.words("#tree [aria-selected=true]")] == [name.split(" ")[0]])
         at.changed("new shapes")
         width, height, _ = shown.pixels()
         shown.mouse(int(0.3 * width), int(0.8 * height)).perform()
@@ -179,13 +186,13 @@ def hides(program, scenes, out):
         shown.script("document.getElementById('hide').click()")
         at.changed("hidden")
         assert shown.find("more").text.endswith(" of 3"), shown.find("more").text
-        assert [b.text for b in shown.driver.find_elements(By.CSS_SELECTOR, "#hidden button")] == ["Show ball"]
+        assert shown.words("#hidden button") == ["Show ball"]
         shown.mouse(width // 2 + 3, height // 2).perform()
         shown.until("what is behind", lambda: shown.find("under").text and not shown.find("under").text.startswith("ball"))
         at.choose("box")
         shown.script("document.getElementById('isolate').click()")
         at.changed("alone")
-        shown.until("it is still selected", lambda: [t.text.split(" ")[0] for t in shown.driver.find_elements(By.CSS_SELECTOR, "#tree [aria-selected=true]")] == ["box"])
+        shown.until("it is still selected", lambda: [t.split()[0] for t in shown.words("#tree [aria-selected=true]")] == ["box"])
         assert shown.find("hidden-count").text.startswith("3")
         shown.picture(out / "isolated.png")
         shown.script("document.getElementById('show-all').click()")

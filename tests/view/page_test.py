@@ -24,7 +24,7 @@ import urllib.parse
 
 try:
     from selenium import webdriver
-    from selenium.common.exceptions import NoAlertPresentException
+    from selenium.common.exceptions import NoAlertPresentException, StaleElementReferenceException
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
@@ -103,6 +103,20 @@ class Page:
             "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples || 0, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
         return mean_difference(other, now) if samples >= count else -1
 
+    def words(self, which):
+        """The texts of all elements of a selector, of one moment: lists of the page are made anew at any time."""
+        return self.script("return [...document.querySelectorAll(arguments[0])].map((e) => e.innerText.trim())", which)
+
+    def click(self, which, name):
+        """A click on the element whose text begins so, however often its list is made anew."""
+        def clicked():
+            try:
+                item = self.script("const i = [...document.querySelectorAll(arguments[0])].find((e) => e.innerText.trim().startsWith(arguments[1])); i?.scrollIntoView({block: 'center'}); return i", which, name)
+                return item and (item.click() or True)
+            except StaleElementReferenceException:
+                return False
+        self.until(f"{name} to click at", clicked)
+
     def script(self, text, *arguments):
         return self.driver.execute_script(text, *arguments)
 
@@ -113,9 +127,7 @@ class Page:
 
     def choose(self, name):
         """What has that name in the scene's tree, and waits until the page knows what it is."""
-        item = next(i for i in self.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
-        self.script("arguments[0].scrollIntoView({block: 'center'})", item)
-        item.click()
+        self.click("#tree li", name)
         self.until(f"what {name} is", lambda: self.find("edit").is_displayed() and len(self.driver.find_elements(By.CSS_SELECTOR, "#surface option")) > 1)
 
     def move(self, words):
@@ -610,9 +622,7 @@ def figures(program, scenes, out):
         shown.picture(out / f"{name}.png")
 
     def choose(name):
-        item = next(i for i in shown.driver.find_elements(By.CSS_SELECTOR, "#tree li") if i.text.startswith(name))
-        shown.script("arguments[0].scrollIntoView({block: 'center'})", item)
-        item.click()
+        shown.click("#tree li", name)
         shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and shown.find("material").get_attribute("value"))
 
     with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
