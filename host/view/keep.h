@@ -22,9 +22,9 @@ namespace caplet::view {
 ///
 /// Changes that are made are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that folder cannot be
 /// written, in the cache: what the page said, in its order, undos too, so that the same lines made again on the same content give
-/// the same scene with the same way back. Its first line names that content by a hash, and how it was read. The journal is there from the first change
-/// to the next save. What the file held before it was saved over stays beside it, `.STEM.unsaved.pbrt`, while the session lasts:
-/// the lines of changes after that begin there, too.
+/// the same scene with the same way back. Its first line names that content by a hash, and how it was read. The journal is there
+/// from the first change to the next save. What the file held before it was saved over stays beside it, `.STEM.unsaved.pbrt`,
+/// while the session lasts: the lines of changes after that begin there, too.
 ///
 /// Of two sessions of one file at a time the second keeps nothing.
 class Keeper {
