@@ -24,6 +24,8 @@ namespace caplet {
 
 namespace {
 
+bool begins_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
+
 /// gemmi names lines as "PATH:LINE:COLUMN(BYTE): ..." or "Problem in line LINE: ...".
 [[noreturn]] void refuse(const std::string& path, std::string message) {
   SourceLocation where{path, 0, 0};
@@ -35,13 +37,13 @@ namespace {
   };
   const std::string problem = "Problem in line ";
   std::size_t at = 0;
-  if (message.starts_with(path + ":")) {
+  if (begins_with(message, path + ":")) {
     at = path.size() + 1;
     where.line = number(at);
     if (at < message.size() && message[at] == ':') where.column = number(++at);
     at = message.find(": ", at);
     if (at != std::string::npos) message.erase(0, at + 2);
-  } else if (message.starts_with(problem)) {
+  } else if (begins_with(message, problem)) {
     at = problem.size();
     where.line = number(at);
     message.erase(0, std::min(message.size(), at + 2));
@@ -221,7 +223,7 @@ void add_conect(std::string_view text, Molecule& out) {
   };
   while (!text.empty()) {
     const std::string_view line = take_line(text);
-    if (!line.starts_with("CONECT")) continue;
+    if (!begins_with(line, "CONECT")) continue;
     if (by_serial.empty())
       for (std::uint32_t i = 0; i < out.atoms.size(); ++i) by_serial.try_emplace(out.atoms[i].serial, i);
     const auto from = by_serial.find(serial_at(line, 6));
@@ -242,9 +244,9 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
   glm::dmat4 m(1);
   for (int number = 1; !text.empty(); ++number) {
     std::string_view line = take_line(text);
-    if (line.starts_with("ATOM")) break;
+    if (begins_with(line, "ATOM")) break;
     const std::string_view remark = "REMARK 350";
-    if (!line.starts_with(remark)) continue;
+    if (!begins_with(line, remark)) continue;
     line.remove_prefix(remark.size());
     const std::vector<std::string> words = gemmi::split_str_multi(std::string(line), " ,\t");
     const auto chains_from = [&](std::size_t first) {
@@ -259,7 +261,7 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
       listing = true;
     } else if (listing && words.size() > 2 && words[0] == "AND" && words[1] == "CHAINS:") {
       chains_from(2);
-    } else if (listing && words.size() == 6 && words[0].size() == 6 && words[0].starts_with("BIOMT")) {
+    } else if (listing && words.size() == 6 && words[0].size() == 6 && begins_with(words[0], "BIOMT")) {
       const int row = words[0][5] - '1';
       if (row < 0 || row > 2) continue;
       for (int column = 0; column < 4; ++column) {
