@@ -1,20 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Writes the type stubs of the modules that are made from the library's lists; the package is to be importable.
+"""Writes the type stubs of the modules that are made from the library's lists: python/CMakeLists.txt calls it when the package is built.
 
-usage: python_stubs.py            writes python/caplet/{materials,textures,lights,media,cameras}.pyi
-       python_stubs.py --check    whether they are as they would be written; exit status 1 when not
+usage: python_stubs.py PACKAGE    writes PACKAGE/{materials,textures,lights,media,cameras}.pyi; PACKAGE has the built binding
 """
+import importlib
+import os
 import pathlib
 import sys
+import types
 
-from caplet import named
-
-FOLDER = pathlib.Path(__file__).resolve().parents[1] / "python/caplet"
 HEAD = '''# SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-# Written by tools/python_stubs.py from the library's lists.
+# Written by tools/python_stubs.py from the library's lists when the package was built.
 from collections.abc import Sequence
 from os import PathLike
 from typing import Any
@@ -44,28 +43,32 @@ def annotation(types):
     return " | ".join([*parts, "None"])
 
 
-def text(kind):
+def lists_of(folder):
+    """caplet.lists of the package in `folder`, without what the package needs beside it."""
+    package = types.ModuleType("caplet")
+    package.__path__ = [str(folder)]
+    sys.modules["caplet"] = package
+    return importlib.import_module("caplet.lists")
+
+
+def text(lists, kind):
     lines = [HEAD]
-    for type in named.types(kind):
-        asked = [f"    {key}: {annotation(types)} = None," for key, _, types in sorted(named.signature(kind, type))]
-        asked += [f"    {name}: {EXTRA[name]} = {value!r}," for name, value in named._EXTRA.get(kind, ())]
-        lines += [f"def {named.spelled(type)}(", *(["    *,"] if asked else []), *asked, f") -> {named._CLASSES[kind].__name__}: ...", ""]
+    for type in lists.types(kind):
+        asked = [f"    {key}: {annotation(types)} = None," for key, _, types in sorted(lists.signature(kind, type))]
+        asked += [f"    {name}: {EXTRA[name]} = {value!r}," for name, value in lists.EXTRA.get(kind, ())]
+        lines += [f"def {lists.spelled(type)}(", *(["    *,"] if asked else []), *asked, f") -> {kind.capitalize()}: ...", ""]
     lines.append("__all__: list[str]")
     return "\n".join(lines) + "\n"
 
 
-def main(arguments):
-    wrong = []
+def main(folder):
+    lists = lists_of(folder)
     for kind, module in (("material", "materials"), ("texture", "textures"), ("light", "lights"), ("medium", "media"), ("camera", "cameras")):
-        path = FOLDER / f"{module}.pyi"
-        if arguments != ["--check"]:
-            path.write_text(text(kind))
-        elif not path.exists() or path.read_text() != text(kind):
-            wrong.append(str(path))
-    for path in wrong:
-        print(f"{path} is not as tools/python_stubs.py writes it")
-    return 1 if wrong else 0
+        path = folder / f"{module}.pyi"
+        new = path.with_suffix(".pyi.part")
+        new.write_text(text(lists, kind))
+        os.replace(new, path)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(pathlib.Path(sys.argv[1]))

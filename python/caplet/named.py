@@ -2,20 +2,13 @@
 # Copyright Caplet authors
 """Materials, textures, lights, media, cameras: a type of the library's lists with parameters by name."""
 import inspect
-import keyword
 
 import numpy as np
 
-from . import _caplet
 from .errors import InputError
+from .lists import EXTRA, known_parameters, signature, spelled, types
 
 _FILES = "docs/formats/pbrt.md"
-
-
-def spelled(name):
-    """A parameter's name as a keyword: "conductor.eta" -> conductor_eta, "from" -> from_."""
-    name = name.replace(".", "_")
-    return name + "_" if keyword.iskeyword(name) else name
 
 
 class Blackbody:
@@ -77,31 +70,6 @@ class Camera(Named):
 _CLASSES = {"material": Material, "texture": Texture, "light": Light, "medium": Medium, "camera": Camera}
 
 
-def types(kind):
-    """The names of the library's list."""
-    if kind == "material":
-        return _caplet.material_types()
-    if kind == "texture":
-        return _caplet.texture_types()
-    return _caplet.statement_types(kind)
-
-
-def known_parameters(kind, type):
-    """[(name, (types of values))] of the library's list."""
-    if kind == "material":
-        return [(name, ()) for name in _caplet.material_parameters(type)] + [("displacement", ("texture",)), ("normalmap", ("texture",))]
-    if kind == "texture":
-        return [(name, ()) for name in _caplet.texture_parameters(type)]
-    return [(name, tuple(kinds)) for name, kinds in _caplet.statement_parameters(kind, type)]
-
-
-_EXTRA = {
-    "texture": (("is_float", False), ("transform", None)),
-    "light": (("transform", None),),
-    "medium": (("transform", None), ("name", None)),
-    "material": (("name", None),),
-    "camera": (("eye", None), ("target", None), ("up", (0, 1, 0)), ("transform", None)),
-}
 _SAID = {
     "is_float": "of numbers, not of colours",
     "transform": "4 x 4, world space from its own",
@@ -112,20 +80,11 @@ _SAID = {
 }
 
 
-def signature(kind, type):
-    """[(keyword, parameter, types)] of the constructor of a type, without what all of its kind have."""
-    out = [(spelled(name), name, kinds) for name, kinds in known_parameters(kind, type)]
-    names = {name for name, _, _ in out}
-    if {"alpha_u", "alpha_v"} <= names and "alpha" not in names:
-        out.append(("alpha", "alpha", ()))
-    return out
-
-
 def constructor(kind, type):
     """The function that makes one of this type."""
     asked = signature(kind, type)
     names = {key: name for key, name, _ in asked}
-    extra = _EXTRA.get(kind, ())
+    extra = EXTRA.get(kind, ())
     made = _CLASSES[kind]
 
     def make(**given):
