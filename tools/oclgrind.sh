@@ -55,7 +55,7 @@ scene() {
   build_options="$build_options -DCAPLET_PORTABLE" \
     watched "$1-wide" render "$2" -o "$folder/$1-wide.exr" --size 8x8 --spp 2 --max-depth 4 --encoding wide || code=1
   watched "$1-pick" pick "$2" --size 8x8 --pixel 3,4 || code=1
-  watched "$1-list" pick "$2" --all --limit 20 --rays "$folder/rays.txt" --out "$folder/$1.csv" || code=1
+  watched "$1-list" pick "$2" --all --limit 1000 --rays "$folder/rays.txt" --out "$folder/$1.csv" || code=1
   return $code
 }
 
@@ -69,9 +69,30 @@ mkdir -p "$folder/vendors"
 driver=$(dirname "$(readlink -f "$(command -v oclgrind)")")/../lib/oclgrind/liboclgrind-rt-icd.so
 [ -e "$driver" ] || { echo "oclgrind.sh: no $driver (Debian's package oclgrind)" >&2; exit 1; }
 realpath "$driver" >"$folder/vendors/oclgrind.icd"
-# Buffers are never given back: where one takes the number of another that was, Oclgrind 21.10 keeps the other's size for what it knows of written
-# bytes, and takes the rest for never written.
-echo "int clReleaseMemObject(void* memory) { (void)memory; return 0; }" | ${CC:-cc} -shared -fPIC -x c - -o "$folder/keep.so"
+# What Oclgrind 21.10 knows of written bytes: where a buffer takes the number of another that was given back, the other's size, so none is given
+# back; and nothing of those that clEnqueueFillBuffer fills (sort bins), so they are written.
+cat >"$folder/keep.c" <<'END'
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <stdlib.h>
+#include <string.h>
+
+cl_int clReleaseMemObject(cl_mem memory) {
+  (void)memory;
+  return CL_SUCCESS;
+}
+
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void *pattern, size_t pattern_size, size_t offset, size_t size,
+                           cl_uint waits, const cl_event *wait_list, cl_event *event) {
+  char *bytes = malloc(size);
+  if (!bytes) return CL_OUT_OF_HOST_MEMORY;
+  for (size_t i = 0; i < size; i += pattern_size) memcpy(bytes + i, pattern, pattern_size);
+  const cl_int status = clEnqueueWriteBuffer(queue, buffer, CL_TRUE, offset, size, bytes, waits, wait_list, event);
+  free(bytes);
+  return status;
+}
+END
+${CC:-cc} -shared -fPIC "$folder/keep.c" -o "$folder/keep.so"
 bad=0 running=0
 # The array that `extend` writes its hits into, as the stage names it. What is planted leaves the hits right, so that the device is not refused.
 hits=$(grep -oE 'g->[a-z_.]*path_hit' "$root/kernels/stages/extend.cl" | head -n 1)
