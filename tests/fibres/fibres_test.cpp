@@ -84,12 +84,12 @@ TEST(Hair, SegmentsThicknessAndColours) {
   for (int i = 0; i < 5; ++i) arrays.put(static_cast<float>(i)).put(0.0F).put(-1.0F);
   for (int i = 0; i < 5; ++i) arrays.put(0.2F * static_cast<float>(i + 1));
   for (int i = 0; i < 5; ++i) arrays.put(0.0F);  // transparency
-  for (int i = 0; i < 5; ++i) arrays.put(1.0F).put(0.5F).put(0.0F);
+  for (int i = 0; i < 5; ++i) arrays.put(1.0F).put(0.5F).put(0.25F * static_cast<float>(i));
   const Fibres all = read_hair(hair_file(2, 5, 31, arrays), "a.hair");
   EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{3, 5}));
   EXPECT_EQ(all.points[4], glm::vec3(4, 0, -1));
   EXPECT_FLOAT_EQ(all.radii[4], 0.5F);  // thickness is a width
-  EXPECT_EQ(all.colors[2], glm::vec3(1, 0.5F, 0));
+  EXPECT_EQ(all.colors[2], glm::vec3(1, 0.5F, 0.5F));
 
   const Scene scene = scene_of("a.hair", hair_file(2, 5, 31, arrays));
   const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
@@ -99,7 +99,12 @@ TEST(Hair, SegmentsThicknessAndColours) {
   EXPECT_FLOAT_EQ(capsules.radius1[2], 0.5F);
   EXPECT_TRUE(std::holds_alternative<HairMaterial>(scene.materials.at(0).model));
   const Scene colored = scene_of("a.hair", hair_file(2, 5, 31, arrays), {{{"color", "file"}, {"radius", "2"}}});
-  EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(colored.materials.at(0).model).reflectance).rgb.x, 1);
+  const auto& painted = std::get<CapsulesShape>(colored.shapes.at(0).geometry);
+  const auto color = [&](std::size_t i) {
+    return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(colored.materials.at(painted.materials.at(i)).model).reflectance).rgb;
+  };
+  for (std::size_t i = 0; i < 3; ++i)  // a segment has its first point's, within half a step of a fifteenth
+    EXPECT_LT(glm::length(color(i) - glm::dvec3(1, 0.5, 0.25 * static_cast<double>(i < 2 ? i : 3))), std::sqrt(3.0) / 30) << i;
   EXPECT_EQ(std::get<CapsulesShape>(colored.shapes.at(0).geometry).radius0[1], 2.0F);
 }
 
@@ -264,8 +269,9 @@ TEST(BadFibres, AreRefused) {
   std::string trk = trk_file({1, 2, 3}, "RAS", {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1}, false);
   EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, trk.size() - 20), "x.trk"); }), HasSubstr("x.trk"));
   EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, 900), "x.trk"); }), HasSubstr("ends before"));
+  EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, trk.size() - 20), "x.trk"); }), HasSubstr("x.trk: byte "));
   EXPECT_THAT(complaint([] { read_trk("nothing", "x.trk"); }), HasSubstr("TRACK"));
-  EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ncount: 1\n", "x.tck"); }), HasSubstr("x.tck:3"));
+  EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ncount: 1\n", "x.tck"); }), HasSubstr("x.tck:3: the header does not end"));
   EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Int8\nEND\n", "x.tck"); }), HasSubstr("x.tck:2"));
   EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Float32LE\nEND\nabc", "x.tck"); }), HasSubstr("infinite point"));
   const std::string head = "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\n";

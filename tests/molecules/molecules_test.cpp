@@ -152,14 +152,14 @@ TEST(Pdb, BlankElementsComeFromTheNames) {
 TEST(Pdb, OnlyTheFirstAlternativePlaceIsDrawn) {
   const std::string text = atom_line(1, " CA ", ' ', "SER", 'A', 1, 0, 0, 0, 1, " C") +
                            atom_line(2, " CB ", 'A', "SER", 'A', 1, 1.5, 0, 0, 1, " C") +
-                           atom_line(3, " CB ", 'B', "SER", 'A', 1, 0, 1.5, 0, 1, " C");
+                           atom_line(3, " CB ", 'B', "SER", 'A', 1, 1, 1.2, 0, 1, " C");  // within a bond's reach of both
   EXPECT_EQ(read_pdb(text, "a.pdb", {}).atoms.size(), 2u);
   const Molecule all = read_pdb(text, "a.pdb", {{{"altloc", "all"}}});
   EXPECT_EQ(all.atoms.size(), 3u);
   EXPECT_EQ(all_bonds(all, "a.pdb"), (std::vector<Bond>{{0, 1}, {0, 2}}));
   const Molecule b = read_pdb(text, "a.pdb", {{{"altloc", "B"}}});
   ASSERT_EQ(b.atoms.size(), 2u);
-  EXPECT_EQ(b.atoms[1].position, glm::vec3(0, 1.5F, 0));
+  EXPECT_EQ(b.atoms[1].position, glm::vec3(1, 1.2F, 0));
 }
 
 TEST(Pdb, WaterAndHydrogensAndSelections) {
