@@ -40,8 +40,9 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   MediumWeights weights;
   const int begins = depth == 0u && ray.t_min == 0.0f;
   if (begins) {
-    held = path_held(g, g->camera.camera->origins ? path : 0u);
-    set_path_held(g, path, held);
+    const uint first = g->camera.camera->origins ? path : 0u;  // whose origin it has
+    held = path_held(g, first);
+    if (path != first) set_path_held(g, path, held);
     weights.scattering = weights.light = (float4)(1.0f);
     g->immersion.path_ratio[path] = weights.scattering;
     g->immersion.path_light_ratio[path] = weights.light;

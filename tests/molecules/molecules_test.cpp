@@ -123,8 +123,15 @@ TEST(Traces, GoThroughTheAlphaCarbons) {
   EXPECT_EQ(tube.p0.front(), glm::vec3(16.967F, 12.784F, 4.338F));
   for (std::size_t i = 1; i < tube.p0.size(); ++i) EXPECT_EQ(tube.p0[i], tube.p1[i - 1]);
   const Molecule molecule = read_pdb(bytes_of(test::data_folder() / "mol/pdb/1crn.pdb"), "1crn.pdb", {});
+  const auto alpha = [&](std::size_t r) {
+    return molecule.atoms[static_cast<std::size_t>(molecule.residues[r].trace_atom)].position;
+  };
+  for (std::size_t r = 1; r < 44; ++r) {  // the spline of Catmull and Rom half way
+    const glm::vec3 half = (9.0F * (alpha(r) + alpha(r + 1)) - alpha(r - 1) - alpha(r + 2)) / 16.0F;
+    EXPECT_LT(glm::length(tube.p1[6 * r + 2] - half), 1e-4F) << r;
+  }
   for (std::size_t r = 0; r < 46; ++r) {
-    const glm::vec3 at = molecule.atoms[static_cast<std::size_t>(molecule.residues[r].trace_atom)].position;
+    const glm::vec3 at = alpha(r);
     const glm::vec3 on = r < 45 ? tube.p0[6 * r] : tube.p1.back();
     EXPECT_LT(glm::length(at - on), 1e-4F) << r;
   }
@@ -182,6 +189,17 @@ TEST(Pdb, ConectAddsWhatDistanceDoesNot) {
                            atom_line(2, " O  ", ' ', "OXY", 'A', 2, 3.5, 0, 0, 1, " O", "HETATM") +
                            "CONECT    1    2    2\nCONECT    2    1\nCONECT    2   77\n";
   EXPECT_EQ(all_bonds(read_pdb(text, "c.pdb", {}), "c.pdb"), (std::vector<Bond>{{0, 1}}));
+}
+
+TEST(Pdb, LinksAreBondsWithinTheUnit) {
+  const auto bonds = [](const char* other) {
+    const std::string text = std::string("LINK         O   GLY A   1                ZN    ZN A   2     1555   ") + other +
+                             "  5.00\n" + atom_line(1, " O  ", ' ', "GLY", 'A', 1, 0, 0, 0, 1, " O") +
+                             atom_line(2, "ZN  ", ' ', " ZN", 'A', 2, 5, 0, 0, 1, "ZN", "HETATM");
+    return all_bonds(read_pdb(text, "l.pdb", {}), "l.pdb");
+  };
+  EXPECT_EQ(bonds("1555"), (std::vector<Bond>{{0, 1}}));
+  EXPECT_EQ(bonds("2555"), std::vector<Bond>());  // to a copy by symmetry
 }
 
 TEST(Components, AreTheBondsOfTheirResidues) {
