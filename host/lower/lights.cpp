@@ -258,7 +258,7 @@ void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vec
     groups.push_back(share.group);
   }
   std::ranges::sort(groups);
-  const auto others = static_cast<double>(std::distance(groups.begin(), std::ranges::unique(groups).begin()));
+  const auto others = static_cast<double>(std::distance(groups.begin(), std::unique(groups.begin(), groups.end())));
   const double chance = 0.5 * of_tree / (of_tree + of_others) + 0.5 / (1 + others);
   // Rows for what may be chosen: emissive primitives stand first.
   out.lighting.table_begin = others > 0 ? narrow<uint>(emitters) : out.lighting.light_count;
