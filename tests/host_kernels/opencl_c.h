@@ -173,4 +173,7 @@ VECTORS(ANY_ALL)
 VECTORS(LOAD_STORE, float)
 VECTORS(LOAD_STORE, int)
 
+// Both widths are linked into one program: tables are each text's own.
+#define __constant static constant
+
 #endif
