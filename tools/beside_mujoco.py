@@ -16,6 +16,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 import mujoco
 import numpy as np
@@ -27,10 +28,24 @@ RAY = 1e-5        # of distances
 
 
 def model_of(path):
-    """The model as it stands in the file: nothing fused or left out."""
+    """The model as it stands in the file: nothing fused or left out, and no meshes of URDF that are not there."""
+    if path.suffix == ".urdf":
+        tree = xml.etree.ElementTree.fromstring(path.read_text().rstrip("\0"))
+        for link in tree.iter("link"):
+            for part in [p for p in link if p.find("geometry/mesh") is not None]:
+                link.remove(part)
+        settings = xml.etree.ElementTree.SubElement(tree, "mujoco")
+        xml.etree.ElementTree.SubElement(settings, "compiler", discardvisual="false", fusestatic="false", balanceinertia="true",
+                                         boundmass="0.01", boundinertia="0.01")
+        return mujoco.MjModel.from_xml_string(xml.etree.ElementTree.tostring(tree, encoding="unicode"))
     spec = mujoco.MjSpec.from_file(str(path))
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = False
+    for actuator in list(spec.actuators):  # some do not compile without MuJoCo finding out their range
+        spec.delete(actuator)
+    for key in spec.keys:
+        key.ctrl = []
+        key.act = []
     return spec.compile()
 
 

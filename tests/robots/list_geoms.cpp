@@ -26,7 +26,8 @@ int main(int count, char** words) {
       nlohmann::json one{{"name", shape.name}, {"backdrop", shape.is_backdrop}};
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column) one["world"].push_back(shape.world_from_object[column][row]);
-      if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) one.update({{"type", "sphere"}, {"size", {sphere->radius}}});
+      if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry))
+        one.update({{"type", "sphere"}, {"size", {sphere->radius}}});
       if (const auto* box = std::get_if<BoxShape>(&shape.geometry))
         one.update({{"type", "box"}, {"size", {box->p1.x, box->p1.y, box->p1.z}}});
       if (const auto* cylinder = std::get_if<CylinderShape>(&shape.geometry))

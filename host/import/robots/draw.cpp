@@ -11,6 +11,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 #include "base/check.h"
 #include "import/detail/importers.h"
@@ -137,10 +138,9 @@ class Drawing {
     return out;
   }
 
-  /// The image, times the colour.
+  /// The image, times the colour; its index.
   std::uint32_t texture(const RobotGeom& geom, const RobotMaterial& of, const glm::dvec4& rgba, bool has_uvs) {
     ImagemapTexture image;
-    image.image = of.texture->image;
     image.filter = 2;
     TextureMapping& mapping = image.mapping;
     glm::dmat4 texture_from_geom(1);
@@ -167,14 +167,30 @@ class Drawing {
     }
     if (mapping.kind != TextureMapping::Kind::uv)
       mapping.texture_from_world = texture_from_geom * glm::inverse(world_ * geom.world);
-    const auto index = [this] { return narrow<std::uint32_t>(scene_.textures.size() - 1); };
+    image.image = tinted(of.texture->image, glm::dvec3(rgba));
     scene_.textures.push_back({image, false, of.name, of.where});
-    if (glm::dvec3(rgba) == glm::dvec3(1)) return index();
-    ScaleTexture tinted;
-    tinted.tex.texture = index();
-    tinted.scale.value = linear(glm::dvec3(rgba));
-    scene_.textures.push_back({tinted, false, of.name + " tinted", of.where});
-    return index();
+    return narrow<std::uint32_t>(scene_.textures.size() - 1);
+  }
+
+  /// Its colours as on a screen, times another: what MuJoCo shows.
+  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color) {
+    if (color == glm::dvec3(1)) return image;
+    std::shared_ptr<const TextureImage>& known = tinted_[{image.get(), color.r, color.g, color.b}];
+    if (known) return known;
+    auto out = std::make_shared<TextureImage>(*image);
+    out->file.clear();
+    const std::size_t channels = static_cast<std::size_t>(image->channels), pixels = image->values() / channels;
+    out->channels = 3;
+    out->bytes.assign(image->bytes.empty() ? 0 : 3 * pixels, 0);
+    out->floats.assign(image->floats.empty() ? 0 : 3 * pixels, 0);
+    for (std::size_t i = 0; i < pixels; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = channels * i + (channels >= 3 ? k : 0);
+        const double factor = std::clamp(color[static_cast<int>(k)], 0.0, 1.0);
+        if (!out->bytes.empty()) out->bytes[3 * i + k] = static_cast<std::uint8_t>(image->bytes[from] * factor);
+        if (!out->floats.empty()) out->floats[3 * i + k] = image->floats[from] * static_cast<float>(linear(factor));
+      }
+    return known = out;
   }
 
   void add(const RobotGeom& geom, Geometry geometry, const glm::dmat4& geom_from_shape) {
@@ -220,6 +236,7 @@ class Drawing {
   MeshFiles files_;
   std::size_t triangles_ = 0;
   std::map<Key, std::uint32_t> materials_;
+  std::map<std::tuple<const TextureImage*, double, double, double>, std::shared_ptr<const TextureImage>> tinted_;
   std::optional<std::uint32_t> mirror_;
   std::vector<const RobotGeom*> planes_;
 };

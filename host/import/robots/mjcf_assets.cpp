@@ -34,10 +34,10 @@ void stretch(std::vector<float>& values) {
 Heights heights_of(const Element& of, const ImageReader& images, const std::filesystem::path& path) {
   Heights out;
   const auto counted = [&](double rows, double columns) {
-    constexpr double most = 1 << 13;
-    if (!(rows >= 2 && columns >= 2) || rows > most || columns > most || rows != std::floor(rows) ||
+    constexpr double most = 1 << 13, most_cells = 1 << 22;
+    if (!(rows >= 2 && columns >= 2) || rows > most || columns > most || rows * columns > most_cells || rows != std::floor(rows) ||
         columns != std::floor(columns))
-      of.fail(fmt::format("a height field has 2 to {} rows and columns", most));
+      of.fail(fmt::format("a height field has 2 to {} rows and columns, and at most 2^22 heights", most));
     out.rows = static_cast<std::size_t>(rows);
     out.columns = static_cast<std::size_t>(columns);
   };

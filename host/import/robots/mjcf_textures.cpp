@@ -20,7 +20,7 @@ enum Builtin : std::size_t { none, gradient, checker, flat };
 enum Mark : std::size_t { no_mark, edge, cross, dots };
 
 using Rgb = std::array<std::uint8_t, 3>;
-constexpr int kLargest = 8192;
+constexpr int kLargest = 4096;
 
 struct Recipe {
   std::size_t builtin = none, mark = no_mark;
