@@ -159,32 +159,51 @@ TEST(MjcfLooks, SkiesAreSeen) {
   EXPECT_LT(sky.image->rgb.back(), 0.1F);
 }
 
+TEST(MjcfLooks, TheExampleWalks) {
+  const Scene scene =
+      import_scene(test::source_folder() / "scenes/walker.xml", test::NoImages(), {{{"up", "y"}, {"pose", "step"}}});
+  EXPECT_EQ(count_primitives(scene),
+            (std::map<std::string, std::uint64_t>{{"capsule", 10}, {"box", 1}, {"cylinder", 4}, {"sphere", 8}, {"triangle", 2}}));
+  // The front leg's angles about y: 35 degrees and 0.35, then -68 degrees and 0.25.
+  const double degree = std::acos(-1.0) / 180, thigh = 35 * degree + 0.35, shin = thigh - 68 * degree + 0.25;
+  bool found = false;
+  for (const Shape& shape : scene.shapes) {
+    if (shape.name != "foot_0_0") continue;
+    found = true;
+    const glm::dvec3 at(shape.world_from_object[3]);
+    EXPECT_NEAR(at.x, 0.19 - 0.21 * std::sin(thigh) - 0.22 * std::sin(shin), 1e-9);
+    EXPECT_NEAR(at.y, -0.11, 1e-9);
+    EXPECT_NEAR(at.z, 0.44 - 0.01 - 0.21 * std::cos(thigh) - 0.22 * std::cos(shin), 1e-9);
+  }
+  EXPECT_TRUE(found);
+}
+
 #ifdef CAPLET_WITH_PLY
 TEST(RobotMeshes, ColladaIsReadInItsUnit) {
-  test::write_file("t.dae", R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  const std::string mesh_file =
+      test::write_file("t.dae",
+                       R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit meter="0.1"/><up_axis>Y_UP</up_axis></asset>
 <library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 2 0</float_array>
 <technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="s"><node id="n"><translate>0 0 3</translate><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
-  const Scene scene = import_scene(
-      test::write_file("t.urdf",
-                       "<robot><link name='a'><visual><geometry><mesh filename='t.dae'/></geometry></visual></link></robot>"),
-      test::NoImages(), {{{"up", "y"}}});
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)")
+          .string();
+  const Scene scene = import_scene(test::write_file("t.urdf", "<robot><link name='a'><visual><geometry><mesh filename='file://" +
+                                                                  mesh_file + "'/></geometry></visual></link></robot>"),
+                                   test::NoImages(), {{{"up", "y"}}});
   const auto& mesh = std::get<TriangleMeshShape>(scene.shapes[0].geometry);
   ASSERT_EQ(mesh.positions.size(), 3U);
   EXPECT_NEAR(mesh.positions[1].x, 0.1, 1e-6);
   EXPECT_NEAR(mesh.positions[2].y, 0.2, 1e-6);
   EXPECT_NEAR(mesh.positions[0].z, 0.3, 1e-6);
-  test::write_file("bad.dae", "<COLLADA");
+  const std::string bad_file = test::write_file("bad.dae", "<COLLADA").string();
   EXPECT_THAT(complaint([] {
-                import_scene(
-                    test::write_file(
-                        "t.urdf",
-                        "<robot><link name='a'><visual><geometry><mesh filename='bad.dae'/></geometry></visual></link></robot>"),
-                    test::NoImages());
+                import_scene(test::write_file("t.urdf", "<robot><link name='a'><visual><geometry><mesh filename='file://" +
+                                                            bad_file + "'/></geometry></visual></link></robot>"),
+                             test::NoImages());
               }),
               HasSubstr("bad.dae"));
 }

@@ -165,21 +165,24 @@ TEST(Mjcf, KeyframesHaveTheNumbersOfAllJoints) {
 }
 
 TEST(Mjcf, FilesAreIncludedWhereTheyAreNamed) {
-  test::write_file("part.xml", "<mujocoinclude><geom name='a' size='1'/></mujocoinclude>");
-  test::write_file("settings.xml", "<x><compiler angle='radian'/><default><geom pos='0 0 9'/></default></x>");
-  const Scene scene =
-      scene_of_text("<worldbody><body pos='1 0 0'><include file='part.xml'/></body></worldbody><include file='settings.xml'/>");
+  const std::string part = test::write_file("part.xml", "<mujocoinclude><geom name='a' size='1'/></mujocoinclude>").string();
+  const std::string settings =
+      test::write_file("settings.xml", "<x><compiler angle='radian'/><default><geom pos='0 0 9'/></default></x>").string();
+  const Scene scene = scene_of_text("<worldbody><body pos='1 0 0'><include file='" + part +
+                                    "'/></body></worldbody><include file='" + settings + "'/>");
   expect_near(at(named(scene, "a")), {1, 0, 9});
-  test::write_file("again.xml", "<x><include file='again.xml'/></x>");
-  EXPECT_THAT(complaint([] { scene_of_text("\n<include file='again.xml'/>"); }), HasSubstr("again.xml:1:5: "));
+  const std::string again = test::write_file("again.xml", "<x><include file='again.xml'/></x>").string();
+  EXPECT_THAT(complaint([&] { scene_of_text("\n<include file='" + again + "'/>"); }), HasSubstr("again.xml:1:5: "));
   EXPECT_THAT(complaint([] { scene_of_text("\n<include file='none.xml'/>"); }), HasSubstr("robot.xml:2:2: "));
 }
 
 TEST(Mjcf, ModelsAreAttachedWithTheirOwnSettings) {
-  test::write_file("arm.xml", R"(<mujoco model="arm"><compiler angle="radian"/><default><geom size=".25"/></default>
+  const std::string arm =
+      test::write_file("arm.xml", R"(<mujoco model="arm"><compiler angle="radian"/><default><geom size=".25"/></default>
 <worldbody><body name="base" pos="0 0 2"><geom name="g" pos="1 0 0"/><body name="tip" pos="0 5 0" euler="0 0 1.5707963267948966"><geom name="t" pos="1 0 0"/></body></body>
-<geom name="floor"/></worldbody></mujoco>)");
-  const std::string asset = "<asset><model name='m' file='arm.xml'/></asset>";
+<geom name="floor"/></worldbody></mujoco>)")
+          .string();
+  const std::string asset = "<asset><model name='m' file='" + arm + "'/></asset>";
   const Scene scene =
       scene_of_text(asset + "<worldbody><body pos='1 0 0'><attach model='m' body='base' prefix='p_'/></body></worldbody>");
   expect_near(at(named(scene, "p_g")), {2, 0, 2});
@@ -189,11 +192,10 @@ TEST(Mjcf, ModelsAreAttachedWithTheirOwnSettings) {
   const Scene tip = scene_of_text(asset + "<worldbody><attach model='m' body='tip' prefix='p_'/></worldbody>");
   expect_near(at(named(tip, "p_t")), {0, 6, 0});
   EXPECT_EQ(scene_of_text(asset + "<worldbody><attach model='m' prefix='p_'/></worldbody>").shapes.size(), 3U);
-  EXPECT_EQ(scene_of_text("<asset><model file='arm.xml'/></asset><worldbody><attach model='arm' prefix='p_'/></worldbody>")
-                .shapes.size(),
-            3U);
-  test::write_file("self.xml", "<mujoco model='s'><asset><model file='self.xml'/></asset></mujoco>");
-  EXPECT_THAT(complaint([] { scene_of(test::temporary_folder() / "self.xml"); }), HasSubstr("attached to itself"));
+  const std::string unnamed = "<asset><model file='" + arm + "'/></asset>";
+  EXPECT_EQ(scene_of_text(unnamed + "<worldbody><attach model='arm' prefix='p_'/></worldbody>").shapes.size(), 3U);
+  const auto self = test::write_file("self.xml", "<mujoco model='s'><asset><model file='self.xml'/></asset></mujoco>");
+  EXPECT_THAT(complaint([&] { scene_of(self); }), HasSubstr("attached to itself"));
 }
 
 TEST(Mjcf, MeshesLieWhereTheFileSays) {
@@ -210,8 +212,9 @@ refpos=".1 .2 .3" refquat=".7 .1 .2 .3" scale="1 2 3"/></asset><worldbody><geom 
 }
 
 TEST(Mjcf, MeshFilesAreSoughtInTheirFolder) {
-  std::filesystem::create_directories(test::temporary_folder() / "meshes");
-  test::write_file("meshes/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib none.mtl\n");
+  const std::filesystem::path folder = test::temporary_folder();
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name, std::ios::binary) << text; };
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib none.mtl\n");
   std::string msh(16 + 9 * 4 + 6 * 4 + 3 * 4, '\0');
   const std::int32_t counts[] = {3, 0, 3, 1}, face[] = {0, 1, 2};
   const float positions[] = {0, 0, 5, 1, 0, 5, 0, 1, 5}, uvs[] = {0, 0.25F, 1, 0, 0, 1};
@@ -219,7 +222,7 @@ TEST(Mjcf, MeshFilesAreSoughtInTheirFolder) {
   std::memcpy(msh.data() + 16, positions, 36);
   std::memcpy(msh.data() + 52, uvs, 24);
   std::memcpy(msh.data() + 76, face, 12);
-  test::write_file("meshes/u.msh", msh);
+  write("u.msh", msh);
   const std::string assets =
       "<compiler meshdir='meshes'/><asset><mesh file='t.obj' scale='2 2 2'/><mesh name='u' file='u.msh'/></asset>";
   const Scene scene = scene_of_text(assets + "<worldbody><geom type='mesh' mesh='t'/><geom type='mesh' mesh='u'/></worldbody>");
@@ -232,7 +235,7 @@ TEST(Mjcf, MeshFilesAreSoughtInTheirFolder) {
   EXPECT_NE(
       complaint([&] { scene_of_text("<asset><mesh file='w.stl'/></asset><worldbody><geom type='mesh' mesh='w'/></worldbody>"); }),
       "");
-  test::write_file("meshes/u.msh", msh.substr(0, 80));
+  write("u.msh", msh.substr(0, 80));
   EXPECT_THAT(complaint([&] { scene_of_text(assets + "<worldbody><geom type='mesh' mesh='u'/></worldbody>"); }),
               HasSubstr("need 88 bytes"));
 }
@@ -246,8 +249,8 @@ TEST(Mjcf, HeightFieldsAreSolid) {
   expect_near(mesh.positions[0], {-1, -2, 1.8}, 1e-6);
   expect_near(mesh.positions[5], {1, 2, 1.2}, 1e-6);
   EXPECT_FLOAT_EQ(mesh.positions[6].z, -0.1F);
-  EXPECT_EQ(open_edges(scene.shapes[0]), 0);  // four triangles above, two below, two for each of six sides
-  EXPECT_EQ(mesh.triangles.size(), 4U + 2U + 12U);
+  EXPECT_EQ(open_edges(scene.shapes[0]), 0);  // four triangles above and below, two for each of six sides
+  EXPECT_EQ(mesh.triangles.size(), 4U + 4U + 12U);
 }
 
 TEST(Mjcf, GroupsAndAlphaSayWhatIsSeen) {

@@ -35,8 +35,8 @@ Heights heights_of(const Element& of, const ImageReader& images, const std::file
   Heights out;
   const auto counted = [&](double rows, double columns) {
     constexpr double most = 1 << 13, most_cells = 1 << 22;
-    if (!(rows >= 2 && columns >= 2) || rows > most || columns > most || rows * columns > most_cells || rows != std::floor(rows) ||
-        columns != std::floor(columns))
+    if (!(rows >= 2 && columns >= 2) || rows > most || columns > most || rows * columns > most_cells ||
+        rows != std::floor(rows) || columns != std::floor(columns))
       of.fail(fmt::format("a height field has 2 to {} rows and columns, and at most 2^22 heights", most));
     out.rows = static_cast<std::size_t>(rows);
     out.columns = static_cast<std::size_t>(columns);
@@ -107,9 +107,9 @@ TriangleMeshShape height_mesh(const Heights& heights, const std::vector<double>&
       const std::uint32_t a = at(row, column), b = at(row, column + 1), c = at(row + 1, column + 1), d = at(row + 1, column);
       mesh.triangles.push_back({a, b, c});
       mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({a + under, c + under, b + under});
+      mesh.triangles.push_back({a + under, d + under, c + under});
     }
-  mesh.triangles.push_back({at(0, 0) + under, at(rows - 1, columns - 1) + under, at(0, columns - 1) + under});
-  mesh.triangles.push_back({at(0, 0) + under, at(rows - 1, 0) + under, at(rows - 1, columns - 1) + under});
   for (std::size_t column = 0; column + 1 < columns; ++column) {
     wall(at(0, column), at(0, column + 1));
     wall(at(rows - 1, column + 1), at(rows - 1, column));
