@@ -128,7 +128,7 @@ TEST(MjcfLooks, LightsAndCamerasFollowTheirTargets) {
   EXPECT_NEAR(camera[2].z, -0.90453403, 1e-8);
   EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
   EXPECT_NEAR(scene.camera.fov, std::acos(-1.0) / 3, 1e-12);
-  EXPECT_THAT(complaint([] {
+  EXPECT_THAT(complaint([&] {
                 scene_of_text("<worldbody><geom size='1'/><camera name='a'/></worldbody>", {{{"camera", "b"}}});
               }),
               HasSubstr("no camera 'b' (it has: a)"));
@@ -200,7 +200,7 @@ TEST(RobotMeshes, ColladaIsReadInItsUnit) {
   EXPECT_NEAR(mesh.positions[2].y, 0.2, 1e-6);
   EXPECT_NEAR(mesh.positions[0].z, 0.3, 1e-6);
   const std::string bad_file = test::write_file("bad.dae", "<COLLADA").string();
-  EXPECT_THAT(complaint([] {
+  EXPECT_THAT(complaint([&] {
                 import_scene(test::write_file("t.urdf", "<robot><link name='a'><visual><geometry><mesh filename='file://" +
                                                             bad_file + "'/></geometry></visual></link></robot>"),
                              test::NoImages());

@@ -223,8 +223,8 @@ TEST(Mjcf, MeshFilesAreSoughtInTheirFolder) {
   std::memcpy(msh.data() + 52, uvs, 24);
   std::memcpy(msh.data() + 76, face, 12);
   write("u.msh", msh);
-  const std::string assets =
-      "<compiler meshdir='meshes'/><asset><mesh file='t.obj' scale='2 2 2'/><mesh name='u' file='u.msh'/></asset>";
+  const std::string assets = "<compiler meshdir='" + folder.string() +
+                             "'/><asset><mesh file='t.obj' scale='2 2 2'/><mesh name='u' file='u.msh'/></asset>";
   const Scene scene = scene_of_text(assets + "<worldbody><geom type='mesh' mesh='t'/><geom type='mesh' mesh='u'/></worldbody>");
   expect_near(at(scene.shapes[0], {1, 0, 0}), {2, 0, 0});
   const auto& mesh = std::get<TriangleMeshShape>(scene.shapes[1].geometry);
