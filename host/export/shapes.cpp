@@ -190,8 +190,8 @@ bool any_hair(const Scene& scene, const Shape& shape) {
 bool is_hair(const Scene& scene, const Shape& shape) { return is_closed(shape) && any_hair(scene, shape); }
 
 Statement shape_statement(const Shape& shape, const ShapeReferences& references, bool as_operand) {
-  const auto& [geometry, world_from_object, material, materials, alpha, one_sided, emission, reversed, media, name, where] =
-      shape;
+  const auto& [geometry, world_from_object, material, materials, alpha, is_backdrop, one_sided, emission, reversed, media, name,
+               where] = shape;
   const GeometryWriter writer{shape, references};
   static constexpr const char* types[] = {
 #define GEOMETRY(Type, row) #row,

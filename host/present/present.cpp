@@ -43,7 +43,9 @@ std::vector<Ball> balls_of(const Scene& scene) {
                         corner & 4 ? bounds.max.z : bounds.min.z},
                        0});
   };
+  const bool is_empty = std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
   for (const Shape& shape : scene.shapes) {
+    if (shape.is_backdrop && !is_empty) continue;
     const glm::dmat3 linear(shape.world_from_object);
     const auto place = [&shape](const glm::dvec3& p) { return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)); };
     // The Frobenius norm bounds the largest stretch; divided by sqrt(3) it is that of a uniform scale.

@@ -45,6 +45,7 @@ struct Shape {
   std::uint32_t material = 0;            // index into Scene::materials
   std::vector<std::uint32_t> materials;  // empty, or one a surface
   std::optional<TextureOperand> alpha;   // of floats: the chance that a ray is stopped, 0 to 1; none: 1
+  bool is_backdrop = false;              // a floor: an automatic camera is framed to what else there is
   bool one_sided = false;                // hits from inside (open shapes: from behind) are not seen
   std::optional<AreaEmission> emission;
   bool reverse_orientation = false;

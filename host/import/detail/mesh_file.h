@@ -66,6 +66,11 @@ std::uint32_t add_plain_material(Scene& scene);
 /// A mesh's shape, with its material.
 Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
 
+/// The meshes of files in memory, or of an OBJ file without its materials, in the file's coordinates. Throw InputError.
+TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file);
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file);
+std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation& where);
+
 /// What shapes of a material of an MTL file have.
 struct MtlMaterial {
   std::uint32_t material = 0;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A robot as its file has it, whatever the format: geoms, where they lie in the pose that was asked for. Metres, z up.
-// Conventions: docs/formats/robots.md.
+// A robot as its file has it, whatever the format: geoms, where they lie in the pose that was asked for, what they are made of,
+// and its lights and cameras. Metres, z up. Conventions: docs/formats/robots.md.
 #pragma once
 
 #include <filesystem>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -18,24 +20,71 @@
 
 #include "base/error.h"
 #include "import/import_options.h"
+#include "scene/image_reader.h"
+#include "scene/scene.h"
 
 namespace caplet {
 
-enum class GeomKind { sphere, capsule, cylinder, box, mesh };
+/// plane: z = 0, seen from above.
+enum class GeomKind { sphere, capsule, cylinder, box, mesh, plane, ellipsoid };
+
+using MeshParts = std::vector<TriangleMeshShape>;
 
 struct RobotGeom {
   GeomKind kind = GeomKind::sphere;
-  glm::dvec3 size{0};  // half lengths; radius and half length; of a mesh its scale
+  glm::dvec3 size{0};  // half lengths; radius and half length; of a plane half lengths, 0: endless
   glm::dmat4 world{1};
-  glm::dvec4 rgba{0.5, 0.5, 0.5, 1};  // as shown on a screen: sRGB
+  std::optional<glm::dvec4> rgba;       // as shown on a screen: sRGB; none: the material's, or grey
+  std::optional<std::size_t> material;  // index into Robot::materials
   std::string name;
-  bool collides = false;  // collision geometry; else visual
+  int group = 0;
+  bool collides = false;  // URDF: collision geometry, else visual. MJCF: may touch others
   std::filesystem::path mesh;
+  bool needs_mesh = false;                 // a mesh that cannot be had is an error
+  std::shared_ptr<const MeshParts> parts;  // replaces `mesh`
+  glm::dmat4 geom_from_mesh{1};
   SourceLocation where;
+};
+
+/// An image over a geom: by the directions from its middle, or by its x and y (by the texture coordinates of a mesh that has
+/// some).
+struct RobotTexture {
+  std::shared_ptr<const TextureImage> image;
+  bool by_direction = false;  // latitude-longitude, z up
+};
+
+struct RobotMaterial {
+  glm::dvec4 rgba{1};
+  double emission = 0, specular = 0.5, shininess = 0.5, reflectance = 0;
+  std::optional<double> metallic, roughness;
+  std::shared_ptr<const RobotTexture> texture;
+  glm::dvec2 texrepeat{1};
+  bool texuniform = false;
+  std::string name;
+  SourceLocation where;
+};
+
+struct RobotLight {
+  enum class Kind { spot, distant, point } kind = Kind::spot;
+  glm::dvec3 position{0}, direction{0, 0, -1}, ambient{0}, diffuse{0.7};
+  double cutoff = 45, exponent = 10;  // of a spot: half its angle in degrees
+  SourceLocation where;
+};
+
+struct RobotCamera {
+  std::string name;
+  glm::dmat4 world{1};  // it looks along -z, y is up
+  double fovy = 45;     // degrees; of an orthographic one the height of what it sees
+  bool orthographic = false;
 };
 
 struct Robot {
   std::vector<RobotGeom> geoms;
+  std::vector<RobotMaterial> materials;
+  std::vector<RobotLight> lights;
+  std::vector<RobotCamera> cameras;
+  std::optional<glm::dvec3> headlight_ambient, headlight_diffuse;
+  std::shared_ptr<const EnvironmentImage> sky;
 };
 
 /// An XML file in memory, and the places of its elements.
@@ -59,13 +108,30 @@ class XmlFile {
 std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
                                const std::string& what);
 
-/// What --pose says: joint=value pairs.
+/// What --pose says: joint=value pairs, and perhaps the name of a keyframe.
 struct Pose {
   explicit Pose(const ImportOptions& options);
-  std::map<std::string, double> joints;  // metres and radians
+  std::optional<std::string> keyframe;
+  std::map<std::string, std::vector<double>> joints;  // metres and radians; of ball joints w x y z, of free ones x y z w x y z
 };
+
+/// Meshes by file, each read once.
+class MeshFiles {
+ public:
+  /// The meshes of an STL, OBJ, PLY, OFF, MSH or DAE file, as they are there. Throws InputError.
+  std::shared_ptr<const MeshParts> read(const std::filesystem::path& path, const SourceLocation& where);
+
+ private:
+  std::map<std::string, std::shared_ptr<const MeshParts>> meshes_;
+};
+/// Whether MeshFiles reads files with this ending.
+bool is_mesh_file(const std::filesystem::path& path);
 
 /// Throws InputError with the file's places.
 Robot read_urdf(const std::filesystem::path& path, const Pose& pose);
+Robot read_mjcf(const std::filesystem::path& path, const Pose& pose, const ImageReader& images);
+
+/// ".stl" of a.STL.
+std::string lower_case_ending(const std::filesystem::path& path);
 
 }  // namespace caplet

@@ -48,6 +48,25 @@ class ObjReader {
   }
 
   Scene read() {
+    parse();
+    finish();
+    return std::move(scene_);
+  }
+
+  /// The meshes alone; materials are not read.
+  std::vector<TriangleMeshShape> read_meshes() {
+    with_materials_ = false;
+    parse();
+    std::vector<TriangleMeshShape> out;
+    for (const std::unique_ptr<Part>& part : parts_) {
+      complete(*part);
+      out.push_back(std::move(part->mesh));
+    }
+    return out;
+  }
+
+ private:
+  void parse() {
     const TextFile file(path_);
     std::string_view text = file.text();
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
@@ -71,11 +90,8 @@ class ObjReader {
     if (left_out_ > 0)
       Diagnostics().warning({scene_.source, first_left_out_, 0},
                             fmt::format("{} statements of points, lines, curves and surfaces are left out", left_out_));
-    finish();
-    return std::move(scene_);
   }
 
- private:
   void statement(const LineWords& words) {
     if (words.count() == 0) return;
     const std::string_view what = words.word(0);
@@ -91,7 +107,7 @@ class ObjReader {
       start(std::string(words.rest(1)), material_);
     else if (what == "usemtl")
       start(name_, std::string(words.rest(1)));
-    else if (what == "mtllib")
+    else if (what == "mtllib" && with_materials_)
       library(words);
     else if (what == "p" || what == "l" || what == "curv" || what == "curv2" || what == "surf" || what == "cstype") {
       if (left_out_++ == 0) first_left_out_ = line_;
@@ -176,12 +192,17 @@ class ObjReader {
     for (auto& [name, material] : read_mtl(file, here, scene_, images_)) materials_.insert_or_assign(name, material);
   }
 
+  /// Texture coordinates and normals are of all corners or of none.
+  static void complete(Part& part) {
+    if (!part.all_uvs) part.mesh.uvs.clear();
+    if (!part.all_normals) part.mesh.normals.clear();
+  }
+
   void finish() {
     std::optional<std::uint32_t> plain;
     const glm::dmat4 world = world_from_file(options_, "y");
     for (const std::unique_ptr<Part>& part : parts_) {
-      if (!part->all_uvs) part->mesh.uvs.clear();
-      if (!part->all_normals) part->mesh.normals.clear();
+      complete(*part);
       const SourceLocation where{scene_.source, part->line, 0};
       const auto material = materials_.find(part->material);
       if (material == materials_.end() && !part->material.empty() && unknown_.insert_or_assign(part->material, true).second)
@@ -203,6 +224,7 @@ class ObjReader {
 
   const std::filesystem::path& path_;
   const ImportOptions& options_;
+  bool with_materials_ = true;
   Scene scene_;
   MeshImages images_;
   int line_ = 0, first_left_out_ = 0;
@@ -218,7 +240,18 @@ class ObjReader {
   std::map<std::string, bool> unknown_;
 };
 
+class NoImages : public ImageReader {
+ public:
+  EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError(path.string() + ": no images"); }
+};
+
 }  // namespace
+
+std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation&) {
+  const ImportOptions none;
+  const NoImages images;
+  return ObjReader(path, images, none).read_meshes();
+}
 
 Scene import_obj(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
   return ObjReader(path, images, options).read();

@@ -93,7 +93,7 @@ TriangleMeshShape text_stl(std::string_view text, const std::string& file) {
   return mesh;
 }
 
-TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) {
+TriangleMeshShape parse_either_stl(std::string_view bytes, const std::string& file) {
   if (bytes.size() >= kHeader) {
     std::uint32_t count = 0;
     std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
@@ -199,6 +199,9 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
 }
 
 }  // namespace
+
+TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) { return parse_either_stl(bytes, file); }
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file) { return OffReader(bytes, file).read(); }
 
 Scene import_stl(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(parse_stl(read_file(path, {}), path.string()), path, options, "z");

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The geoms of a robot as shapes.
+// The geoms of a robot as shapes, what they are made of, and the robot's own lights.
+#include "import/detail/robot.h"
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <set>
+#include <tuple>
 
 #include "base/check.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
-#include "import/detail/robot.h"
+#include "import/detail/text_file.h"
 #include "import/import.h"
 #include "present/present.h"
 #include "scene/texture_image.h"
@@ -18,15 +25,24 @@ namespace caplet {
 
 namespace {
 
+constexpr glm::dvec4 kGrey{0.5, 0.5, 0.5, 1};
+constexpr double kFar = 50;  // of an endless plane: so many times the size of what stands on it, to each side
+constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
+
+double linear(double screen) { return decoded_value({}, std::clamp(screen, 0.0, 1.0)); }
+RgbSpectrum linear(const glm::dvec3& screen) { return {{linear(screen.r), linear(screen.g), linear(screen.b)}}; }
+
 class Drawing {
  public:
-  Drawing(Scene& scene, const ImageReader& images, const glm::dmat4& world) : scene_(scene), images_(images), world_(world) {}
+  Drawing(const Robot& robot, Scene& scene, const glm::dmat4& world) : robot_(robot), scene_(scene), world_(world) {}
 
   void add(const RobotGeom& geom) {
-    if (!(geom.rgba.a > 0)) return;
+    if (!(rgba_of(geom).a > 0)) return;
     switch (geom.kind) {
       case GeomKind::sphere:
         return add(geom, SphereShape{geom.size.x}, glm::dmat4(1));
+      case GeomKind::ellipsoid:
+        return add(geom, SphereShape{1}, glm::scale(glm::dmat4(1), geom.size));
       case GeomKind::capsule: {
         const auto h = static_cast<float>(geom.size.y);
         return add(geom, CapsulesShape{{{0, 0, -h}}, {{0, 0, h}}, {static_cast<float>(geom.size.x)}, {}, {}}, glm::dmat4(1));
@@ -37,80 +53,322 @@ class Drawing {
         return add(geom, BoxShape{-geom.size, geom.size}, glm::dmat4(1));
       case GeomKind::mesh:
         return add_mesh(geom);
+      case GeomKind::plane:
+        planes_.push_back(&geom);
+    }
+  }
+
+  /// After everything else, whose size endless planes depend on.
+  void finish() {
+    Bounds bounds;
+    for (const Shape& shape : scene_.shapes) {
+      const Bounds one = bounds_of(shape);
+      bounds.extend(one.min);
+      bounds.extend(one.max);
+    }
+    const bool alone = scene_.shapes.empty();
+    const glm::dvec3 middle = alone ? glm::dvec3(0) : (bounds.min + bounds.max) / 2.0;
+    const double size = alone ? 1 : std::max(glm::length(bounds.max - bounds.min) / 2, 1e-6);
+    for (const RobotGeom* plane : planes_) {
+      const glm::dvec3 at(glm::inverse(world_ * plane->world) * glm::dvec4(middle, 1));
+      glm::dvec2 least, most;
+      for (int k = 0; k < 2; ++k) {
+        const bool endless = !(plane->size[k] > 0);
+        least[k] = endless ? at[k] - kFar * size : -plane->size[k];
+        most[k] = endless ? at[k] + kFar * size : plane->size[k];
+      }
+      TriangleMeshShape mesh;
+      mesh.positions = {{least.x, least.y, 0}, {most.x, least.y, 0}, {most.x, most.y, 0}, {least.x, most.y, 0}};
+      mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+      add(*plane, std::move(mesh), glm::dmat4(1));
+      scene_.shapes.back().one_sided = true;
+      scene_.shapes.back().is_backdrop = true;
     }
   }
 
  private:
-  std::uint32_t material(const glm::dvec4& rgba) {
-    const auto [entry, fresh] = materials_.try_emplace({rgba.r, rgba.g, rgba.b}, narrow<std::uint32_t>(scene_.materials.size()));
-    const auto linear = [](double v) { return decoded_value({}, std::clamp(v, 0.0, 1.0)); };
-    if (fresh)
-      scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{{linear(rgba.r), linear(rgba.g), linear(rgba.b)}}},
-                                  "color " + std::to_string(materials_.size()),
-                                  {scene_.source, 0, 0}});
-    return entry->second;
+  const RobotMaterial* material_of(const RobotGeom& geom) const {
+    return geom.material ? &robot_.materials[*geom.material] : nullptr;
+  }
+  glm::dvec4 rgba_of(const RobotGeom& geom) const {
+    const RobotMaterial* material = material_of(geom);
+    return geom.rgba ? *geom.rgba : material ? material->rgba : kGrey;
+  }
+
+  std::uint32_t add_material(Material material) {
+    scene_.materials.push_back(std::move(material));
+    return narrow<std::uint32_t>(scene_.materials.size() - 1);
+  }
+
+  /// Of colours alone: diffuse. Of materials: MuJoCo's specular and shininess as an interface, whose reflectance at right angles
+  /// is 0.08 specular, and whose GGX roughness is that of Phong's exponent 128 shininess; reflectance as the share of a mirror.
+  std::uint32_t material(const RobotGeom& geom, bool has_uvs) {
+    const glm::dvec4 rgba = rgba_of(geom);
+    const RobotMaterial* of = material_of(geom);
+    const bool textured = of && of->texture && of->texture->image;
+    const Key key{rgba.r, rgba.g, rgba.b, geom.material ? static_cast<double>(*geom.material) : -1};
+    if (!textured) {
+      const auto known = materials_.find(key);
+      if (known != materials_.end()) return known->second;
+    }
+    const std::string name = of ? of->name : "color " + std::to_string(materials_.size() + 1);
+    Material base{DiffuseMaterial{linear(glm::dvec3(rgba))}, name, {scene_.source, 0, 0}};
+    std::string field = "reflectance";
+    if (of && (of->specular > 0 || of->metallic)) {
+      PrincipledMaterial model;
+      model.base_color = linear(glm::dvec3(rgba));
+      const double at_right_angles = std::sqrt(0.08 * of->specular);
+      model.eta = (1 + at_right_angles) / (1 - at_right_angles);
+      model.roughness = of->roughness ? *of->roughness : std::pow(2 / (128 * of->shininess + 2), 0.25);
+      model.metallic = of->metallic.value_or(0);
+      base.model = model;
+      field = "base_color";
+    }
+    if (textured) base.textures.push_back({field, texture(geom, *of, rgba, has_uvs)});
+    std::uint32_t out = add_material(std::move(base));
+    if (of && of->reflectance > 0) {
+      if (!mirror_) {
+        ConductorMaterial metal;
+        metal.reflectance = ConstantSpectrum{1};
+        mirror_ = add_material({metal, "mirror", {scene_.source, 0, 0}});
+      }
+      out = add_material({MixMaterial{{out, *mirror_}, of->reflectance}, name + " reflecting", {scene_.source, 0, 0}});
+    }
+    if (!textured) materials_[key] = out;
+    return out;
+  }
+
+  /// The image, times the colour; its index.
+  std::uint32_t texture(const RobotGeom& geom, const RobotMaterial& of, const glm::dvec4& rgba, bool has_uvs) {
+    ImagemapTexture image;
+    image.filter = 2;
+    TextureMapping& mapping = image.mapping;
+    glm::dmat4 texture_from_geom(1);
+    glm::dvec3 size = geom.size;
+    if (geom.kind == GeomKind::capsule || geom.kind == GeomKind::cylinder) size = {size.x, size.x, size.y};
+    if (geom.kind == GeomKind::sphere) size = glm::dvec3(size.x);
+    if (geom.kind == GeomKind::mesh) size = glm::dvec3(1);
+    for (int k = 0; k < 3; ++k)
+      if (!(size[k] > 0)) size[k] = 1;
+    if (of.texture->by_direction) {
+      mapping.kind = TextureMapping::Kind::spherical;
+      if (!of.texuniform) texture_from_geom = glm::scale(texture_from_geom, 1.0 / size);
+    } else if (has_uvs) {
+      mapping.uscale = of.texrepeat.x;
+      mapping.vscale = of.texrepeat.y;
+    } else {
+      // Across the geom, so many times; or so many times in two units of length.
+      mapping.kind = TextureMapping::Kind::planar;
+      for (int k = 0; k < 2; ++k) {
+        const double scale = 0.5 * of.texrepeat[k] / (of.texuniform ? 1 : size[k]);
+        (k == 0 ? mapping.v1 : mapping.v2) = glm::dvec3(k == 0 ? scale : 0, k == 1 ? scale : 0, 0);
+        (k == 0 ? mapping.udelta : mapping.vdelta) = 0.5;
+      }
+    }
+    if (mapping.kind != TextureMapping::Kind::uv)
+      mapping.texture_from_world = texture_from_geom * glm::inverse(world_ * geom.world);
+    image.image = tinted(of.texture->image, glm::dvec3(rgba));
+    scene_.textures.push_back({image, false, of.name, of.where});
+    return narrow<std::uint32_t>(scene_.textures.size() - 1);
+  }
+
+  /// Its colours as on a screen, times another: what MuJoCo shows.
+  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color) {
+    if (color == glm::dvec3(1)) return image;
+    std::shared_ptr<const TextureImage>& known = tinted_[{image.get(), color.r, color.g, color.b}];
+    if (known) return known;
+    auto out = std::make_shared<TextureImage>(*image);
+    out->file.clear();
+    const std::size_t channels = static_cast<std::size_t>(image->channels), pixels = image->values() / channels;
+    out->channels = 3;
+    out->bytes.assign(image->bytes.empty() ? 0 : 3 * pixels, 0);
+    out->floats.assign(image->floats.empty() ? 0 : 3 * pixels, 0);
+    for (std::size_t i = 0; i < pixels; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = channels * i + (channels >= 3 ? k : 0);
+        const double factor = std::clamp(color[static_cast<int>(k)], 0.0, 1.0);
+        if (!out->bytes.empty()) out->bytes[3 * i + k] = static_cast<std::uint8_t>(image->bytes[from] * factor);
+        if (!out->floats.empty()) out->floats[3 * i + k] = image->floats[from] * static_cast<float>(linear(factor));
+      }
+    return known = out;
   }
 
   void add(const RobotGeom& geom, Geometry geometry, const glm::dmat4& geom_from_shape) {
+    const auto* mesh = std::get_if<TriangleMeshShape>(&geometry);
+    const bool has_uvs = mesh && !mesh->uvs.empty();
     Shape shape;
     shape.geometry = std::move(geometry);
     shape.name = geom.name;
     shape.where = geom.where;
     shape.world_from_object = world_ * geom.world * geom_from_shape;
-    shape.material = material(geom.rgba);
-    if (geom.rgba.a < 1) shape.alpha = TextureOperand(geom.rgba.a);
+    shape.material = material(geom, has_uvs);
+    const glm::dvec4 rgba = rgba_of(geom);
+    if (rgba.a < 1) shape.alpha = TextureOperand(rgba.a);
+    if (const RobotMaterial* of = material_of(geom); of && of->emission > 0) {
+      AreaEmission emission;
+      emission.radiance = linear(glm::dvec3(rgba));
+      emission.scale = of->emission;
+      if (glm::dvec3(rgba) != glm::dvec3(0)) shape.emission = emission;
+    }
     scene_.shapes.push_back(std::move(shape));
   }
 
   void add_mesh(const RobotGeom& geom) {
-    std::error_code ignored;
-    std::string extension = geom.mesh.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    if (extension != ".stl" && extension != ".obj") {
-      Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: STL and OBJ are read");
-      return;
+    std::shared_ptr<const MeshParts> parts = geom.parts;
+    if (!parts && !geom.needs_mesh) {
+      std::error_code ignored;
+      const char* why = !is_mesh_file(geom.mesh) ? "STL, OBJ, DAE, PLY, OFF and MSH are read" : "no such file";
+      if (!is_mesh_file(geom.mesh) || !std::filesystem::exists(geom.mesh, ignored))
+        return Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: " + why);
     }
-    if (!std::filesystem::exists(geom.mesh, ignored)) {
-      Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: no such file");
-      return;
+    if (!parts) parts = files_.read(geom.mesh, geom.where);
+    for (const TriangleMeshShape& part : *parts) {
+      triangles_ += part.triangles.size();
+      if (triangles_ > kMostTriangles) throw InputError(geom.where, "the meshes of all geoms have more than 2^28 triangles");
+      add(geom, part, geom.geom_from_mesh);
     }
-    for (const Geometry& part : meshes_of(geom.mesh)) add(geom, part, glm::scale(glm::dmat4(1), geom.size));
   }
 
-  /// The meshes of a file, which is read once.
-  const std::vector<Geometry>& meshes_of(const std::filesystem::path& path) {
-    const auto [entry, fresh] = meshes_.try_emplace(path.string());
-    if (fresh) {
-      ImportOptions as_it_is;
-      as_it_is.set("up", "y");
-      Scene file = import_scene(path, images_, as_it_is);
-      for (Shape& part : file.shapes)
-        if (std::holds_alternative<TriangleMeshShape>(part.geometry)) entry->second.push_back(std::move(part.geometry));
-    }
-    return entry->second;
-  }
-
+  using Key = std::array<double, 4>;
+  const Robot& robot_;
   Scene& scene_;
-  const ImageReader& images_;
   glm::dmat4 world_;
-  std::map<std::array<double, 3>, std::uint32_t> materials_;
-  std::map<std::string, std::vector<Geometry>> meshes_;
+  MeshFiles files_;
+  std::size_t triangles_ = 0;
+  std::map<Key, std::uint32_t> materials_;
+  std::map<std::tuple<const TextureImage*, double, double, double>, std::shared_ptr<const TextureImage>> tinted_;
+  std::optional<std::uint32_t> mirror_;
+  std::vector<const RobotGeom*> planes_;
 };
+
+/// "visual", "collision", "all", or numbers of groups.
+std::function<bool(const RobotGeom&)> shown_by(const ImportOptions& options) {
+  const std::string text = options.text("groups").value_or("visual");
+  if (text == "all") return [](const RobotGeom&) { return true; };
+  if (text == "collision") return [](const RobotGeom& geom) { return geom.collides; };
+  std::set<int> groups{0, 1, 2};
+  if (text != "visual") {
+    groups.clear();
+    std::string_view rest = text;
+    for (;;) {
+      const std::string_view word = rest.substr(0, rest.find(','));
+      int group = 0;
+      if (!parse_number(word, group) || group < 0 || group > 5)
+        throw InputError({"--groups"}, "'" + text + "' is none of: visual, collision, all, numbers of groups (0 to 5)");
+      groups.insert(group);
+      if (word.size() == rest.size()) break;
+      rest.remove_prefix(word.size() + 1);
+    }
+  }
+  return [groups](const RobotGeom& geom) { return groups.contains(geom.group); };
+}
+
+/// MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the middle of what is seen.
+void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
+  Bounds bounds;
+  for (const Shape& shape : scene.shapes) {
+    if (shape.is_backdrop) continue;
+    const Bounds one = bounds_of(shape);
+    bounds.extend(one.min);
+    bounds.extend(one.max);
+  }
+  const glm::dvec3 middle = bounds.empty() ? glm::dvec3(0) : (bounds.min + bounds.max) / 2.0;
+  const auto add = [&](auto model, const SourceLocation& where) {
+    Light light;
+    light.model = std::move(model);
+    light.where = where;
+    scene.lights.push_back(std::move(light));
+  };
+  const SourceLocation whole{scene.source, 0, 0};
+  glm::dvec3 ambient = robot.headlight_ambient.value_or(glm::dvec3(0));
+  for (const RobotLight& light : robot.lights) {
+    ambient += light.ambient;
+    if (light.diffuse == glm::dvec3(0)) continue;
+    const glm::dvec3 position(world * glm::dvec4(light.position, 1)), direction = glm::dmat3(world) * light.direction;
+    const glm::dvec3 irradiance = std::numbers::pi * light.diffuse;
+    const double away = std::max(glm::dot(position - middle, position - middle), 1e-12);
+    if (light.kind == RobotLight::Kind::distant)
+      add(DistantLight{RgbSpectrum{irradiance}, direction}, light.where);
+    else if (light.kind == RobotLight::Kind::point)
+      add(PointLight{RgbSpectrum{irradiance * away}, position}, light.where);
+    else
+      add(SpotLight{RgbSpectrum{irradiance * away}, position, direction, glm::radians(light.cutoff),
+                    0.8 * glm::radians(light.cutoff)},
+          light.where);
+  }
+  if (robot.headlight_diffuse && *robot.headlight_diffuse != glm::dvec3(0))
+    add(DistantLight{RgbSpectrum{std::numbers::pi * *robot.headlight_diffuse},
+                     glm::normalize(glm::dvec3(scene.camera.world_from_camera[2]))},
+        whole);
+  InfiniteLight sky;
+  sky.radiance = RgbSpectrum{ambient + 1e-6};
+  if (robot.sky) {
+    sky.image = robot.sky;
+    sky.world_from_light = glm::dmat3(world);
+  }
+  add(sky, whole);
+}
+
+/// The camera that is asked for, or one framed to the scene; the robot's lights, or the studio's.
+void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Scene& scene) {
+  const bool studio = options.choice("lights", {"file", "studio"}, 0) == 1 || robot.lights.empty();
+  if (studio)
+    add_presentation(scene);
+  else
+    frame_camera(scene);
+  if (const std::optional<std::string> name = options.text("camera")) {
+    const auto camera = std::ranges::find(robot.cameras, *name, &RobotCamera::name);
+    if (camera == robot.cameras.end()) {
+      std::string known;
+      for (const RobotCamera& one : robot.cameras) known += (known.empty() ? "" : ", ") + one.name;
+      throw InputError({"--camera"},
+                       "the file has no camera '" + *name + "'" + (known.empty() ? "" : " (it has: " + known + ")"));
+    }
+    scene.automatic_camera = false;
+    const glm::dmat4 at = world * camera->world;
+    scene.camera = Camera{};
+    scene.camera.world_from_camera = glm::dmat4(at[0], at[1], -at[2], at[3]);
+    scene.camera.fov = glm::radians(camera->fovy);
+    if (camera->orthographic) {
+      const double aspect = static_cast<double>(scene.film.width) / scene.film.height, half = camera->fovy / 2;
+      scene.camera.fov = 0;
+      scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
+    }
+  }
+  if (!studio) light_by_robot(robot, world, scene);
+}
+
+void draw(const Robot& robot, const glm::dmat4& world, const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
+  Drawing drawing(robot, scene, world);
+  for (const RobotGeom& geom : robot.geoms)
+    if (shown(geom)) drawing.add(geom);
+  drawing.finish();
+  if (scene.shapes.empty()) throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
+}
 
 }  // namespace
 
-Scene import_urdf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
-  const Robot robot = read_urdf(path, Pose(options));
   enum Groups : std::size_t { visual, collision, all };
   const std::size_t groups = options.choice("groups", {"visual", "collision", "all"}, visual);
-  Drawing drawing(scene, images, world_from_file(options, "z"));
-  for (const RobotGeom& geom : robot.geoms)
-    if (groups == all || geom.collides == (groups == collision)) drawing.add(geom);
-  if (scene.shapes.empty()) throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
+  const Robot robot = read_urdf(path, Pose(options));
+  draw(
+      robot, world_from_file(options, "z"),
+      [&](const RobotGeom& geom) { return groups == all || geom.collides == (groups == collision); }, scene);
   add_presentation(scene);
+  return scene;
+}
+
+Scene import_mjcf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+  Scene scene;
+  scene.source = path.string();
+  const auto shown = shown_by(options);
+  const glm::dmat4 world = world_from_file(options, "z");
+  const Robot robot = read_mjcf(path, Pose(options), images);
+  draw(robot, world, shown, scene);
+  present(robot, world, options, scene);
   return scene;
 }
 

@@ -36,8 +36,13 @@ class UrdfReader {
       joints.emplace(parent, joint);
       moved.insert(joint.attribute("name").value());
     }
-    for (const auto& [name, value] : pose_.joints)
-      if (!moved.contains(name)) throw InputError({"--pose"}, "the file has no joint '" + name + "'");
+    if (pose_.keyframe)
+      throw InputError({"--pose"}, "'" + *pose_.keyframe + "' is not JOINT=VALUE, and the file has no keyframes");
+    for (const auto& [name, values] : pose_.joints)
+      if (values.size() != 1)
+        throw InputError({"--pose"}, name + ": one number is needed");
+      else if (!moved.contains(name))
+        throw InputError({"--pose"}, "the file has no joint '" + name + "'");
     std::vector<std::pair<std::string, glm::dmat4>> open;
     for (const auto& [name, link] : links)
       if (!children.contains(name)) open.emplace_back(name, glm::dmat4(1));
@@ -86,14 +91,14 @@ class UrdfReader {
     double value = 0;
     const auto own = pose_.joints.find(joint.attribute("name").value());
     if (own != pose_.joints.end()) {
-      value = own->second;
+      value = own->second[0];
     } else if (const pugi::xml_node mimic = joint.child("mimic")) {
       const auto other = pose_.joints.find(mimic.attribute("joint").value());
       if (other == pose_.joints.end()) return at;
       const auto number = [&](const char* name, double otherwise) {
         return mimic.attribute(name) ? numbers(mimic, name, 1)[0] : otherwise;
       };
-      value = number("multiplier", 1) * other->second + number("offset", 0);
+      value = number("multiplier", 1) * other->second[0] + number("offset", 0);
     }
     if (value == 0) return at;
     const std::string_view type = joint.attribute("type").value();
@@ -134,7 +139,7 @@ class UrdfReader {
         geom.size = vector(geometry, "size", {0, 0, 0}) / 2.0;
       } else if (kind == "mesh") {
         geom.kind = GeomKind::mesh;
-        geom.size = vector(geometry, "scale", {1, 1, 1});
+        geom.geom_from_mesh = glm::scale(glm::dmat4(1), vector(geometry, "scale", {1, 1, 1}));
         geom.mesh = mesh_path(geometry);
       } else {
         fail(part, "its geometry is none of: sphere, cylinder, capsule, box, mesh");

@@ -58,9 +58,12 @@ Pose::Pose(const ImportOptions& options) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string part = text.substr(begin, end - begin);
     const std::size_t equals = part.find('=');
-    if (equals == std::string::npos || equals == 0)
+    if (equals == std::string::npos && begin == 0 && !part.empty())
+      keyframe = part;
+    else if (equals == std::string::npos || equals == 0)
       throw InputError({"--pose"}, quoted(std::string_view(part)) + " is not JOINT=VALUE");
-    joints[part.substr(0, equals)] = numbers_of(part.substr(equals + 1), 1, 1, {"--pose"}, part.substr(0, equals))[0];
+    else
+      joints[part.substr(0, equals)] = numbers_of(part.substr(equals + 1), 1, 7, {"--pose"}, part.substr(0, equals));
     begin = end + 1;
   }
 }

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// MJCF, MuJoCo's models (its XML reference is the format's description), as text: files with what they include, defaults, places,
+// and what attributes say.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "import/detail/robot.h"
+
+namespace caplet::mjcf {
+
+/// Elements within elements, models within models; elements that replicate makes among them.
+inline constexpr int most_nested = 500;
+inline constexpr std::size_t most_elements = 4'000'000, most_geoms = 1'000'000;
+
+/// A default class: what its elements say, and where it has the rest from.
+struct Class {
+  const Class* parent = nullptr;
+  std::vector<pugi::xml_node> elements;
+};
+
+struct Compiler {
+  bool degrees = true, strips_paths = false;
+  std::string euler = "xyz";
+  std::filesystem::path meshes, textures;  // folders
+};
+
+class Model;
+
+/// An element with the defaults of its class. `tag`: what the defaults are called.
+class Element {
+ public:
+  Element(const Model& model, pugi::xml_node node, const char* tag, const Class* of)
+      : model_(&model), node_(node), tag_(tag), class_(of) {}
+
+  pugi::xml_node node() const { return node_; }
+  const Model& model() const { return *model_; }
+  SourceLocation where() const;
+  [[noreturn]] void fail(const std::string& message) const;
+
+  /// Its own, or that of the nearest class that has it.
+  pugi::xml_attribute attribute(const char* name) const;
+  bool has(const char* name) const { return static_cast<bool>(attribute(name)); }
+  std::string text(const char* name, const std::string& otherwise = {}) const;
+  bool yes(const char* name, bool otherwise) const;
+  /// `otherwise`, of which the attributes, those of the outer classes first, replace the first numbers, at least `least`.
+  std::vector<double> numbers(const char* name, std::size_t least, std::vector<double> otherwise) const;
+  double number(const char* name, double otherwise) const { return numbers(name, 1, {otherwise})[0]; }
+  glm::dvec3 vector(const char* name, glm::dvec3 otherwise) const;
+  /// One of `choices`, by index.
+  std::size_t choice(const char* name, std::initializer_list<const char*> choices, std::size_t otherwise) const;
+  /// An angle in radians.
+  double angle(const char* name, double otherwise) const;
+
+  /// By quat, axisangle, euler, xyaxes or zaxis, of which there may be one.
+  glm::dquat rotation() const;
+  /// pos and rotation.
+  glm::dmat4 pose() const;
+
+ private:
+  template <class Use>
+  void levels(Use&& use) const;  // the nodes that may have attributes, nearest first, until `use` is true
+  const Model* model_;
+  pugi::xml_node node_;
+  const char* tag_;
+  const Class* class_;
+};
+
+/// The turn that takes z to this direction by the shortest way.
+glm::dquat from_z(const glm::dvec3& direction);
+glm::dmat4 placed(const glm::dvec3& position, const glm::dquat& rotation);
+
+/// A model: its sections, defaults and assets. Throws InputError.
+class Model {
+ public:
+  /// `above`: the models that are being read, this one's file not among them.
+  Model(const std::filesystem::path& path, const SourceLocation& named_at, std::set<std::string> above);
+
+  /// Calls use(child) for the elements in `of`, with those of included files where they are included.
+  template <class Use>
+  void each(pugi::xml_node of, Use&& use) const {
+    for (const pugi::xml_node child : of.children()) {
+      if (child.type() != pugi::node_element) continue;
+      if (std::string_view(child.name()) == "include")
+        each(included(child), use);
+      else
+        use(child);
+    }
+  }
+
+  const std::string& name() const { return name_; }
+  const Compiler& compiler() const { return compiler_; }
+  const std::filesystem::path& folder() const { return folder_; }
+  SourceLocation place(pugi::xml_node node) const;
+  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
+
+  /// The sections of this name.
+  std::vector<pugi::xml_node> sections(std::string_view name) const;
+  const Class* root_class() const { return &classes_.at("main"); }
+  /// The class that `node` names by `attribute`, or `otherwise`.
+  const Class* class_of(pugi::xml_node node, const char* attribute, const Class* otherwise) const;
+  Element element(pugi::xml_node node, const char* tag, const Class* otherwise) const {
+    return {*this, node, tag, class_of(node, "class", otherwise)};
+  }
+
+  /// The asset of a kind ("mesh", "texture", ...) by its name. Throws InputError at `user`.
+  Element asset(const char* kind, const std::string& name, const SourceLocation& user) const;
+  /// The model that an asset names; read at its first use.
+  const Model& attached(const std::string& name, const SourceLocation& user) const;
+  std::filesystem::path file(const Element& of, const std::string& name, const std::filesystem::path& folder) const;
+  const std::map<std::string, pugi::xml_node>& assets(const char* kind) const;
+
+ private:
+  pugi::xml_node included(pugi::xml_node node) const;
+  void read_compiler(pugi::xml_node node);
+  void read_defaults(pugi::xml_node node, const Class* parent, int depth);
+  void read_assets(pugi::xml_node node);
+
+  std::filesystem::path folder_;
+  mutable std::map<const void*, std::unique_ptr<XmlFile>> files_;  // by their documents
+  mutable std::map<const void*, pugi::xml_node> includes_;         // by the element: the file's root
+  mutable std::set<std::string> seen_;                             // files included
+  std::set<std::string> above_;
+  std::string name_;
+  pugi::xml_node root_;
+  Compiler compiler_;
+  std::map<std::string, Class> classes_;
+  std::map<std::string, std::map<std::string, pugi::xml_node>> assets_;
+  mutable std::map<std::string, std::unique_ptr<Model>> models_;
+};
+
+/// Throws InputError for an attribute that elements of this name do not have.
+void check_attributes(const Model& model, pugi::xml_node node);
+
+/// The robot's materials, textures and meshes, each made once.
+class Assets {
+ public:
+  Assets(Robot& robot, const ImageReader& images) : robot_(robot), images_(images) {}
+  std::size_t material(const Model& model, const std::string& name, const SourceLocation& user);
+  /// Sets what a geom has of a mesh or height field.
+  void mesh(const Model& model, const std::string& name, RobotGeom& geom);
+  void height_field(const Model& model, const std::string& name, RobotGeom& geom);
+  /// The material that a mesh names; empty: none.
+  static std::string mesh_material(const Model& model, const std::string& name, const SourceLocation& user);
+  /// The first texture of type skybox; none: null.
+  std::shared_ptr<const EnvironmentImage> sky(const Model& model);
+
+ private:
+  std::shared_ptr<const RobotTexture> texture(const Model& model, const std::string& name, const SourceLocation& user);
+  Robot& robot_;
+  const ImageReader& images_;
+  std::map<const void*, std::size_t> materials_;  // by their elements
+  std::map<const void*, std::shared_ptr<const RobotTexture>> textures_;
+  std::map<const void*, std::shared_ptr<const MeshParts>> heights_, meshes_;
+};
+
+/// Images as textures of MJCF are: bytes of red, green and blue, rows from the top.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+/// Of six faces, right, left, up, down, front and back, each as seen from within with z up.
+struct Cube {
+  std::array<Pixels, 6> faces;
+};
+/// Built-in and read textures. Throws InputError.
+Pixels flat_texture(const Element& of, const ImageReader& images);
+Cube cube_texture(const Element& of, const ImageReader& images);
+/// Latitude-longitude, z up, of twice as many columns as rows.
+Pixels around(const Cube& cube, int height);
+/// As a texture of spherical mapping has it: columns by the angle from z, rows from below by that around z; `width` columns.
+Pixels by_angles(const Cube& cube, int width);
+std::shared_ptr<const TextureImage> texture_image(const Pixels& pixels);
+
+/// Everything of a model's bodies, in the pose.
+void read_bodies(const Model& model, const Pose& pose, Robot& robot, Assets& assets);
+
+}  // namespace caplet::mjcf

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The meshes that robots name, in the coordinates of their files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "import/detail/gzip_file.h"
+#include "import/detail/mesh_file.h"
+#include "import/detail/ply.h"
+#include "import/detail/robot.h"
+#include "import/detail/text_file.h"
+
+#ifdef CAPLET_WITH_PLY
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#endif
+
+namespace caplet {
+
+namespace {
+
+/// MuJoCo's own: four counts, then positions, normals, texture coordinates (from the top) and triangles.
+TriangleMeshShape parse_msh(const std::string& bytes, const std::string& file) {
+  std::array<std::int32_t, 4> counts{};
+  const auto fail = [&](const std::string& message) { throw InputError({file, 0, 0}, message); };
+  if (bytes.size() < sizeof counts) fail("is no MSH file: it is too short");
+  std::memcpy(counts.data(), bytes.data(), sizeof counts);
+  const auto [vertices, normals, uvs, faces] = counts;
+  if (vertices < 0 || normals < 0 || uvs < 0 || faces < 0) fail("is no MSH file: a count is negative");
+  if ((normals != 0 && normals != vertices) || (uvs != 0 && uvs != vertices))
+    fail("other numbers of normals or texture coordinates than of vertices");
+  const std::uint64_t size = sizeof counts + 4 * (3 * std::uint64_t(vertices) + 3 * std::uint64_t(normals) +
+                                                  2 * std::uint64_t(uvs) + 3 * std::uint64_t(faces));
+  if (size != bytes.size()) fail(fmt::format("its counts need {} bytes; the file has {}", size, bytes.size()));
+  TriangleMeshShape mesh;
+  const char* at = bytes.data() + sizeof counts;
+  const auto take = [&at](auto& to, std::int32_t count) {
+    to.resize(static_cast<std::size_t>(count));
+    const std::size_t length = to.size() * sizeof(to[0]);
+    if (length > 0) std::memcpy(to.data(), at, length);
+    at += length;
+  };
+  take(mesh.positions, vertices);
+  take(mesh.normals, normals);
+  take(mesh.uvs, uvs);
+  take(mesh.triangles, faces);
+  for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
+  for (const glm::vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(p[k]) <= largest_number)) fail("a vertex is not finite or out of range");
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      if (vertex >= mesh.positions.size()) fail("a triangle has a vertex that is not there");
+  return mesh;
+}
+
+#ifdef CAPLET_WITH_PLY
+void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, MeshParts& parts, int depth) {
+  const aiMatrix4x4 world = above * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& from = *scene.mMeshes[node.mMeshes[i]];
+    TriangleMeshShape mesh;
+    for (unsigned k = 0; k < from.mNumVertices; ++k) {
+      const aiVector3D p = world * from.mVertices[k];
+      mesh.positions.emplace_back(p.x, p.y, p.z);
+    }
+    for (unsigned k = 0; from.mNormals && k < from.mNumVertices; ++k) {
+      // Of a turn and a scale alone; lengths are of no matter.
+      const aiVector3D n = aiMatrix3x3(world).Inverse().Transpose() * from.mNormals[k];
+      mesh.normals.emplace_back(n.x, n.y, n.z);
+    }
+    for (unsigned k = 0; k < from.mNumFaces; ++k)
+      if (from.mFaces[k].mNumIndices == 3)
+        mesh.triangles.push_back({from.mFaces[k].mIndices[0], from.mFaces[k].mIndices[1], from.mFaces[k].mIndices[2]});
+    if (!mesh.triangles.empty()) parts.push_back(std::move(mesh));
+  }
+  if (depth < 1000)
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], world, parts, depth + 1);
+}
+
+/// COLLADA: its unit is applied, its axis that is up is not, as in ROS.
+MeshParts parse_dae(const std::string& bytes, const std::string& file) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool("IMPORT_COLLADA_IGNORE_UP_DIRECTION", true);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, "dae");
+  if (!scene || !scene->mRootNode)
+    throw InputError({file, 0, 0}, std::string("is no COLLADA file: ") + importer.GetErrorString());
+  MeshParts parts;
+  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), parts, 0);
+  for (const TriangleMeshShape& part : parts)
+    for (const glm::vec3& p : part.positions)
+      for (int k = 0; k < 3; ++k)
+        if (!(std::abs(p[k]) <= largest_number)) throw InputError({file, 0, 0}, "a vertex is not finite or out of range");
+  return parts;
+}
+#else
+MeshParts parse_dae(const std::string&, const std::string& file) {
+  throw InputError({file}, "this build cannot read COLLADA meshes (CAPLET_WITH_PLY is off)");
+}
+#endif
+
+constexpr std::string_view kEndings[] = {".stl", ".obj", ".msh", ".dae", ".ply", ".off"};
+
+}  // namespace
+
+std::string lower_case_ending(const std::filesystem::path& path) {
+  std::string out = path.extension().string();
+  std::ranges::transform(out, out.begin(), [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return out;
+}
+
+bool is_mesh_file(const std::filesystem::path& path) {
+  return std::ranges::find(kEndings, lower_case_ending(path)) != std::end(kEndings);
+}
+
+std::shared_ptr<const MeshParts> MeshFiles::read(const std::filesystem::path& path, const SourceLocation& where) {
+  std::shared_ptr<const MeshParts>& known = meshes_[path.string()];
+  if (known) return known;
+  const std::string ending = lower_case_ending(path), file = path.string();
+  MeshParts parts;
+  if (ending == ".obj") {
+    parts = read_obj_meshes(path, where);
+  } else if (ending == ".off") {
+    parts.push_back(parse_off(read_file(path, where), file));
+  } else if (ending == ".stl") {
+    parts.push_back(parse_stl(read_file(path, where), file));
+  } else if (ending == ".ply") {
+    parts.push_back(read_ply(path, where));
+  } else if (ending == ".msh") {
+    parts.push_back(parse_msh(read_file(path, where), file));
+  } else if (ending == ".dae") {
+    parts = parse_dae(read_file(path, where), file);
+  } else {
+    throw InputError(where, "the mesh '" + file + "' is of a format that is not read");
+  }
+  std::erase_if(parts, [](const TriangleMeshShape& part) { return part.triangles.empty(); });
+  if (parts.empty()) throw InputError(where, "the mesh '" + file + "' holds no faces");
+  return known = std::make_shared<const MeshParts>(std::move(parts));
+}
+
+}  // namespace caplet
