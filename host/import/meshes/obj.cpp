@@ -179,6 +179,7 @@ class ObjReader {
   void finish() {
     std::optional<std::uint32_t> plain;
     const glm::dmat4 world = world_from_file(options_, "y");
+    scene_.world_from_file = glm::dmat3(world);
     for (const std::unique_ptr<Part>& part : parts_) {
       if (!part->all_uvs) part->mesh.uvs.clear();
       if (!part->all_normals) part->mesh.normals.clear();

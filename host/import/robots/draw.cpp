@@ -106,10 +106,13 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader& images, 
   const Robot robot = read_urdf(path, Pose(options));
   enum Groups : std::size_t { visual, collision, all };
   const std::size_t groups = options.choice("groups", {"visual", "collision", "all"}, visual);
-  Drawing drawing(scene, images, world_from_file(options, "z"));
+  const glm::dmat4 world = world_from_file(options, "z");
+  scene.world_from_file = glm::dmat3(world);
+  Drawing drawing(scene, images, world);
   for (const RobotGeom& geom : robot.geoms)
     if (groups == all || geom.collides == (groups == collision)) drawing.add(geom);
   if (scene.shapes.empty()) throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
+  scene.unit = "m";
   add_presentation(scene);
   return scene;
 }
