@@ -142,10 +142,14 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
     command
         .add_option_function<std::string>(
             "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
-            row.help + " (" + formats_of_it + ")")
+            row.help + (row.is_look ? "" : " (" + formats_of_it + ")"))
         ->type_name(row.values)
-        ->group("Files of other fields");
+        ->group(row.is_look ? "The picture" : "Files of other fields");
   }
+  command
+      .add_flag_callback(
+          "--orthographic", [&options] { options.set("projection", "orthographic"); }, "--projection orthographic")
+      ->group("The picture");
 }
 
 std::string scene_extensions() {

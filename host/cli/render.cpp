@@ -18,6 +18,7 @@
 #include "base/progress.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/overlays.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "display/tev.h"
@@ -25,6 +26,7 @@
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/lower.h"
+#include "present/least_width.h"
 #include "present/stereo.h"
 #include "render/render.h"
 #include "report/bands.h"
@@ -42,6 +44,7 @@ struct Options {
   Encoding encoding = Encoding::automatic;
   std::string scene, output, preview, stats, device, size, crop;
   ImportOptions import_options;
+  post::Overlays overlays;
   std::optional<std::string> layers;
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
@@ -79,6 +82,9 @@ Overrides check_options(const Options& options, Files& files) {
   overrides.clamp = options.clamp;
   if (!options.separation && (options.convergence || !options.layout.empty()))
     throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"}, "goes with --stereo");
+  if (options.overlays.any() && (options.preview.empty() || options.separation))
+    throw InputError(SourceLocation{"--preview"},
+                     options.separation ? "overlays are not drawn for two eyes (--stereo)" : "overlays are drawn on it alone");
   if (options.output == no_picture && options.preview.empty() && options.stats.empty())
     throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
   if (!options.output.empty() && options.output != no_picture) add_picture(files, output_named(options.output));
@@ -114,6 +120,8 @@ void check_outputs(const Options& options, const Scene& scene, Layers layers, Fi
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
   if (!files.picture.empty()) check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
+  const bool is_transparent = scene.film.backdrop && scene.film.backdrop->kind == Backdrop::Kind::transparent;
+  if (!files.preview.empty() && is_transparent && !options.separation) check_preview_alpha(files.preview, "--preview");
   if (!files.preview.empty())
     check_preview_size(files.preview,
                        options.separation && layout_of(options) == report::StereoLayout::side_by_side ? 2 * width : width,
@@ -159,7 +167,7 @@ struct Work {
   const Scene& scene;
   const FlatScene& flat;
   const std::vector<Device>& devices;
-  Layers layers;
+  Layers layers, film_layers;  // that are written, and with those that overlays look at
   const Files& files;
   RenderOptions render_options;
 };
@@ -190,8 +198,8 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
 }
 
 BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
-  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene, work.layers, not_finite)
-                                       : report::developed_in_bands(result.film, work.scene, work.layers, not_finite);
+  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene, work.film_layers, not_finite)
+                                       : report::developed_in_bands(result.film, work.scene, work.film_layers, not_finite);
   out.whole.metadata = report::picture_metadata(work.scene, work.options.scene, work.invocation.command_line(), result);
   return out;
 }
@@ -202,7 +210,11 @@ RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeco
   NotFinite not_finite;
   const BandedImage picture = bands_of(work, result, not_finite);
   Stopwatch phase;
-  report::write_pictures(work.files.picture, work.files.preview, picture, work.layers.channels(), result.render_seconds);
+  const post::Overlays& overlays = work.options.overlays;
+  report::Finish finish{overlays.layers(), work.layers, {}};
+  if (overlays.any())
+    finish.draw = [&](Shown& shown, const LayeredImage& layers) { post::draw(shown, layers, work.scene, overlays); };
+  report::write_pictures(work.files.picture, work.files.preview, picture, work.layers.channels(), result.render_seconds, finish);
   not_finite.warn();
   seconds.write = phase.lap();
   return result;
@@ -248,6 +260,14 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   return std::move(out);
 }
 
+void tell_of_bar(const Options& options, const Scene& scene) {
+  const post::BarOnPicture bar = post::bar_of(*options.overlays.scale_bar, scene, "--scale-bar");
+  log::info("scale bar: {} are {:.1f} pixels{}", bar.label, bar.pixels,
+            bar.distance ? fmt::format(" at {:.6g} before the camera, the middle of what is seen (--orthographic: everywhere)",
+                                       *bar.distance)
+                         : std::string());
+}
+
 void run_render(const Options& options, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
@@ -256,6 +276,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   const Overrides overrides = check_options(options, files);
   if (!options.display.empty()) parse_tev_address(options.display, "--display");
   const Layers layers = parse_layers(options.layers, options.variance);
+  const Layers film_layers = Layers::of_bits(layers.bits() | options.overlays.layers().bits());
   install_interrupt_handlers();
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
 
@@ -263,6 +284,9 @@ void run_render(const Options& options, const Invocation& invocation) {
   Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
   apply(overrides, scene);
   check_outputs(options, scene, layers, files);
+  post::check(options.overlays, scene);
+  if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
+  widen_to_least(scene);
   seconds.load = phase.lap();
   const FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);
@@ -281,9 +305,9 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.time_stages = !options.stats.empty();
   render_options.film_on_device = true;
   render_options.cancelled = interrupt_requested;
-  render_options.layers = layers;
+  render_options.layers = film_layers;
   render_options.patience = options.patience;
-  const Work work{options, invocation, scene, flat, devices, layers, files, render_options};
+  const Work work{options, invocation, scene, flat, devices, layers, film_layers, files, render_options};
   const RenderResult result = options.separation ? stereo_pictures(work, seconds) : one_picture(work, view, seconds);
   seconds.total = total.lap();
   if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
@@ -353,6 +377,7 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_flag("-q,--quiet", o->quiet, "No progress, only warnings and errors");
   command->add_option("--batch", o->batch_paths, "Paths a batch (the picture does not depend on it)")->group("");
   add_import_options(*command, o->import_options);
+  add_overlays(*command, o->overlays);
   command->footer(
       "Options override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at once.\n"
       "The picture is scene-linear, with layers albedo, N, P, Z, object.id and primitive.id.");

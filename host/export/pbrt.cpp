@@ -32,9 +32,10 @@ class SceneWriter {
   SceneWriter(const Scene& scene, Stream& stream) : scene_(scene), stream_(stream) {}
 
   void write() {
-    // Every field of the scene is of one of these names: one that is added does not compile without its statement.
+    // Every field of the scene is of one of these names: one that is added does not compile without its statement. What is told
+    // beside pictures has none: the file's own axes and the legend of its colours.
     const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter, film, sampler, integrator,
-                 source, automatic_camera, has_no_up] = scene_;
+                 source, automatic_camera, has_no_up, framing, world_from_file, unit, legend] = scene_;
     order_materials();
     order_media();
     name_all();
@@ -155,11 +156,15 @@ class SceneWriter {
     if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
+    if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);
+    if (scene_.framing.up) out.vector("up", *scene_.framing.up);
+    if (!scene_.unit.empty()) out.text("unit", scene_.unit);
     out.write(stream_);
   }
 
   void write_film(const FilmSettings& film) {
-    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value, white_balance, space] = film;
+    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value, white_balance, space, backdrop,
+                 least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
     out.whole("xresolution", width);
@@ -172,6 +177,14 @@ class SceneWriter {
     if (iso != 100) out.number("iso", iso);
     if (max_component_value != 0) out.number("maxcomponentvalue", max_component_value);
     if (white_balance != 0) out.number("whitebalance", white_balance);
+    if (backdrop) {
+      static constexpr const char* kinds[] = {"transparent", "color", "image"};
+      out.text("background", kinds[static_cast<std::size_t>(backdrop->kind)]);
+      const glm::dvec3& c = backdrop->color;
+      if (backdrop->kind == Backdrop::Kind::color) out.numbers("float", "backgroundcolor", {c.x, c.y, c.z});
+      if (backdrop->kind == Backdrop::Kind::image) out.file("backgroundfile", backdrop->image->file, "the backdrop", stream_);
+    }
+    if (least_width != 0) out.number("leastwidth", least_width);
     out.write(stream_);
   }
 

@@ -11,6 +11,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "film/under.h"
 #include "lower/spectrum.h"
 
 namespace caplet {
@@ -130,6 +131,24 @@ class Developer {
   Vector rgb_{};
 };
 
+/// R G B are coverage's share of the shapes' light already: a backdrop fills the rest.
+void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
+  image.backdrop = backdrop;
+  if (!backdrop || backdrop->kind == Backdrop::Kind::transparent) return;
+  const std::vector<float>& coverage = image.find("A")->floats;
+  std::array<std::vector<float>*, 3> rgb{};
+  for (Channel& channel : image.channels)
+    for (const std::size_t c : {0U, 1U, 2U})
+      if (channel.name == std::array{"R", "G", "B"}.at(c)) rgb.at(c) = &channel.floats;
+  std::size_t pixel = 0;
+  for (int y = 0; y < image.data_height; ++y)
+    for (int x = 0; x < image.data_width; ++x, ++pixel) {
+      if (coverage[pixel] == 1) continue;
+      const std::array<float, 3> color = under(*backdrop, image.width, image.height, image.x + x, image.y + y, image.space);
+      for (std::size_t c = 0; c < 3; ++c) rgb.at(c)->at(pixel) += (1 - coverage[pixel]) * color.at(c);
+    }
+}
+
 /// What is written where a value is infinite or not a number.
 float instead_of(LayerHow how) { return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f; }
 
@@ -166,6 +185,7 @@ LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFin
     not_finite.x = static_cast<std::size_t>(window.x) + pixel % width;
     not_finite.y = static_cast<std::size_t>(window.y) + pixel / width;
   }
+  put_under(image, scene.film.backdrop);
   return image;
 }
 

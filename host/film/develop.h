@@ -26,7 +26,7 @@ struct NotFinite {
 };
 
 /// R G B A and the layers asked for (docs/output.md), which the film has, of all its pixels, times the exposure of `scene`:
-/// R G B     mean of the samples, linear in the film's colour space, with its white balance
+/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over the film's backdrop, by A
 /// A         coverage: share of the camera rays that hit something
 /// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1 is white in any light
 /// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1 long), world position, distance;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "film/chromaticities.h"
+#include "scene/backdrop.h"
 #include "scene/image_reader.h"
 #include "scene/spectrum.h"
 
@@ -34,6 +35,7 @@ struct LayeredImage {
   std::optional<Chromaticities> chromaticities;  // as a file states them; written in place of the space's own
   std::map<std::string, std::string> metadata;   // attributes that are text or numbers
   std::vector<std::string> views = {};           // of a multi-view picture, the one by default first (name_in_view)
+  std::optional<Backdrop> backdrop = {};         // that lies under R G B by A
 
   /// The channel of that name, or null.
   const Channel* find(const std::string& name) const;
@@ -70,11 +72,16 @@ void check_exr_size(int width, int height, std::size_t channels, const std::stri
 /// Throws InputError when missing or broken. Half and float channels come as floats, uint as uints.
 LayeredImage read_exr(const std::filesystem::path& path);
 
+struct Shown;  // film/preview.h
+
 /// Tone-maps the R G B channels (film/preview.h) and writes the data window with 8 bits a channel, in the format of the
-/// extension, atomically. Throws RunError or InputError.
+/// extension, atomically; before a transparent backdrop with alpha. Throws RunError or InputError.
 void write_preview(const std::filesystem::path& path, const LayeredImage& image);
-/// The same from bytes that preview_rgb8 (film/preview.h) made, 3 a pixel.
-void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
+void write_preview(const std::filesystem::path& path, const Shown& shown);
+/// The same from bytes as bytes_of (film/preview.h) makes them, 3 or 4 a pixel.
+void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& bytes);
+/// Throws InputError naming `flag` when files of that extension have no alpha.
+void check_preview_alpha(const std::filesystem::path& path, const std::string& flag);
 /// Throws InputError naming `flag` when write_preview could not write a file of that name's extension.
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);
 /// Throws InputError naming `flag` when that format cannot hold a picture of this size.

@@ -25,7 +25,9 @@ bool can_write(const std::filesystem::path&) { return false; }
 
 bool can_hold(const std::filesystem::path&, int, int) { return false; }
 
-std::string encode_rgb8(const std::filesystem::path& path, int, int, const std::vector<std::uint8_t>&) {
+bool can_write_alpha(const std::filesystem::path&) { return false; }
+
+std::string encode_8bit(const std::filesystem::path& path, int, int, int, const std::vector<std::uint8_t>&) {
   throw RunError(fmt::format("{}: {}", path.string(), reason));
 }
 

@@ -19,7 +19,7 @@
 #include "base/error.h"
 #include "film/detail/image_files.h"
 #include "film/detail/limits.h"
-#include "film/detail/transfer.h"
+#include "film/transfer.h"
 
 namespace caplet::image_files {
 
@@ -76,8 +76,9 @@ constexpr Limit limits[] = {{".jpg", 65500},  {".jpeg", 65500},  {".jpe", 65500}
                             {".jfi", 65500},  {".png", 1000000}, {".webp", 16383}, {".gif", 65535},  {".tga", 65535},
                             {".tpic", 65535}, {".sgi", 65535},   {".rgb", 65535},  {".rgba", 65535}, {".ico", 256}};
 
-OIIO::ImageSpec rgb8_spec(int width, int height) {
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+OIIO::ImageSpec spec_of_8bit(int width, int height, int channels = 3) {
+  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+  if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("CompressionQuality", 95);
   return spec;
@@ -181,18 +182,25 @@ bool can_hold(const std::filesystem::path& path, int width, int height) {
   // The other formats say so when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
   const MemoryFile file;
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
-  const bool opened = output && output->open(file.path(), rgb8_spec(width, height));
+  const bool opened = output && output->open(file.path(), spec_of_8bit(width, height));
   if (!output) OIIO::geterror();
   if (output && !opened) (void)output->geterror();
   return opened;
 }
 
-std::string encode_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
+bool can_write_alpha(const std::filesystem::path& path) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
+  if (!output) OIIO::geterror();
+  return output && output->supports("alpha");
+}
+
+std::string encode_8bit(const std::filesystem::path& path, int width, int height, int channels,
+                        const std::vector<std::uint8_t>& values) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   if (!output) throw RunError(fmt::format("{}: {}", path.string(), error_text(OIIO::geterror())));
   const auto write_to = [&](const std::string& name) {
-    if (!output->open(name, rgb8_spec(width, height)) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) ||
-        !output->close())
+    if (!output->open(name, spec_of_8bit(width, height, channels)) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, values.data()) || !output->close())
       throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error_text(output->geterror())));
   };
   std::vector<unsigned char> bytes;

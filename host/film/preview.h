@@ -18,8 +18,24 @@ namespace caplet {
 /// film and eyes do. Negative and NaN components are 0, infinite ones white.
 std::array<float, 3> tone_map(const std::array<float, 3>& rgb);
 
-/// The image's R G B, converted to sRGB primaries, tone-mapped, with the sRGB transfer: 3 bytes a pixel of the data window.
-/// Throws std::logic_error when there are no R G B channels.
+/// What is shown of an image's data window: linear sRGB from 0 to 1. `alpha` is empty where all is opaque; else colours are of
+/// what is there, not multiplied by it.
+struct Shown {
+  int width = 0, height = 0;
+  std::vector<std::array<float, 3>> rgb;
+  std::vector<float> alpha;
+
+  bool has_alpha() const { return !alpha.empty(); }
+};
+
+/// The image's R G B, converted to sRGB primaries, tone-mapped. Where it lies over a backdrop, the shapes' light is tone-mapped
+/// alone and the backdrop is as bright as it is. Throws std::logic_error when there are no R G B channels (with a backdrop, A).
+Shown shown(const LayeredImage& image);
+
+/// With the sRGB transfer: 3 bytes a pixel, 4 where there is alpha.
+std::vector<std::uint8_t> bytes_of(const Shown& shown);
+
+/// 3 bytes a pixel: what is transparent lies over black.
 std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image);
 
 }  // namespace caplet

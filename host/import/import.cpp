@@ -6,6 +6,8 @@
 #include <cctype>
 #include <system_error>
 
+#include "import/look.h"
+
 namespace caplet {
 
 namespace fs = std::filesystem;
@@ -38,8 +40,14 @@ void check_readable(const fs::path& path) {
   if (fs::file_size(path, error) == 0 && !error) throw InputError({path.string()}, "the file is empty");
 }
 
+bool is_look(const std::string& name) {
+  const auto found = std::ranges::find(import_option_rows(), name, &ImportOptionRow::name);
+  return found != import_option_rows().end() && found->is_look;
+}
+
 void check_known(const ImportOptions& options, const Format& format) {
   for (const auto& [name, value] : options.values()) {
+    if (is_look(name)) continue;
     if (std::ranges::find(format.options, name) != format.options.end()) continue;
     std::string who;
     for (const Format& other : formats())
@@ -56,6 +64,8 @@ Scene import_scene(const fs::path& path, const ImageReader& images, const Import
   const Format& format = format_of(path);
   check_known(options, format);
   Scene scene = format.import(path, images, options);
+  const bool is_turned = std::ranges::find(format.options, "up") != format.options.end();
+  apply_look(scene, images, options, is_turned);
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();

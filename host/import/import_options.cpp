@@ -9,9 +9,11 @@ namespace caplet {
 
 const std::vector<ImportOptionRow>& import_option_rows() {
   static const std::vector<ImportOptionRow> rows = {
-#define IMPORT_OPTION(name, values, help) {name, values, help},
+#define IMPORT_OPTION(name, values, help) {name, values, help, false},
+#define LOOK_OPTION(name, values, help) {name, values, help, true},
 #include "import/import_options.def"
 #undef IMPORT_OPTION
+#undef LOOK_OPTION
   };
   return rows;
 }

@@ -15,6 +15,7 @@ namespace caplet {
 
 struct ImportOptionRow {
   std::string name, values, help;
+  bool is_look;  // of the picture: every format knows it
 };
 
 const std::vector<ImportOptionRow>& import_option_rows();

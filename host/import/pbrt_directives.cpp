@@ -52,7 +52,7 @@ void Parser::camera() {
 void Parser::film() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type));
-  if (check_name("Film", type, where_, diagnostics_)) set_film(type, given, state_.space, scene_);
+  if (check_name("Film", type, where_, diagnostics_)) set_film(type, given, state_.space, scene_, &images_);
 }
 
 void Parser::integrator() {

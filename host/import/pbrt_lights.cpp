@@ -8,8 +8,9 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/spelling.h"
 #include "import/detail/ies.h"
-#include "present/present.h"
+#include "present/lights.h"
 #include "scene/transform.h"
 
 namespace caplet::pbrt {
@@ -115,9 +116,10 @@ struct LightReader {
     if (const std::string preset = parameters.text("preset", ""); !preset.empty()) {
       for (const char* other : {"L", "filename"})
         if (parameters.has(other)) parameters.error("preset", "cannot be combined with " + in_quotes(other));
-      if (preset != studio_preset)
-        return parameters.error("preset", "is " + in_quotes(preset) + "; the nearest known name is " + in_quotes(studio_preset));
-      light.image = studio_image();
+      light.image = light_preset(preset);
+      if (!light.image)
+        return parameters.error("preset", "is " + in_quotes(preset) + "; the nearest known name is " +
+                                              in_quotes(nearest_name(preset, light_presets())));
       light.world_from_light = rotation_of(parameters, world_from_light);
     } else if (!parameters.text("filename", "").empty()) {
       if (has_radiance) parameters.error("filename", "cannot be combined with \"L\"");

@@ -6,11 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -59,6 +62,52 @@ void set_sensor(Parameters& parameters, FilmSettings& film) {
   warn(parameters, "sensor", "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
 }
 
+/// Where the automatic camera is framed to.
+Framing framing_of(Parameters& parameters, bool is_orthographic) {
+  Framing framing;
+  framing.is_orthographic = is_orthographic;
+  for (auto [name, value] : {std::pair{"view", &framing.toward_viewer}, {"up", &framing.up}}) {
+    if (!parameters.has(name)) continue;
+    const glm::dvec3 direction = parameters.vector(name, {0, 1, 0});
+    const double length = glm::length(direction);
+    if (length > 0 && std::isfinite(length))
+      *value = is_unit(length) ? direction : direction / length;
+    else
+      parameters.error(name, "has no direction");
+  }
+  return framing;
+}
+
+/// A picture's file is found here and read by who has a reader of images.
+std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* images) {
+  const std::string kind = parameters.text("background", "");
+  if (kind.empty()) return std::nullopt;
+  Backdrop out;
+  if (kind == "color") {
+    out.kind = Backdrop::Kind::color;
+    const Parameter* color = parameters.values("backgroundcolor", {"float"});
+    const auto is_within = [](double v) { return v >= 0 && v <= 1; };
+    if (!color || color->numbers.size() != 3 || !std::ranges::all_of(color->numbers, is_within))
+      parameters.error("backgroundcolor", "must be three numbers from 0 to 1");
+    else
+      out.color = {color->numbers[0], color->numbers[1], color->numbers[2]};
+  } else if (kind == "image") {
+    const std::string name = parameters.text("backgroundfile", "");
+    try {
+      if (!images) throw InputError("pictures cannot be read here");
+      out.kind = Backdrop::Kind::image;
+      out.image = std::make_shared<const EnvironmentImage>(
+          images->read_rgb(resolve_file(name, parameters.where("backgroundfile"), parameters.main_file())));
+    } catch (const InputError& error) {
+      parameters.error("backgroundfile", error.what());
+      return std::nullopt;
+    }
+  } else if (kind != "transparent") {
+    parameters.error("background", "must be \"transparent\", \"color\" or \"image\"");
+  }
+  return out;
+}
+
 }  // namespace
 
 void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
@@ -94,11 +143,13 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
     parameters.error("shutterclose", "must be after shutteropen");
   scene.automatic_camera = parameters.boolean("automatic", false);
   scene.has_no_up = parameters.boolean("noup", false);
+  scene.framing = framing_of(parameters, is_parallel && scene.automatic_camera);
+  scene.unit = parameters.text("unit", "");
   parameters.finish();
   scene.camera = camera;
 }
 
-void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene) {
+void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene, const ImageReader* images) {
   FilmSettings film;
   film.exposure_time = scene.film.exposure_time;
   film.space = space;
@@ -145,6 +196,9 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
     for (const char* name : {"nbuckets", "lambdamin", "lambdamax"}) parameters.ignore(name);
     warn(parameters, {}, "red, green and blue are written, not the spectrum");
   }
+  film.backdrop = backdrop_of(parameters, images);
+  film.least_width = parameters.number("leastwidth", 0);
+  if (!(film.least_width >= 0 && film.least_width <= 64)) parameters.error("leastwidth", "must lie between 0 and 64 pixels");
   if (parameters.has("maxcomponentvalue")) film.max_component_value = positive(parameters, "maxcomponentvalue", 1);
   parameters.finish();
   scene.film = film;

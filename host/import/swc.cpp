@@ -407,6 +407,10 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
     scene.shapes.push_back(std::move(shape));
   }
   scene.has_no_up = true;
+  // Axons are thinner than pixels.
+  scene.film.least_width = 1.5;
+  scene.sampler.samples_per_pixel = 64;
+  scene.unit = "\u00b5m";
   add_presentation(scene);
   return scene;
 }

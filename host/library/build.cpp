@@ -433,6 +433,8 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters, co
   data.model.film.exposure_time = one.film.exposure_time;
   data.model.automatic_camera = one.automatic_camera;
   data.model.has_no_up = one.has_no_up;
+  data.model.framing = one.framing;
+  if (!one.unit.empty()) data.model.unit = one.unit;
   data.open_camera = false;
   if (data.model.automatic_camera && !bounds_of(data.model).empty()) frame_camera(data.model);
 }
@@ -459,11 +461,13 @@ void Scene::set_option(Statement statement, const std::string& type, const Param
   caplet::set_option(to_statement(statement, type, parameters), glm::dmat4(1), one);
   check_textures(one);
   Data& data = changed();
+  const bool sky_changes = data.model.film.backdrop.has_value() != one.film.backdrop.has_value();
   data.model.film = one.film;
   data.model.filter = one.filter;
   data.model.sampler = one.sampler;
   data.model.integrator = one.integrator;
   if (data.model.automatic_camera && statement == Statement::film) frame_camera(data.model);
+  if (sky_changes) data.as_a_whole();
 }
 
 void Scene::present() {

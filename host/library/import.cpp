@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 #include "caplet/import.h"
 
+#include <algorithm>
+
+#include "base/spelling.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "library/detail/inside.h"
@@ -14,6 +17,14 @@ std::vector<SceneFormat> scene_formats() {
   return out;
 }
 
-Scene import_scene(const std::filesystem::path& file) { return Inside::scene(caplet::import_scene(file, FileImageReader())); }
+Scene import_scene(const std::filesystem::path& file, const std::map<std::string, std::string>& options) {
+  for (const auto& [name, value] : options) {
+    std::vector<std::string> names;
+    for (const ImportOptionRow& row : import_option_rows()) names.push_back(row.name);
+    if (std::ranges::find(names, name) == names.end())
+      throw InputError("there is no option '" + name + "'; the nearest is '" + nearest_name(name, names) + "'");
+  }
+  return Inside::scene(caplet::import_scene(file, FileImageReader(), options));
+}
 
 }  // namespace caplet::v0

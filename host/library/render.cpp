@@ -10,7 +10,9 @@
 namespace caplet::v0 {
 
 Film render(const Scene& scene, const Device& device, const RenderOptions& options) {
-  const caplet::Scene& model = *Inside::model(scene);
+  Scene drawn = scene;
+  drawn.widen_to_least();
+  const caplet::Scene& model = *Inside::model(drawn);
   const caplet::Device& on = Inside::device(device);
   const FlatScene flat = lower(model);
   try_device(on, {.shapes = flat.shapes, .render = true});

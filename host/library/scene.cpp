@@ -13,6 +13,7 @@
 #include "library/detail/inside.h"
 #include "library/detail/places.h"
 #include "present/film_window.h"
+#include "present/least_width.h"
 
 namespace caplet::v0 {
 
@@ -244,6 +245,13 @@ void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
   changed().open_camera = false;
+}
+
+void Scene::widen_to_least() {
+  if (!(data_->model.film.least_width > 0)) return;
+  if (data_->open_camera) present();
+  Data& data = changed();
+  if (caplet::widen_to_least(data.model) > 0) data.as_a_whole_in_view();
 }
 
 double Scene::fov() const { return data_->model.camera.fov * degrees_per_radian; }

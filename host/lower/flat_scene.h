@@ -32,6 +32,7 @@ struct FlatScene {
   std::uint64_t medium_kinds() const;
   bool has_media() const;  // or surfaces that light passes
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
+  bool sky_is_unseen = false;  // by camera rays: there is a backdrop
 
   // For `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;

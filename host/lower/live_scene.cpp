@@ -219,7 +219,9 @@ struct LiveScene::State {
     return true;
   }
 
-  bool follow(const ViewEdit& edit, const ViewEdit& before) { return edit.film.space == before.film.space; }
+  bool follow(const ViewEdit& edit, const ViewEdit& before) {
+    return edit.film.space == before.film.space && edit.film.backdrop.has_value() == before.film.backdrop.has_value();
+  }
 
   /// `part` has other primitives or another place; `shape`, where it emits, other areas.
   void part_has_changed(Part& part, const Shape* shape) {

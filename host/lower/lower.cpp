@@ -17,6 +17,7 @@ namespace caplet {
 
 Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
+  flat.sky_is_unseen = scene.film.backdrop.has_value();
   lower_images(scene, images, flat);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));

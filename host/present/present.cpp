@@ -14,6 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "present/lights.h"
+#include "present/look.h"
+
 namespace caplet {
 
 namespace {
@@ -133,6 +136,18 @@ View view_from(const glm::dvec3& toward_viewer) {
   return view;
 }
 
+/// A view that was asked for: up is y however steep it is; from above, the front's side is below in the image, and from below
+/// above.
+View view_asked(const glm::dvec3& toward_viewer) {
+  View view;
+  view.forward = -glm::normalize(toward_viewer);
+  const bool is_upright = std::abs(view.forward.y) > 1 - 1e-12;
+  const glm::dvec3 up = is_upright ? glm::dvec3(0, 0, view.forward.y) : glm::dvec3(0, 1, 0);
+  view.right = glm::normalize(glm::cross(view.forward, up));
+  view.up = glm::cross(view.right, view.forward);
+  return view;
+}
+
 /// Turns the viewer to the right by `azimuth` and up by `elevation`.
 View turned(const View& view, double azimuth, double elevation) {
   const glm::dvec3 level = -view.forward * std::cos(azimuth) + view.right * std::sin(azimuth);
@@ -170,49 +185,51 @@ View choose_view(const std::vector<Ball>& balls) {
   return turned(view_from(facing(across)), radians(30), radians(18));
 }
 
-// --- The studio ---
-
-/// A round soft light: `radiance` within `radius` of `direction`, falling to 0 over `edge`. Angles in radians; the direction is
-/// in the viewer's axes (right, up, toward the viewer).
-struct SoftLight {
-  glm::dvec3 direction;
-  double radius, edge;
-  glm::dvec3 radiance;
-};
-
-glm::dvec3 from_angles(double azimuth, double elevation) {
-  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
+/// The view of the scene's framing; of balls that lie as in the world.
+View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
+  const Framing& framing = scene.framing;
+  const double aspect = static_cast<double>(scene.film.width) / scene.film.height;
+  View view;
+  if (!framing.up) {
+    view = framing.toward_viewer ? view_asked(*framing.toward_viewer) : choose_view(balls);
+  } else {
+    const glm::dmat3 turn = turned_up(*framing.up), back = glm::transpose(turn);
+    if (framing.toward_viewer) {
+      view = view_asked(turn * *framing.toward_viewer);
+    } else {
+      std::vector<Ball> upright = balls;
+      for (Ball& ball : upright) ball.center = turn * ball.center;
+      view = choose_view(upright);
+    }
+    view = {back * view.right, back * view.up, back * view.forward};
+  }
+  return scene.has_no_up && !framing.up && !framing.toward_viewer ? along_image(view, balls, aspect) : view;
 }
 
-/// Irradiance of a disk of angular radius a at its centre: pi L sin(a)^2. The key gives about 2.8, so a reflectance of 0.6 facing
-/// it shows 0.53 of it, and with fill and background 0.6 to 0.7. All lights lie outside what the camera sees (up to 33 degrees
-/// off its axis in the corners of a 16:9 image).
-EnvironmentImage studio() {
-  const std::array<SoftLight, 3> lights = {
-      SoftLight{from_angles(radians(-48), radians(42)), radians(24), radians(8), {4.2, 4.0, 3.7}},
-      SoftLight{from_angles(radians(62), radians(8)), radians(30), radians(14), {0.72, 0.8, 0.92}},
-      SoftLight{from_angles(radians(150), radians(58)), radians(18), radians(8), {2.8, 2.9, 3.1}},
-  };
-  EnvironmentImage image;
-  image.preset = studio_preset;
-  image.width = 512;
-  image.height = 256;
-  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  std::size_t texel = 0;
-  for (int row = 0; row < image.height; ++row)
-    for (int column = 0; column < image.width; ++column) {
-      const double theta = kPi * (row + 0.5) / image.height, phi = 2 * kPi * (column + 0.5) / image.width;
-      // Light space: z up, x toward the viewer, y to the viewer's right.
-      const glm::dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
-      glm::dvec3 radiance(0.020, 0.024, 0.032);
-      for (const SoftLight& light : lights) {
-        const double angle = std::acos(std::clamp(glm::dot(direction, light.direction), -1.0, 1.0));
-        const double t = std::clamp((light.radius + light.edge - angle) / light.edge, 0.0, 1.0);
-        radiance += light.radiance * (t * t * (3 - 2 * t));
-      }
-      for (int channel = 0; channel < 3; ++channel) image.rgb[texel++] = static_cast<float>(radiance[channel]);
-    }
-  return image;
+void set_camera(Scene& scene, const View& view, const glm::dvec3& eye, double fov) {
+  scene.camera = Camera{};
+  scene.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
+  scene.camera.fov = fov;
+  scene.automatic_camera = true;
+}
+
+/// The camera stands one extent before the nearest point, for the depth layer; the picture does not depend on it.
+void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>& balls) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (const Ball& ball : balls) {
+    const glm::dvec3 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center), glm::dot(view.forward, ball.center));
+    low = glm::min(low, p - ball.radius);
+    high = glm::max(high, p + ball.radius);
+  }
+  const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - kMargin);
+  const double width = scene.film.width, height = scene.film.height;
+  double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
+  if (!(per_pixel > 0)) per_pixel = 1 / width;  // a point
+  const double away = 2 * std::max({half.x, half.y, half.z});
+  set_camera(scene, view, middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward, 0);
+  const double x = 0.5 * per_pixel * width, y = 0.5 * per_pixel * height;
+  scene.camera.screen_window = {-x, x, -y, y};
 }
 
 }  // namespace
@@ -220,9 +237,9 @@ EnvironmentImage studio() {
 void frame_camera(Scene& scene) {
   const std::vector<Ball> balls = balls_of(scene);
   if (balls.empty()) return;
-  View view = choose_view(balls);
+  const View view = framed_view(scene, balls);
+  if (scene.framing.is_orthographic) return frame_orthographic(scene, view, balls);
   const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
-  if (scene.has_no_up) view = along_image(view, balls, width / height);
 
   // A ball is inside a side of the view pyramid when its centre is one radius behind the plane. With the plane's angle a to the
   // axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and -cos(a) x - sin(a) z >= L, R and L being the largest of
@@ -248,25 +265,14 @@ void frame_camera(Scene& scene) {
   const double x = (horizontal.right - horizontal.left) / (2 * horizontal.cosine);
   const double y = (vertical.right - vertical.left) / (2 * vertical.cosine);
   const glm::dvec3 eye = x * view.right + y * view.up + z * view.forward;
-
-  scene.camera = Camera{};
-  scene.camera.world_from_camera =
-      glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
-  scene.camera.fov = kFieldOfView;
-  scene.automatic_camera = true;
-}
-
-std::shared_ptr<const EnvironmentImage> studio_image() {
-  static const auto image = std::make_shared<const EnvironmentImage>(studio());
-  return image;
+  set_camera(scene, view, eye, kFieldOfView);
 }
 
 void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
   light.image = studio_image();
-  const glm::dmat3 camera(scene.camera.world_from_camera);
-  light.world_from_light = glm::dmat3(-camera[2], camera[0], camera[1]);
+  light.world_from_light = around(scene.camera);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
 }
 

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
-#include <memory>
 
 #include "scene/scene.h"
 
@@ -19,13 +18,9 @@ namespace caplet {
 void add_presentation(Scene& scene);
 
 /// Points the camera at the shapes and moves it so that they just fit the film's size, with a margin; sets automatic_camera. To
-/// be called again when the film's size has changed. Flat scenes are seen face-on with a slight tilt, others three-quarter. The
-/// direction depends on the shapes alone.
+/// be called again when the film's size has changed. Scene::framing says from where, which way up, and whether in perspective;
+/// where it does not, flat scenes are seen face-on with a slight tilt, others three-quarter, by the shapes alone.
 void frame_camera(Scene& scene);
-
-/// That light's image, and what scene files call it. Its z is up, x toward the viewer, y to the viewer's right.
-inline constexpr const char* studio_preset = "studio";
-std::shared_ptr<const EnvironmentImage> studio_image();
 
 /// `n` well-told-apart diffuse colours (linear sRGB reflectance), index wraps.
 glm::dvec3 palette_color(std::size_t index);

@@ -5,10 +5,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
 #include "film/image.h"
+#include "film/layers.h"
+#include "film/preview.h"
 #include "render/render.h"
 #include "scene/scene.h"
 
@@ -22,9 +25,16 @@ std::map<std::string, std::string> picture_metadata(const Scene& scene, const st
 /// Of the devices that have made it, with commas.
 std::string of_devices(const RenderResult& result, std::string DeviceWork::*what);
 
+/// What is done to a whole preview before it is written.
+struct Finish {
+  Layers layers = Layers::none();  // that it looks at
+  Layers written = Layers::all();  // channels of others are not written
+  std::function<void(Shown& picture, const LayeredImage& layers)> draw;
+};
+
 /// The picture and its preview, developed once, band by band. An empty path: not written. `channels`: of 32 bits;
 /// `render_seconds` weighs how long packing may take. Throws RunError.
 void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& image,
-                    std::size_t channels, double render_seconds);
+                    std::size_t channels, double render_seconds, const Finish& finish = {});
 
 }  // namespace caplet::report

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <map>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/backdrop.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/medium.h"
@@ -66,6 +68,8 @@ struct FilmSettings {
   double max_component_value = 0;          // of a sample's exposed XYZ; 0: none
   double white_balance = 0;                // kelvin: this daylight becomes the colour space's white; 0: nothing does
   ColorSpace space = ColorSpace::srgb;
+  std::optional<Backdrop> backdrop = {};
+  double least_width = 0;  // pixels: capsules and spheres are drawn no thinner (present/least_width.h); 0: as they are
 };
 
 struct SamplerSettings {
@@ -75,6 +79,20 @@ struct SamplerSettings {
 
 struct IntegratorSettings {
   int max_depth = 5;
+};
+
+/// How the automatic camera looks, where it is told.
+struct Framing {
+  std::optional<glm::dvec3> toward_viewer;  // world, of any length
+  std::optional<glm::dvec3> up;             // world, unit; none: y
+  bool is_orthographic = false;
+};
+
+/// What colours tell of numbers: those of a colour map, at even steps from `low` to `high`.
+struct Legend {
+  std::string title, unit;
+  double low = 0, high = 1;
+  std::vector<glm::dvec3> colors;  // linear sRGB, as displayed
 };
 
 struct Scene {
@@ -93,6 +111,10 @@ struct Scene {
   std::string source;             // the file it came from
   bool automatic_camera = false;  // the camera was framed to the shapes (present/present.h), for the film's size as it was
   bool has_no_up = false;         // no direction is up (a neuron): the automatic camera may turn the scene within the image
+  Framing framing;                // of the automatic camera
+  glm::dmat3 world_from_file{1};  // a rotation: its axes are those that the file names
+  std::string unit;               // of lengths, as people write it ("µm"); empty: not known
+  std::optional<Legend> legend;   // of its colours
 };
 
 /// The camera's screen window: its own, or that of its or the film's aspect ratio.

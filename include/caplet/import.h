@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct SceneFormat {
 CAPLET_API std::vector<SceneFormat> scene_formats();
 
 /// Reads a scene of any of these formats, chosen by extension. What the file leaves open (camera, light, material) gets good
-/// values. Throws InputError with every mistake's file, line and column.
-CAPLET_API Scene import_scene(const std::filesystem::path& file);
+/// values. `options`: what the program takes as --NAME VALUE, {{"view", "top"}, {"background", "white"}, {"style", "sticks"}}.
+/// Throws InputError with every mistake's file, line and column, or naming the option.
+CAPLET_API Scene import_scene(const std::filesystem::path& file, const std::map<std::string, std::string>& options = {});
 
 CAPLET_END

@@ -136,6 +136,9 @@ class CAPLET_API Scene {
   /// called again, and go where a camera or light is given. Throws InputError for what cannot be rendered, a scene without shapes
   /// among it.
   void present();
+  /// Makes capsules and spheres as wide as the film's "leastwidth" says, in pixels of its size and camera, as render() does with
+  /// a copy. Of a scene without one: nothing.
+  void widen_to_least();
 
  private:
   friend struct Inside;

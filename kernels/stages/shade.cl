@@ -147,6 +147,9 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #endif
 
   if (hit.slot == CAPLET_NONE) {
+#ifdef CAPLET_UNSEEN_SKY
+    if (depth == 0u) return;  // a backdrop takes its place
+#endif
     const float4 sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
     g->radiance.path_radiance[path] += throughput * sky;
     return;

@@ -161,6 +161,7 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
         native.seed = _count(seed + 1, "seed", 1 << 32) - 1
     if size is not None:
         native.set_size(*(int(one) for one in size))
+    native.widen_to_least()
     session = Session.__new__(Session)
     session._native, session._cancelled, session._size = _caplet.Session(native, _devices(device)), False, None
     told = _Progress(progress, spp or native.spp)

@@ -624,10 +624,20 @@ def _distinct(colors):
     raise AssertionError("16^3 colours are not more than 4096")
 
 
-def load(path):
-    """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError)."""
+def _option(value):
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else ",".join(repr(float(v)) for v in value) if np.ndim(value) else str(value)
+
+
+def load(path, **options):
+    """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
+
+    options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",
+    projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks"...
+    """
     try:
-        return Scene(_caplet.load(os.fspath(path)))
+        return Scene(_caplet.load(os.fspath(path), {name.replace("_", "-"): _option(value) for name, value in options.items()}))
     except InputError as error:
         if error.file is None:  # of the file as a whole
             error.file = os.fspath(path)

@@ -179,12 +179,12 @@ void bind_scene(nb::module_& m) {
   });
   m.def(
       "load",
-      [](const std::string& file) {
+      [](const std::string& file, const std::map<std::string, std::string>& options) {
         std::optional<Scene> scene;
-        run_interruptibly([&] { scene = caplet::import_scene(file); }, [] {}, [] {});
+        run_interruptibly([&] { scene = caplet::import_scene(file, options); }, [] {}, [] {});
         return *std::move(scene);
       },
-      "Reads a scene of any known format.");
+      nb::arg("file"), nb::arg("options") = std::map<std::string, std::string>(), "Reads a scene of any known format.");
 
   nb::class_<Scene>(m, "Scene")
       .def(nb::init<>())
@@ -211,6 +211,7 @@ void bind_scene(nb::module_& m) {
       .def_prop_ro("height", &Scene::height)
       .def("set_size", &Scene::set_size)
       .def("set_crop", &Scene::set_crop)
+      .def("widen_to_least", &Scene::widen_to_least)
       .def_prop_rw("spp", &Scene::samples_per_pixel, &Scene::set_samples_per_pixel)
       .def_prop_rw("max_depth", &Scene::max_depth, &Scene::set_max_depth)
       .def_prop_rw("seed", &Scene::seed, &Scene::set_seed)

@@ -468,6 +468,12 @@ class Maker {
     scene_.integrator.max_depth = static_cast<int>(random_.below(20));
     scene_.automatic_camera = random_.one_in(2);
     scene_.has_no_up = random_.one_in(2);
+    if (random_.one_in(2)) scene_.framing.toward_viewer = random_.direction();
+    if (random_.one_in(2)) scene_.framing.up = random_.direction();
+    if (random_.one_in(2)) scene_.unit = "\xc2\xb5m";
+    if (random_.one_in(2)) scene_.film.backdrop = Backdrop{};
+    if (random_.one_in(2)) scene_.film.backdrop = Backdrop{Backdrop::Kind::color, {0.25, 0.5, random_.uniform(0, 1)}, nullptr};
+    if (random_.one_in(2)) scene_.film.least_width = random_.uniform(0, 3);
   }
 
   Random random_;

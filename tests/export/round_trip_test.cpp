@@ -76,6 +76,15 @@ TEST(RoundTrip, EveryRowOfEveryList) {
     EXPECT_EQ(text_of(read, folder), text);
     EXPECT_EQ(read.automatic_camera, scene.automatic_camera);
     EXPECT_EQ(read.has_no_up, scene.has_no_up);
+    EXPECT_EQ(read.framing.toward_viewer, scene.framing.toward_viewer);
+    EXPECT_EQ(read.framing.up, scene.framing.up);
+    EXPECT_EQ(read.unit, scene.unit);
+    EXPECT_EQ(read.film.least_width, scene.film.least_width);
+    ASSERT_EQ(read.film.backdrop.has_value(), scene.film.backdrop.has_value());
+    if (scene.film.backdrop) {
+      EXPECT_EQ(read.film.backdrop->kind, scene.film.backdrop->kind);
+      EXPECT_EQ(read.film.backdrop->color, scene.film.backdrop->color);
+    }
     EXPECT_EQ(read.film.filename, scene.film.filename);
     EXPECT_EQ(read.film.exposure_time, scene.film.exposure_time);
     EXPECT_EQ(read.film.max_component_value, scene.film.max_component_value);

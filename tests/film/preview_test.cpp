@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "film/detail/transfer.h"
+#include "film/transfer.h"
 #include "images.h"
 #include "support/data.h"
 

@@ -64,6 +64,35 @@ TEST_F(Library, ASceneTellsWhatItHolds) {
   EXPECT_EQ(scene.bounds().max, (std::array<double, 3>{1, 1, 1}));
 }
 
+TEST_F(Library, FilesTakeTheProgramsOptions) {
+  std::ofstream(folder_ / "cell.swc") << "1 2 0 0 0 0.01 -1\n2 2 4 1 0 0.01 1\n";
+  const caplet::Scene top = caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "4"}});
+  EXPECT_NEAR(top.camera()[6], -1, 1e-12);  // by rows: what looks down has forward, the third column, along -y
+  for (const auto& [name, value, says] :
+       {std::array{"veiw", "top", "'view'"}, std::array{"view", "inside", "--view"}, std::array{"style", "sticks", "--style"}}) {
+    try {
+      caplet::import_scene(folder_ / "cell.swc", {{name, value}});
+      ADD_FAILURE() << name;
+    } catch (const caplet::InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(says));
+    }
+  }
+  // A picture's lines are wide, hits are of the shapes.
+  caplet::Scene small = top;
+  small.set_size(64, 64);
+  small.set_samples_per_pixel(4);
+  const std::vector<float> coverage = caplet::render(small, test_device()).values("A");
+  double wide = 0, thin = 0;
+  for (const float share : coverage) wide += double{share};
+  caplet::Scene as_it_is = caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "0"}});
+  as_it_is.set_size(64, 64);
+  as_it_is.set_samples_per_pixel(4);
+  for (const float share : caplet::render(as_it_is, test_device()).values("A")) thin += double{share};
+  // A line of 0.95 x 64 pixels, four wide; 0.02 of 4.02 units of it wide.
+  EXPECT_NEAR(wide, 0.95 * 64 * 4, 25);
+  EXPECT_LT(thin, 40);
+}
+
 TEST_F(Library, AChangedCopyLeavesTheFirstAsItWas) {
   const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   caplet::Scene copy = scene;

@@ -35,7 +35,10 @@ StoredPixels read_stored(const std::filesystem::path& path);
 bool can_write(const std::filesystem::path& path);
 /// Whether a file of that extension, which can be written, can be of that size.
 bool can_hold(const std::filesystem::path& path, int width, int height);
-/// The bytes of a file of 8-bit sRGB, 3 bytes a pixel, in the format of the path's extension. Throws RunError.
-std::string encode_rgb8(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb);
+bool can_write_alpha(const std::filesystem::path& path);
+/// The bytes of a file of 8-bit sRGB, 3 bytes a pixel or 4 with alpha (not multiplied in), in the format of the path's extension.
+/// Throws RunError.
+std::string encode_8bit(const std::filesystem::path& path, int width, int height, int channels,
+                        const std::vector<std::uint8_t>& values);
 
 }  // namespace caplet::image_files

@@ -8,13 +8,16 @@
 #include <string>
 
 #include "import/detail/pbrt_parameters.h"
+#include "scene/image_reader.h"
 #include "scene/scene.h"
 
 namespace caplet::pbrt {
 
 /// `camera_from_world` is the current transform.
 void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene);
-void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene);
+/// `images` reads what the film names; without it such a name is an error.
+void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene,
+              const ImageReader* images = nullptr);
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
 /// Returns the sampler's own seed, if it has one.
 std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene);

@@ -68,6 +68,7 @@ struct Usual {
   ColorBy color = ColorBy::direction;
   const char* up = "y";
   bool hair = false;
+  const char* unit = "";  // of the file's lengths
 };
 
 Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual) {
@@ -139,6 +140,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   shape.name = path.stem().string();
   shape.where = {scene.source, 0, 0};
   shape.world_from_object = world_from_file(options, usual.up);
+  scene.world_from_file = glm::dmat3(shape.world_from_object);
+  scene.unit = usual.unit;
   scene.shapes.push_back(std::move(shape));
   add_presentation(scene);
   return scene;
@@ -153,10 +156,12 @@ Scene import_tressfx(const std::filesystem::path& path, const ImageReader&, cons
   return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, ColorBy::fibre, "y", true});
 }
 Scene import_trk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trk(read_file(path, {}), path.string()), path, options, {kStreamline, ColorBy::direction, "z", false});
+  return scene_of(read_trk(read_file(path, {}), path.string()), path, options,
+                  {kStreamline, ColorBy::direction, "z", false, "mm"});
 }
 Scene import_tck(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_tck(read_file(path, {}), path.string()), path, options, {kStreamline, ColorBy::direction, "z", false});
+  return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
+                  {kStreamline, ColorBy::direction, "z", false, "mm"});
 }
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_vtk(read_file(path, {}), path.string()), path, options, {0, ColorBy::direction, "z", false});

@@ -33,6 +33,7 @@ class GltfReader {
   GltfReader(gltf::File file, const ImageReader& reader, const ImportOptions& options)
       : file_(std::move(file)), json_(file_.json), options_(options), materials_(file_, scene_, reader) {
     scene_.source = file_.path.string();
+    scene_.unit = "m";
   }
 
   Scene read() {
@@ -48,6 +49,7 @@ class GltfReader {
       for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
     }
     const glm::dmat4 world = world_from_file(options_, "y");
+    scene_.world_from_file = glm::dmat3(world);
     for (const std::size_t root : roots) visit(root, world, 0);
     place_meshes();
     if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "import/detail/text_file.h"
+#include "present/look.h"
 
 namespace caplet {
 
@@ -37,12 +38,7 @@ void LineWords::fail(std::size_t i, const std::string& message) const {
 }
 
 glm::dmat4 world_from_file(const ImportOptions& options, const char* usual) {
-  const std::string up = options.text("up").value_or(usual);
-  const glm::dvec4 x(1, 0, 0, 0), y(0, 1, 0, 0), z(0, 0, 1, 0), w(0, 0, 0, 1);
-  if (up == "y") return glm::dmat4(1);
-  if (up == "z") return {x, -z, y, w};  // columns: z goes to y, y to -z
-  if (up == "x") return {y, -x, z, w};  // x goes to y, y to -x
-  throw InputError({"--up"}, "'" + up + "' is none of: x, y, z");
+  return glm::dmat4(turned_up(parse_axis(options.text("up").value_or(usual), "--up")));
 }
 
 std::uint32_t MeshImages::texture(const std::filesystem::path& path, bool is_float, bool is_srgb, const SourceLocation& where) {

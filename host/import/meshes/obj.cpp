@@ -201,6 +201,7 @@ class ObjReader {
   void finish() {
     std::optional<std::uint32_t> plain;
     const glm::dmat4 world = world_from_file(options_, "y");
+    scene_.world_from_file = glm::dmat3(world);
     for (const std::unique_ptr<Part>& part : parts_) {
       complete(*part);
       const SourceLocation where{scene_.source, part->line, 0};

@@ -193,6 +193,7 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
   if (mesh.triangles.empty()) throw InputError({scene.source, 0, 0}, "holds no faces");
   Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene), {scene.source, 0, 0});
   shape.world_from_object = world_from_file(options, usual_up);
+  scene.world_from_file = glm::dmat3(shape.world_from_object);
   scene.shapes.push_back(std::move(shape));
   add_presentation(scene);
   return scene;

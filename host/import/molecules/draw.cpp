@@ -67,6 +67,14 @@ class Painter {
     return 0;
   }
 
+  /// Of the b factors' colours; none of colours that tell no number.
+  std::optional<Legend> legend() const {
+    if (by_ != ColorBy::bfactor) return std::nullopt;
+    Legend out{"B factor", "\u00c5\u00b2", low_, high_, {}};
+    for (int step = 0; step < kMapSteps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (kMapSteps - 1)));
+    return out;
+  }
+
   std::uint32_t of_element(const Atom& atom) {
     return named(element_name(atom.element), [&] { return element_color(atom.element); });
   }
@@ -282,7 +290,9 @@ Scene import_molecule(const std::filesystem::path& path, const ImportOptions& op
     add_assembly(scene, molecule, *assembly, drawing);
   else
     scene.shapes = drawing.shapes(scene, std::vector<bool>(molecule.residues.size(), true));
+  scene.legend = painter.legend();
   scene.has_no_up = true;
+  scene.unit = "\u00c5";
   add_presentation(scene);
   return scene;
 }

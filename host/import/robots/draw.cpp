@@ -311,8 +311,7 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
 
 /// The camera that is asked for, or one framed to the scene; the robot's lights, or the studio's.
 void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Scene& scene) {
-  const bool studio = options.choice("lights", {"file", "studio"}, 0) == 1 || robot.lights.empty();
-  if (studio)
+  if (robot.lights.empty())
     add_presentation(scene);
   else
     frame_camera(scene);
@@ -335,10 +334,12 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
       scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
     }
   }
-  if (!studio) light_by_robot(robot, world, scene);
+  if (!robot.lights.empty()) light_by_robot(robot, world, scene);
 }
 
 void draw(const Robot& robot, const glm::dmat4& world, const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
+  scene.world_from_file = glm::dmat3(world);
+  scene.unit = "m";
   Drawing drawing(robot, scene, world);
   for (const RobotGeom& geom : robot.geoms)
     if (shown(geom)) drawing.add(geom);
@@ -353,10 +354,10 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const I
   scene.source = path.string();
   enum Groups : std::size_t { visual, collision, all };
   const std::size_t groups = options.choice("groups", {"visual", "collision", "all"}, visual);
+  const glm::dmat4 world = world_from_file(options, "z");
   const Robot robot = read_urdf(path, Pose(options));
   draw(
-      robot, world_from_file(options, "z"),
-      [&](const RobotGeom& geom) { return groups == all || geom.collides == (groups == collision); }, scene);
+      robot, world, [&](const RobotGeom& geom) { return groups == all || geom.collides == (groups == collision); }, scene);
   add_presentation(scene);
   return scene;
 }

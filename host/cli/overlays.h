@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The options of what is drawn on a picture.
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "post/overlay.h"
+
+namespace caplet::cli {
+
+/// Adds --scale-bar, --outline, --depth-cue, --axes and --color-bar, which go into `overlays`.
+void add_overlays(CLI::App& command, post::Overlays& overlays);
+
+}  // namespace caplet::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/look.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "import/detail/text_file.h"
+#include "present/look.h"
+#include "present/present.h"
+
+namespace caplet {
+
+namespace {
+
+constexpr float kWidest = 64;  // pixels: beyond that it is no line
+
+double width_of(const std::string& text) {
+  float value = 0;
+  const NumberError error = parse_float(text, value);
+  if (error != NumberError::none) throw InputError({"--least-width"}, describe(error, text));
+  if (!(value >= 0 && value <= kWidest)) throw InputError({"--least-width"}, "'" + text + "' is not from 0 to 64 pixels");
+  return value;
+}
+
+bool has_shapes(const Scene& scene) {
+  const Bounds bounds = bounds_of(scene);
+  return !bounds.empty() && std::isfinite(glm::length(bounds.max - bounds.min));
+}
+
+void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
+  const auto view = options.text("view"), up = is_turned ? std::nullopt : options.text("up");
+  const bool projects = options.text("projection").has_value();
+  if (!view && !up && !projects) return;
+  if (!view && !scene.automatic_camera)
+    throw InputError({up ? "--up" : "--projection"}, "the scene has a camera of its own: with --view it is framed anew");
+  Framing& framing = scene.framing;
+  if (up) framing.up = parse_axis(*up, "--up");
+  if (view) framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
+  if (projects) framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
+  if (!has_shapes(scene)) return;  // validate reports it
+  const auto medium = scene.camera.medium;
+  frame_camera(scene);
+  scene.camera.medium = medium;
+  turn_lights_to_camera(scene);
+}
+
+}  // namespace
+
+void apply_look(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned) {
+  look_from(scene, options, is_turned);
+  if (const auto light = options.text("light")) set_light(scene, *light, "--light");
+  if (const auto backdrop = options.text("background")) scene.film.backdrop = parse_backdrop(*backdrop, images, "--background");
+  if (const auto width = options.text("least-width")) scene.film.least_width = width_of(*width);
+}
+
+}  // namespace caplet

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Lines, boxes and text on a displayed picture, with smooth edges. Pixel (0, 0) is the square from (0, 0) to (1, 1), y down.
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "film/preview.h"
+
+namespace caplet::post {
+
+/// What share of each pixel is covered.
+class Mask {
+ public:
+  Mask(int width, int height)
+      : width_(width), height_(height), share_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  float& at(int x, int y) {
+    return share_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
+  const std::vector<float>& shares() const { return share_; }
+
+  /// A line of that width with round ends.
+  void line(const glm::dvec2& from, const glm::dvec2& to, double width);
+  /// Exactly the pixels' shares.
+  void box(const glm::dvec2& low, const glm::dvec2& high);
+
+ private:
+  int width_, height_;
+  std::vector<float> share_;
+};
+
+/// Paints what the mask covers in a colour, sRGB from 0 to 1, mixed as sRGB.
+void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb);
+
+/// Letters are strokes. `size`: the height of capitals; the baseline begins at `at`. What there is no letter of is a box.
+double text_width(std::string_view utf8, double size);
+void text(Mask& mask, const glm::dvec2& at, std::string_view utf8, double size);
+
+}  // namespace caplet::post

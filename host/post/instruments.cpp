@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Scale bar, axes, colour bar.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "film/transfer.h"
+#include "post/detail/parts.h"
+
+namespace caplet::post {
+
+double text_size(const Shown& picture) { return std::max(8.0, 0.024 * std::min(picture.width, picture.height)); }
+
+double margin(const Shown& picture) { return std::round(1.4 * text_size(picture)); }
+
+std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
+  if (picture.has_alpha()) return {0, 0, 0};  // papers are white
+  const std::vector<float>& coverage = layers.find("A")->floats;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    if (coverage[i] > 0) continue;
+    sum += 0.2126 * picture.rgb[i][0] + 0.7152 * picture.rgb[i][1] + 0.0722 * picture.rgb[i][2];
+    ++count;
+  }
+  // The luminance that is as far from black as from white, by the contrast of WCAG 2: sqrt(1.05 * 0.05) - 0.05.
+  const bool is_dark = count > 0 && sum / count < 0.179;
+  const float ink = is_dark ? 1 : 0;
+  return {ink, ink, ink};
+}
+
+void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink) {
+  const double size = text_size(picture), edge = margin(picture), thick = std::max(2.0, std::round(0.22 * size));
+  const double right = picture.width - edge, bottom = picture.height - edge;
+  Mask mask(picture.width, picture.height);
+  mask.box({right - bar.pixels, bottom - thick}, {right, bottom});
+  const double wide = text_width(bar.label, size);
+  const double left = std::min(right - 0.5 * (bar.pixels + wide), picture.width - 0.5 * edge - wide);
+  text(mask, {left, bottom - thick - 0.6 * size}, bar.label, size);
+  paint(picture, mask, ink);
+}
+
+void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& ink) {
+  struct Arrow {
+    int axis;
+    glm::dvec2 tip;
+    double depth;
+  };
+  const double size = text_size(picture), length = 3 * size, edge = margin(picture);
+  const glm::dmat3 camera(scene.camera.world_from_camera);
+  std::vector<Arrow> arrows;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3 along = scene.world_from_file[axis];
+    const auto part = [&](int of) { return glm::dot(along, glm::normalize(camera[of])); };
+    arrows.push_back({axis, length * glm::dvec2(part(0), -part(1)), part(2)});
+  }
+  // Within the corner, whichever way they point; what points away is drawn first.
+  std::ranges::sort(arrows, [](const Arrow& a, const Arrow& b) { return a.depth > b.depth; });
+  const double reach = length + 1.2 * size;
+  const glm::dvec2 origin(edge + reach, picture.height - edge - reach);
+  static constexpr std::array<std::array<float, 3>, 3> colors = {
+      {{0.86f, 0.16f, 0.16f}, {0.13f, 0.60f, 0.20f}, {0.16f, 0.38f, 0.90f}}};
+  for (const Arrow& arrow : arrows) {
+    const double seen = glm::length(arrow.tip);
+    Mask mask(picture.width, picture.height);
+    const glm::dvec2 end = origin + arrow.tip;
+    mask.line(origin, end, 0.18 * size);
+    if (seen > 0.5 * size) {
+      const glm::dvec2 way = arrow.tip / seen, side(-way.y, way.x);
+      for (const double s : {-1.0, 1.0}) mask.line(end, end - 0.55 * size * way + s * 0.32 * size * side, 0.18 * size);
+    }
+    paint(picture, mask, colors.at(static_cast<std::size_t>(arrow.axis)));
+    Mask letter(picture.width, picture.height);
+    const std::string name(1, static_cast<char>('x' + arrow.axis));
+    const glm::dvec2 away = seen > 0 ? arrow.tip / seen : glm::dvec2(0);
+    const glm::dvec2 middle = end + (seen > 0.5 * size ? 0.85 * size : 0.6 * size) * (seen > 0 ? away : glm::dvec2(0.7, -0.7));
+    text(letter, {middle.x - 0.5 * text_width(name, 0.85 * size), middle.y + 0.28 * size}, name, 0.85 * size);
+    paint(picture, letter, ink);
+  }
+}
+
+void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float, 3>& ink) {
+  const double size = text_size(picture), edge = margin(picture);
+  const std::string low = fmt::format("{:.4g}", legend.low), high = fmt::format("{:.4g}", legend.high);
+  const std::string title = legend.unit.empty() ? legend.title : legend.title + " (" + legend.unit + ")";
+  const double wide = std::round(0.9 * size), tall = std::round(std::min(12 * size, 0.4 * picture.height));
+  const double number = std::max(text_width(low, size), text_width(high, size));
+  const double right = picture.width - edge - number - 0.6 * size, top = edge + 2 * size;
+  for (int y = 0; y < static_cast<int>(tall); ++y) {
+    const double part = 1 - (y + 0.5) / tall;
+    const auto steps = static_cast<double>(legend.colors.size());
+    const glm::dvec3 color = legend.colors.at(static_cast<std::size_t>(std::min(part * steps, steps - 1)));
+    for (int x = 0; x < static_cast<int>(wide); ++x) {
+      const auto column = static_cast<std::size_t>(std::max(0.0, right - wide + x)), row = static_cast<std::size_t>(top + y);
+      if (row >= static_cast<std::size_t>(picture.height) || column >= static_cast<std::size_t>(picture.width)) continue;
+      const std::size_t pixel = row * static_cast<std::size_t>(picture.width) + column;
+      for (int c = 0; c < 3; ++c) picture.rgb[pixel][static_cast<std::size_t>(c)] = static_cast<float>(color[c]);
+      if (picture.has_alpha()) picture.alpha[pixel] = 1;
+    }
+  }
+  Mask mask(picture.width, picture.height);
+  text(mask, {right + 0.6 * size, top + 0.5 * size}, high, size);
+  text(mask, {right + 0.6 * size, top + tall + 0.5 * size}, low, size);
+  const double title_width = text_width(title, size);
+  text(mask, {std::max(edge, picture.width - edge - title_width), top - 1.2 * size}, title, size);
+  paint(picture, mask, ink);
+}
+
+}  // namespace caplet::post

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What is drawn on pictures: lengths, places and colours by hand, outlines against the circle that they run around.
+#include "post/overlay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "post/detail/canvas.h"
+#include "post/detail/parts.h"
+#include "support/import_files.h"
+
+namespace caplet::post {
+namespace {
+
+using test::complaint;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A ball of radius 5 at the origin, 100 units of a width of 400 pixels: 4 pixels a unit.
+Scene ball(double fov = 0) {
+  Scene scene;
+  Shape shape;
+  shape.geometry = SphereShape{5};
+  scene.shapes.push_back(shape);
+  scene.film.width = 400;
+  scene.film.height = 200;
+  scene.unit = "\u00b5m";
+  scene.camera.fov = fov;
+  scene.camera.world_from_camera = glm::dmat4(1);
+  scene.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
+  if (fov == 0) scene.camera.screen_window = {-50, 50, -25, 25};
+  return scene;
+}
+
+/// A picture of one colour, of which shapes cover `share(x, y)`, at `depth(x, y)`.
+struct Canvas {
+  Shown picture;
+  LayeredImage layers;
+};
+template <class Share, class Depth>
+Canvas canvas(int width, int height, std::array<float, 3> color, Share share, Depth depth) {
+  Canvas out;
+  out.picture.width = out.layers.width = out.layers.data_width = width;
+  out.picture.height = out.layers.height = out.layers.data_height = height;
+  Channel a{"A", {}, {}}, z{"Z", {}, {}}, ids{"object.id", {}, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      out.picture.rgb.push_back(color);
+      a.floats.push_back(share(x, y));
+      z.floats.push_back(depth(x, y));
+      ids.uints.push_back(share(x, y) > 0 ? 0 : 0xffffffffu);
+    }
+  out.layers.channels = {a, z, ids};
+  return out;
+}
+Canvas empty_canvas(int width, int height) {
+  return canvas(
+      width, height, {1, 1, 1}, [](int, int) { return 0.0f; }, [](int, int) { return 1e10f; });
+}
+float& red(Shown& picture, int x, int y) { return picture.rgb[static_cast<std::size_t>(y * picture.width + x)][0]; }
+
+TEST(ScaleBar, IsAsLongAsItSays) {
+  const BarOnPicture bar = bar_of({20, ""}, ball(), "--scale-bar");
+  EXPECT_DOUBLE_EQ(bar.pixels, 80);
+  EXPECT_EQ(bar.label, "20 \u00b5m");
+  EXPECT_FALSE(bar.distance);
+  // Other units of length are turned into the scene's.
+  EXPECT_DOUBLE_EQ(bar_of(parse_scale_bar("0.05 mm", ""), ball(), "").pixels, 200);
+  EXPECT_EQ(bar_of(parse_scale_bar("0.05mm", ""), ball(), "").label, "0.05 mm");
+  EXPECT_EQ(bar_of(parse_scale_bar("7 um", ""), ball(), "").label, "7 \u00b5m");
+  // What is asked for in no unit is in the scene's; a scene of none takes any.
+  Scene unknown = ball();
+  unknown.unit.clear();
+  EXPECT_EQ(bar_of(parse_scale_bar("3", ""), unknown, "").label, "3");
+  EXPECT_EQ(bar_of(parse_scale_bar("3 cells", ""), unknown, "").label, "3 cells");
+  EXPECT_DOUBLE_EQ(bar_of(parse_scale_bar("3 cells", ""), unknown, "").pixels, 12);
+}
+
+TEST(ScaleBar, IsRoundWhereNoOneAsks) {
+  // A quarter of the width is 25: 20 is the longest of 1, 2, 5.
+  EXPECT_EQ(bar_of({}, ball(), "").label, "20 \u00b5m");
+  Scene wide = ball();
+  wide.camera.screen_window = {-102, 102, -51, 51};
+  EXPECT_EQ(bar_of({}, wide, "").label, "50 \u00b5m");
+  wide.camera.screen_window = {-0.02, 0.02, -0.01, 0.01};
+  EXPECT_EQ(bar_of({}, wide, "").label, "0.01 \u00b5m");
+}
+
+TEST(ScaleBar, InPerspectiveItIsThatOfTheMiddle) {
+  // 90 degrees over 200 rows: 160 high at 80, 0.8 a pixel.
+  const BarOnPicture bar = bar_of({20, ""}, ball(std::acos(-1.0) / 2), "");
+  EXPECT_NEAR(bar.pixels, 25, 1e-9);
+  EXPECT_NEAR(bar.distance.value(), 80, 1e-9);
+}
+
+TEST(ScaleBar, WrongOnesAreRefused) {
+  for (const char* text : {"long", "-3 um", "0", "nan", "um"})
+    EXPECT_THAT(complaint([&] { parse_scale_bar(text, "--scale-bar"); }), HasSubstr("--scale-bar")) << text;
+  EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("3 cells", ""), ball(), "--scale-bar"); }),
+              AllOf(HasSubstr("--scale-bar"), HasSubstr("'cells'")));
+  EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("1 mm", ""), ball(), "--scale-bar"); }), HasSubstr("4000 pixels"));
+  Overlays overlays;
+  overlays.color_bar = true;
+  EXPECT_THAT(complaint([&] { check(overlays, ball()); }), HasSubstr("--color-bar"));
+}
+
+TEST(ScaleBar, IsDrawnAsLong) {
+  Canvas on = empty_canvas(400, 200);
+  draw_scale_bar(on.picture, {80.25, "20", {}}, {0, 0, 0});
+  // Along the row of the bar: what is black, in pixels. Painted in sRGB: 1 - value there.
+  const int y = on.picture.height - static_cast<int>(margin(on.picture)) - 1;
+  double length = 0;
+  for (int x = 0; x < 400; ++x) length += 1 - std::pow(double{red(on.picture, x, y)}, 1 / 2.2);
+  EXPECT_NEAR(length, 80.25, 0.05);
+  // There is a text above, and nothing else in the picture's upper half.
+  double above = 0, far = 0;
+  for (int row = 0; row < y - 4; ++row)
+    for (int x = 0; x < 400; ++x) (row < 100 ? far : above) += double{1 - red(on.picture, x, row)};
+  EXPECT_GT(above, 5);
+  EXPECT_EQ(far, 0);
+}
+
+TEST(Outline, RunsAroundADisk) {
+  const double radius = 31.7;
+  const glm::dvec2 middle(50.3, 49.6);
+  const auto share = [&](int x, int y) {
+    int inside = 0;
+    for (int i = 0; i < 256; ++i)
+      inside += glm::length(glm::dvec2(x + (i % 16 + 0.5) / 16, y + (i / 16 + 0.5) / 16) - middle) < radius ? 1 : 0;
+    return static_cast<float>(inside) / 256;
+  };
+  for (const double width : {1.5, 4.0}) {
+    Canvas on = canvas(100, 100, {1, 1, 1}, share, [](int, int) { return 7.0f; });
+    draw_outline(on.picture, on.layers, width);
+    double area = 0;
+    for (int y = 0; y < 100; ++y)
+      for (int x = 0; x < 100; ++x) {
+        const double off = std::abs(glm::length(glm::dvec2(x + 0.5, y + 0.5) - middle) - radius);
+        const float value = red(on.picture, x, y);
+        if (off > 0.5 * width + 0.7) {
+          EXPECT_EQ(value, 1) << x << " " << y;
+        }
+        if (off < 0.5 * width - 0.7) {
+          EXPECT_LT(value, 0.01) << x << " " << y;
+        }
+        area += 1 - std::pow(double{value}, 1 / 2.2);
+      }
+    EXPECT_NEAR(area, 2 * std::acos(-1.0) * radius * width, 0.06 * 2 * std::acos(-1.0) * radius * width);
+  }
+}
+
+TEST(Outline, StepsOfDepthHaveOneAndSlopesNone) {
+  const auto all = [](int, int) { return 1.0f; };
+  Canvas step = canvas(40, 20, {1, 1, 1}, all, [](int x, int) { return x < 20 ? 10.0f : 12.0f; });
+  draw_outline(step.picture, step.layers, 2);
+  EXPECT_LT(red(step.picture, 19, 10), 0.01);
+  EXPECT_LT(red(step.picture, 20, 10), 0.01);
+  EXPECT_EQ(red(step.picture, 16, 10), 1);
+  EXPECT_EQ(red(step.picture, 23, 10), 1);
+  Canvas slope = canvas(20, 20, {1, 1, 1}, all, [](int x, int) { return 10.0f + static_cast<float>(x); });
+  draw_outline(slope.picture, slope.layers, 2);
+  for (int x = 0; x < 20; ++x) EXPECT_EQ(red(slope.picture, x, 10), 1) << x;
+  // Objects that touch.
+  for (int i = 0; i < 400; ++i)
+    if (i % 20 >= 10) slope.layers.channels[2].uints[static_cast<std::size_t>(i)] = 1;
+  draw_outline(slope.picture, slope.layers, 2);
+  EXPECT_LT(red(slope.picture, 9, 10), 0.01);
+  EXPECT_EQ(red(slope.picture, 6, 10), 1);
+}
+
+TEST(DepthCue, TheFarthestFadesByItsShare) {
+  // Shapes of 0.2 on white: the nearest stay, the farthest go 0.5 of the way to white, in light.
+  Canvas on = canvas(
+      11, 2, {0.2f, 0.2f, 0.2f}, [](int, int y) { return y == 0 ? 1.0f : 0.0f; },
+      [](int x, int y) { return y == 0 ? 30.0f + static_cast<float>(x) : 1e10f; });
+  for (int x = 0; x < 11; ++x) on.picture.rgb[static_cast<std::size_t>(11 + x)] = {1, 1, 1};
+  draw_depth_cue(on.picture, on.layers, 0.5);
+  EXPECT_FLOAT_EQ(red(on.picture, 0, 0), 0.2f);
+  EXPECT_NEAR(red(on.picture, 5, 0), 0.2 + 0.25 * 0.8, 1e-6);
+  EXPECT_NEAR(red(on.picture, 10, 0), 0.2 + 0.5 * 0.8, 1e-6);
+  EXPECT_EQ(red(on.picture, 10, 1), 1);
+}
+
+TEST(Axes, PointWhereTheyPoint) {
+  Canvas on = empty_canvas(400, 400);
+  Scene scene = ball();
+  scene.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
+  draw_axes(on.picture, scene, {0, 0, 0});
+  const double size = text_size(on.picture), reach = 3 * size + 1.2 * size;
+  const int x = static_cast<int>(margin(on.picture) + reach), y = static_cast<int>(400 - margin(on.picture) - reach);
+  const auto color = [&](int px, int py) { return on.picture.rgb[static_cast<std::size_t>(py * 400 + px)]; };
+  const int part = static_cast<int>(1.5 * size);
+  EXPECT_GT(color(x + part, y)[0], 0.5);
+  EXPECT_LT(color(x + part, y)[1], 0.1);
+  EXPECT_GT(color(x, y - part)[1], 0.2);
+  EXPECT_LT(color(x, y - part)[0], 0.1);
+  EXPECT_EQ(color(x - part, y)[0], 1);
+  EXPECT_EQ(color(x, y + part)[0], 1);
+  // z of a file that was turned from z to y is up: the blue one.
+  Canvas turned = empty_canvas(400, 400);
+  scene.world_from_file = {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0)};
+  draw_axes(turned.picture, scene, {0, 0, 0});
+  EXPECT_GT(turned.picture.rgb[static_cast<std::size_t>((y - part) * 400 + x)][2], 0.5);
+  EXPECT_LT(turned.picture.rgb[static_cast<std::size_t>((y - part) * 400 + x)][0], 0.1);
+}
+
+TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
+  Canvas on = empty_canvas(400, 300);
+  Legend legend{"B factor", "", 2, 40, {}};
+  for (int i = 0; i < 64; ++i) legend.colors.push_back({i / 63.0, 0, 0.25});
+  draw_color_bar(on.picture, legend, {0, 0, 0});
+  // Pixels of the bar are those of blue 0.25; the upper have more red.
+  int top = -1, bottom = -1;
+  float red_of_top = 0, red_of_bottom = 0;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 0; x < 400; ++x)
+      if (const auto& color = on.picture.rgb[static_cast<std::size_t>(y * 400 + x)]; color[2] == 0.25f) {
+        if (top < 0) top = y, red_of_top = color[0];
+        bottom = y, red_of_bottom = color[0];
+      }
+  ASSERT_GE(top, 0);
+  EXPECT_GT(bottom - top, 60);
+  EXPECT_GT(red_of_top, 0.98);
+  EXPECT_LT(red_of_bottom, 0.02);
+}
+
+TEST(Ink, IsSeenOnWhatIsBehind) {
+  Canvas light = empty_canvas(8, 8),
+         dark = canvas(
+             8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
+  EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
+  EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
+}
+
+TEST(Letters, EachIsThereAndNoTwoAreAlike) {
+  std::map<std::vector<float>, char> seen;
+  for (const char letter : std::string("0123456789.,:-+=/_()[]%ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")) {
+    Mask mask(60, 60);
+    text(mask, {10, 40}, std::string(1, letter), 24);
+    float ink = 0;
+    for (const float share : mask.shares()) ink += share;
+    EXPECT_GT(ink, 3) << letter;
+    const auto [other, fresh] = seen.try_emplace(mask.shares(), letter);
+    EXPECT_TRUE(fresh) << letter << " is drawn as " << other->second;
+  }
+  EXPECT_GT(text_width("\u00b5m", 12), text_width("m", 12));
+  // Capitals are as high as they are asked for: of an I only what is above the baseline, 24 high and a stroke's width wide.
+  Mask mask(60, 60);
+  text(mask, {10, 40}, "I", 24);
+  float ink = 0;
+  for (const float share : mask.shares()) ink += share;
+  EXPECT_NEAR(ink, 24 * 2.7 + std::acos(-1.0) * 1.35 * 1.35, 3);
+}
+
+}  // namespace
+}  // namespace caplet::post
