@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <numbers>
@@ -259,6 +260,12 @@ std::shared_ptr<const EnvironmentImage> studio_image() {
   return image;
 }
 
+bool is_lit(const Scene& scene) {
+  const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
+  return !scene.lights.empty() || std::ranges::any_of(scene.shapes, emits) ||
+         std::ranges::any_of(scene.objects, [&](const Object& object) { return std::ranges::any_of(object.shapes, emits); });
+}
+
 void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
@@ -266,6 +273,15 @@ void add_presentation(Scene& scene) {
   const glm::dmat3 camera(scene.camera.world_from_camera);
   light.world_from_light = glm::dmat3(-camera[2], camera[0], camera[1]);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
+}
+
+void move_camera(Scene& scene, const Camera& to) {
+  const glm::dmat3 turn = glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
+  scene.camera = to;
+  for (Light& light : scene.lights)
+    if (auto* infinite = std::get_if<InfiniteLight>(&light.model);
+        infinite && infinite->image && !infinite->image->preset.empty())
+      infinite->world_from_light = turn * infinite->world_from_light;
 }
 
 glm::dvec3 palette_color(std::size_t index) {

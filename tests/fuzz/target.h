@@ -110,13 +110,13 @@ inline void check_scene(const Scene& scene) {
   count_primitives(scene);
 }
 
-/// The target of an importer of geometry alone: it refuses a file with its places, or its scene is one that validation has
-/// nothing to say about.
-using Importer = Scene (*)(const std::filesystem::path&, const ImageReader&, const ImportOptions&);
-inline int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {}) {
+/// The target of an importer of importers.def: it refuses a file with its places, or its scene, with camera and light, is one that
+/// validation has nothing to say about.
+template <class Importer>
+int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {}) {
   const MemoryFile file(data, size);
   return run_target([&] {
-    const Scene scene = import(file.path(), OnePixel(), options);
+    const Scene scene = presented(import(file.path(), OnePixel(), options));
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     require(!diagnostics.has_errors());

@@ -140,7 +140,6 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   shape.where = {scene.source, 0, 0};
   shape.world_from_object = world_from_file(options, usual.up);
   scene.shapes.push_back(std::move(shape));
-  add_presentation(scene);
   return scene;
 }
 

@@ -15,7 +15,6 @@
 #include "import/detail/mesh_file.h"
 #include "import/detail/ply.h"
 #include "import/detail/text_file.h"
-#include "present/present.h"
 
 namespace caplet {
 
@@ -194,7 +193,6 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
   Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene), {scene.source, 0, 0});
   shape.world_from_object = world_from_file(options, usual_up);
   scene.shapes.push_back(std::move(shape));
-  add_presentation(scene);
   return scene;
 }
 

@@ -11,7 +11,6 @@
 #include "import/detail/mesh_file.h"
 #include "import/detail/robot.h"
 #include "import/import.h"
-#include "present/present.h"
 #include "scene/texture_image.h"
 
 namespace caplet {
@@ -84,7 +83,7 @@ class Drawing {
     if (fresh) {
       ImportOptions as_it_is;
       as_it_is.set("up", "y");
-      Scene file = import_scene(path, images_, as_it_is);
+      Scene file = read_scene(path, images_, as_it_is).scene;
       for (Shape& part : file.shapes)
         if (std::holds_alternative<TriangleMeshShape>(part.geometry)) entry->second.push_back(std::move(part.geometry));
     }
@@ -110,7 +109,6 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader& images, 
   for (const RobotGeom& geom : robot.geoms)
     if (groups == all || geom.collides == (groups == collision)) drawing.add(geom);
   if (scene.shapes.empty()) throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
-  add_presentation(scene);
   return scene;
 }
 
