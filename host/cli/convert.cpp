@@ -11,15 +11,14 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "export/export.h"
-#include "film/image.h"
-#include "import/import.h"
 
 namespace caplet::cli {
 
 namespace {
 
 struct Options {
-  std::string scene, output;
+  std::vector<std::string> scenes;
+  std::string output;
   ImportOptions import_options;
   bool quiet = false;
 };
@@ -32,7 +31,7 @@ void run_convert(const Options& options) {
   if (output.extension() != ".pbrt" && !is_stream(output))
     throw InputError(SourceLocation{"OUT.pbrt"}, "'" + output.string() + "': scenes are written as pbrt text, to a file .pbrt");
   install_interrupt_handlers();
-  const Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
+  const Scene scene = import_files(options.scenes, options.import_options);
   outputs.check_inputs();
   write_scene(scene, output, interrupt_requested);
   if (!is_stream(output)) log::info("wrote {}", output.string());
@@ -43,14 +42,22 @@ void run_convert(const Options& options) {
 void add_convert(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("convert", "Write any scene file as pbrt text that gives the same picture");
-  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
-  command->add_option("OUT.pbrt", o->output, "Scene file to write; -: to stdout")->required();
+  command
+      ->add_option("FILES", o->scenes,
+                   "SCENE... OUT.pbrt: a scene file, or several that make one scene, of any formats (" + scene_extensions() +
+                       "), then the scene file to write; -: to stdout")
+      ->required();
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
   command->footer(
       "The picture of the written scene is that of the first one, bit for bit. Images and other files that the scene names are\n"
       "not copied: the text names them relative to OUT.pbrt. Comments, includes and the names of transforms are not kept.");
-  command->callback([o] { run_convert(*o); });
+  command->callback([o] {
+    if (o->scenes.size() < 2) throw CLI::RequiredError("OUT.pbrt");
+    o->output = o->scenes.back();
+    o->scenes.pop_back();
+    run_convert(*o);
+  });
 }
 
 }  // namespace caplet::cli

@@ -10,8 +10,6 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "film/image.h"
-#include "import/import.h"
 #include "lower/lower.h"
 #include "report/summary.h"
 
@@ -39,18 +37,18 @@ void print_text(const nlohmann::ordered_json& info) {
 
 void add_info(CLI::App& app) {
   struct Options {
-    std::string scene;
+    std::vector<std::string> scenes;
     ImportOptions import_options;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("info", "Tell what a scene file holds: primitives, bounds, materials, lights, memory, tree");
-  command->add_option("SCENE", options->scene, "Scene file: " + scene_extensions())->required();
+  add_scene_files(*command, options->scenes);
   command->add_flag("--json", options->json, "Print a JSON object for machines");
   add_import_options(*command, options->import_options);
   command->callback([options] {
-    const Scene scene = import_scene(options->scene, FileImageReader(), options->import_options);
+    const Scene scene = import_files(options->scenes, options->import_options);
     const nlohmann::ordered_json info = report::scene_summary(scene, lower(scene));
     options->json ? fmt::print("{}", report::to_text(info)) : print_text(info);
   });

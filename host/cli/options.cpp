@@ -3,6 +3,7 @@
 #include "cli/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
+#include "film/image.h"
 #include "import/import.h"
 #include "present/film_window.h"
 
@@ -151,6 +153,17 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
           "--orthographic", [&options] { options.set("projection", "orthographic"); }, "--projection orthographic")
       ->group("The picture");
 }
+
+CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes) {
+  return command.add_option("SCENE", scenes, "Scene file, or several that make one scene, of any formats: " + scene_extensions())
+      ->required();
+}
+
+Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& options) {
+  return import_scenes(std::vector<std::filesystem::path>(scenes.begin(), scenes.end()), FileImageReader(), options);
+}
+
+std::string scene_names(const std::vector<std::string>& scenes) { return fmt::format("{}", fmt::join(scenes, " ")); }
 
 std::string scene_extensions() {
   std::string out;

@@ -49,6 +49,13 @@ void add_import_options(CLI::App& command, ImportOptions& options);
 /// The extensions of all scene formats, for help: ".pbrt, .swc, ...".
 std::string scene_extensions();
 
+/// Adds the argument SCENE: a file, or several that make one scene.
+CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes);
+/// import_scenes (import/import.h).
+Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& options);
+/// Their names, for messages and metadata: with a blank between.
+std::string scene_names(const std::vector<std::string>& scenes);
+
 /// What `work` does; what it throws as InputError names `flag`.
 template <class Work>
 auto with_flag(const char* flag, const Work& work) {

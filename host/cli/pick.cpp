@@ -16,8 +16,6 @@
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
-#include "film/image.h"
-#include "import/import.h"
 #include "lower/camera.h"
 #include "lower/lower.h"
 #include "present/film_window.h"
@@ -37,7 +35,8 @@ constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, 
 
 struct Options {
   Encoding encoding = Encoding::automatic;
-  std::string scene, pixel, ray, rays, out, device, size, crop;
+  std::vector<std::string> scenes;
+  std::string pixel, ray, rays, out, device, size, crop;
   ImportOptions import_options;
   std::size_t limit = 256;
   bool all = false, json = false, reference = false, quiet = false;
@@ -108,7 +107,7 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
   const RayRecord any{0, 0, 0, 0, 0, 0, 1, std::numeric_limits<float>::infinity()};
   std::vector<std::uint64_t> ignored;
   answer(query, std::span(&any, 1), 0, options, ignored);
-  if (is_stream(options.rays)) SecondTry::driver_works();
+  if ((options.rays == "-" || is_stream(options.rays))) SecondTry::driver_works();
   std::uint64_t ray_count = 0, row_count = 0;
   double device_seconds = 0;
   const std::size_t chunk =
@@ -119,10 +118,14 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
     std::vector<std::uint64_t> overflowed;
     for (;;) {
       if (interrupt_requested()) throw RunError("interrupted; nothing is written");
-      const std::vector<RayNumbers> numbers = file.next(chunk);
+      const std::vector<ListedRay> listed = file.next(chunk);
       std::vector<RayRecord> rays;
-      rays.reserve(numbers.size());
-      for (const RayNumbers& n : numbers) rays.push_back(to_record(n));
+      rays.reserve(listed.size());
+      for (const ListedRay& one : listed) {
+        rays.push_back(to_record(one.numbers));
+        rays.back().t_min = one.t_min;
+        rays.back().t_max = one.t_max;
+      }
       const double before = seconds();
       const std::vector<report::PickRow> rows = answer(query, rays, ray_count, options, overflowed);
       device_seconds += seconds() - before;
@@ -178,7 +181,7 @@ void run_pick(const Options& options, bool has_limit) {
     install_interrupt_handlers();
   }
   const Device device = choose_device(options.device, options.encoding);
-  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
+  Scene scene = import_files(options.scenes, options.import_options);
   outputs.check_inputs();
   apply(overrides, scene);
   if (pixel) {
@@ -200,11 +203,13 @@ void add_pick(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("pick", "Tell what a pixel shows or rays hit: name, surface, material, point, normal, uv");
-  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
+  add_scene_files(*command, o->scenes);
   command->add_option("--pixel", o->pixel, "The ray through the middle of this pixel, from the top left")->type_name("X,Y");
   command->add_option("--ray", o->ray, "This ray: origin and direction (of any length; t counts in its lengths)")
       ->type_name("ox,oy,oz,dx,dy,dz");
-  command->add_option("--rays", o->rays, "Many rays: text of six numbers a line, or .npy (N x 6, float32 or float64)")
+  command
+      ->add_option("--rays", o->rays,
+                   "Many rays: text of six numbers a line, or .npy (N x 6); with t_min and t_max eight; -: text from stdin")
       ->type_name("FILE");
   command->add_option("--out", o->out, "Table of what --rays hit, a row per crossing: .csv or .npy; -: CSV to stdout")
       ->type_name("FILE");

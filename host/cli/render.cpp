@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
 #include "cli/trial.h"
@@ -25,14 +26,19 @@
 #include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
+#include "lower/live_scene.h"
 #include "lower/lower.h"
+#include "present/film_window.h"
 #include "present/least_width.h"
+#include "present/present.h"
 #include "present/stereo.h"
+#include "present/turntable.h"
 #include "render/render.h"
 #include "report/bands.h"
 #include "report/picture.h"
 #include "report/stereo.h"
 #include "report/summary.h"
+#include "scene/append.h"
 
 namespace caplet::cli {
 
@@ -42,7 +48,9 @@ namespace {
 
 struct Options {
   Encoding encoding = Encoding::automatic;
-  std::string scene, output, preview, stats, device, size, crop;
+  std::vector<std::string> scenes;
+  std::vector<std::string> outputs;
+  std::string preview, stats, device, size, crop, frames;
   ImportOptions import_options;
   post::Overlays overlays;
   std::optional<std::string> layers;
@@ -52,23 +60,81 @@ struct Options {
   std::string layout, display;
   double patience = 60;
   std::size_t batch_paths = 0;
-  bool variance = false, quiet = false;
+  std::uint32_t turntable = 0;
+  double frames_a_second = 25;
+  bool variance = false, quiet = false, skip_existing = false;
+  bool has_frames() const { return turntable > 0 || !frames.empty(); }
 };
 
 constexpr const char* no_picture = "none";
 
-/// The outputs and their paths; empty: not wanted.
+/// The outputs and their paths; of frames, with the place of the number. Empty: not wanted.
 struct Files {
-  fs::path picture, preview, stats;
+  std::vector<fs::path> pictures, previews;
+  fs::path movie, stats;
   Outputs all;
+
+  /// What is named of them: the first.
+  fs::path first() const {
+    if (!pictures.empty()) return pictures.front();
+    return !previews.empty() ? previews.front() : movie.empty() ? stats : movie;
+  }
 };
 
-void add_picture(Files& files, const fs::path& path) {
-  files.picture = path;
-  files.all.add("-o", path);
-  if (path.extension() != ".exr" && !is_stream(path))
-    throw InputError(SourceLocation{"-o"},
-                     fmt::format("'{}': pictures are written as .exr (use --preview for other formats)", path.string()));
+/// With the number of the frame put in.
+Files of_frame(const Files& files, std::uint32_t frame) {
+  Files out;
+  for (const fs::path& path : files.pictures) out.pictures.push_back(numbered(path, frame));
+  for (const fs::path& path : files.previews) out.previews.push_back(numbered(path, frame));
+  return out;
+}
+
+void add_preview(Files& files, const fs::path& path, const std::string& flag) {
+  check_preview_format(path, flag);
+  files.previews.push_back(path);
+  files.all.add(flag, path);
+}
+
+void add_output(const Options& options, Files& files, const fs::path& path) {
+  if (is_stream(path) || path.extension() == ".exr") {
+    files.pictures.push_back(path);
+    files.all.add("-o", path);
+  } else if (is_movie(path) && (options.has_frames() || path.extension() != ".gif")) {
+    if (!options.has_frames())
+      throw InputError(SourceLocation{"-o"}, fmt::format("'{}': a movie goes with --turntable or --frames", path.string()));
+    if (!files.movie.empty()) throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
+    check_preview_format("frame.png", "-o");
+    files.movie = path;
+    files.all.add("-o", path);
+  } else {
+    try {
+      check_preview_format(path, "-o");
+    } catch (const InputError& error) {
+      throw InputError(SourceLocation{"-o"},
+                       fmt::format("'{}': pictures are written as .exr, and tone-mapped as .png, .jpg and the like; movies of "
+                                   "frames as .mp4, .mov, .mkv, .webm or .gif",
+                                   path.string()));
+    }
+    add_preview(files, path, "-o");
+  }
+}
+
+void check_frame_options(const Options& options, const Files& files) {
+  const auto refuse = [](const char* flag, const std::string& why) { throw InputError(SourceLocation{flag}, why); };
+  if (!options.has_frames()) {
+    if (options.skip_existing) refuse("--skip-existing", "goes with --turntable or --frames");
+    return;
+  }
+  if (options.separation) refuse("--stereo", "does not go with --turntable and --frames");
+  if (!options.display.empty()) refuse("--display", "does not go with --turntable and --frames");
+  if (options.skip_existing && !files.movie.empty()) refuse("--skip-existing", "does not go with a movie, which has all frames");
+  for (const auto* paths : {&files.pictures, &files.previews})
+    for (const fs::path& path : *paths)
+      if (!is_numbered(path.string()))
+        refuse("-o", fmt::format("'{}': frames are written to numbered files, such as {}.####{}", path.string(),
+                                 path.stem().string(), path.extension().string()));
+  if (files.pictures.empty() && files.previews.empty() && files.movie.empty())
+    refuse("-o", "frames need a name, such as frame.####.png or movie.mp4");
 }
 
 /// Reports what is wrong with options and outputs before anything is loaded.
@@ -82,21 +148,21 @@ Overrides check_options(const Options& options, Files& files) {
   overrides.clamp = options.clamp;
   if (!options.separation && (options.convergence || !options.layout.empty()))
     throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"}, "goes with --stereo");
-  if (options.overlays.any() && (options.preview.empty() || options.separation))
+  const bool none = std::ranges::find(options.outputs, no_picture) != options.outputs.end();
+  if (none && options.outputs.size() > 1) throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
+  if (none && options.preview.empty() && options.stats.empty())
+    throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
+  for (const std::string& output : options.outputs)
+    if (output != no_picture) add_output(options, files, output_named(output));
+  if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
+  if (options.overlays.any() && ((files.previews.empty() && files.movie.empty()) || options.separation))
     throw InputError(SourceLocation{"--preview"},
                      options.separation ? "overlays are not drawn for two eyes (--stereo)" : "overlays are drawn on it alone");
-  if (options.output == no_picture && options.preview.empty() && options.stats.empty())
-    throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
-  if (!options.output.empty() && options.output != no_picture) add_picture(files, output_named(options.output));
-  if (!options.preview.empty()) {
-    files.preview = options.preview;
-    check_preview_format(files.preview, "--preview");
-    files.all.add("--preview", files.preview);
-  }
   if (!options.stats.empty()) {
     files.stats = output_named(options.stats);
     files.all.add("--stats", files.stats);
   }
+  check_frame_options(options, files);
   return overrides;
 }
 
@@ -110,22 +176,23 @@ report::StereoLayout layout_of(const Options& options) {
 /// What the scene tells of outputs: the picture's name (the scene's own film name, else the scene file's, in the current folder),
 /// its size, and the files that the scene was read from.
 void check_outputs(const Options& options, const Scene& scene, Layers layers, Files& files) {
-  if (options.output.empty()) {
+  if (options.outputs.empty() && !options.has_frames()) {
     fs::path name = fs::path(scene.film.filename).filename();
-    if (name.empty()) name = fs::path(options.scene).filename();
-    add_picture(files, name.replace_extension(".exr"));
+    if (name.empty()) name = fs::path(options.scenes.front()).filename();
+    add_output(options, files, name.replace_extension(".exr"));
   }
   files.all.check_inputs();
   const std::array<int, 4> window = scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
-  if (!files.picture.empty()) check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
+  if (!files.pictures.empty()) check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
   const bool is_transparent = scene.film.backdrop && scene.film.backdrop->kind == Backdrop::Kind::transparent;
-  if (!files.preview.empty() && is_transparent && !options.separation) check_preview_alpha(files.preview, "--preview");
-  if (!files.preview.empty())
-    check_preview_size(files.preview,
+  for (const fs::path& preview : files.previews) {
+    if (is_transparent && !options.separation) check_preview_alpha(preview, "--preview");
+    check_preview_size(preview,
                        options.separation && layout_of(options) == report::StereoLayout::side_by_side ? 2 * width : width,
                        options.separation && layout_of(options) == report::StereoLayout::over_under ? 2 * height : height, flag);
+  }
 }
 
 constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
@@ -140,11 +207,13 @@ std::string names_of(const std::vector<Device>& devices) {
   return out;
 }
 
-RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices,
-                                  const RenderOptions& render_options, bool quiet) {
+/// What `work` makes, which is told of its progress.
+template <class Work>
+RenderResult with_progress(const std::vector<Device>& devices, const RenderOptions& render_options, bool quiet,
+                           const Work& work) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
-    return render(flat, view, devices, render_options, [&](const Progress& progress) {
+    return work([&](const Progress& progress) {
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
@@ -158,6 +227,13 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
     if (interrupt_requested()) throw RunError(interrupted_early);
     throw;
   }
+}
+
+RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices,
+                                  const RenderOptions& render_options, bool quiet) {
+  return with_progress(devices, render_options, quiet, [&](const std::function<void(const Progress&)>& progress) {
+    return render(flat, view, devices, render_options, progress);
+  });
 }
 
 /// All that a picture is made of.
@@ -177,7 +253,8 @@ RenderResult render_shown(const Work& work, const FlatView& view, const std::str
   if (work.options.display.empty())
     return render_with_progress(work.flat, view, work.devices, work.render_options, work.options.quiet);
   constexpr double most_seconds_at_the_end = 5;
-  const std::string name = (work.files.picture.empty() ? fs::path(work.options.scene) : work.files.picture).filename().string();
+  const std::string name =
+      (work.files.pictures.empty() ? fs::path(work.options.scenes.front()) : work.files.pictures.front()).filename().string();
   TevDisplay display(parse_tev_address(work.options.display, "--display"),
                      view_name.empty() ? name : name + " (" + view_name + ")");
   NotFinite ignored;
@@ -200,12 +277,19 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
 BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
   BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene, work.film_layers, not_finite)
                                        : report::developed_in_bands(result.film, work.scene, work.film_layers, not_finite);
-  out.whole.metadata = report::picture_metadata(work.scene, work.options.scene, work.invocation.command_line(), result);
+  out.whole.metadata =
+      report::picture_metadata(work.scene, scene_names(work.options.scenes), work.invocation.command_line(), result);
   return out;
 }
 
-RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeconds& seconds) {
-  RenderResult result = render_shown(work, view, "");
+/// Pictures and previews by twos, which are developed once; one of them may be empty.
+template <class Write>
+void each_pair(const Files& files, const Write& write) {
+  for (std::size_t i = 0; i < std::max(files.pictures.size(), files.previews.size()); ++i)
+    write(i < files.pictures.size() ? files.pictures[i] : fs::path(), i < files.previews.size() ? files.previews[i] : fs::path());
+}
+
+RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
   add_to(seconds, result);
   NotFinite not_finite;
   const BandedImage picture = bands_of(work, result, not_finite);
@@ -214,10 +298,16 @@ RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeco
   report::Finish finish{overlays.layers(), work.layers, {}};
   if (overlays.any())
     finish.draw = [&](Shown& shown, const LayeredImage& layers) { post::draw(shown, layers, work.scene, overlays); };
-  report::write_pictures(work.files.picture, work.files.preview, picture, work.layers.channels(), result.render_seconds, finish);
+  each_pair(work.files, [&](const fs::path& exr, const fs::path& preview) {
+    report::write_pictures(exr, preview, picture, work.layers.channels(), result.render_seconds, finish);
+  });
   not_finite.warn();
-  seconds.write = phase.lap();
+  seconds.write += phase.lap();
   return result;
+}
+
+RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeconds& seconds) {
+  return written(work, render_shown(work, view, ""), seconds);
 }
 
 /// The views of two eyes, one after the other. The right one gets as many samples as the left one got. What is returned tells of
@@ -248,8 +338,10 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
   if (stereo.convergence) left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
   Stopwatch phase;
-  report::write_stereo_pictures(both.files.picture, both.files.preview, left, right, layout_of(both.options),
-                                both.layers.channels(), results[0].render_seconds + results[1].render_seconds);
+  each_pair(both.files, [&](const fs::path& exr, const fs::path& preview) {
+    report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options), both.layers.channels(),
+                                  results[0].render_seconds + results[1].render_seconds);
+  });
   not_finite.warn();
   seconds.write = phase.lap();
   RenderResult& out = results[1];
@@ -268,6 +360,150 @@ void tell_of_bar(const Options& options, const Scene& scene) {
                          : std::string());
 }
 
+// --- Frames ---
+
+std::vector<std::string> numbered_all(const std::vector<std::string>& scenes, std::uint32_t frame) {
+  std::vector<std::string> out;
+  for (const std::string& scene : scenes) out.push_back(numbered(scene, frame).string());
+  return out;
+}
+
+/// Where frames come from: a camera that goes round, files with numbers, or models of one file.
+struct FrameSource {
+  enum class Kind { turntable, files, models } kind = Kind::turntable;
+  FrameRange range;
+};
+
+FrameSource source_of(const Options& options) {
+  const auto refuse = [](const std::string& why) { throw InputError(SourceLocation{"--frames"}, why); };
+  const std::optional<FrameRange> asked = options.frames.empty() ? std::nullopt : parse_frames(options.frames);
+  FrameSource source;
+  source.range = {1, options.turntable, options.turntable};
+  const bool has_numbers = std::ranges::any_of(options.scenes, [](const std::string& scene) {
+    std::error_code ignored;
+    return is_numbered(scene) && !fs::exists(scene, ignored);
+  });
+  if (options.turntable > 0) {
+    if (has_numbers) refuse("numbered scene files do not go with --turntable");
+  } else if (has_numbers) {
+    source.kind = FrameSource::Kind::files;
+    if (!asked) refuse("'all': of numbered scene files it is to be said which, such as 1-100");
+    source.range = *asked;
+  } else {
+    source.kind = FrameSource::Kind::models;
+    if (options.import_options.text("model")) throw InputError(SourceLocation{"--model"}, "does not go with --frames");
+    const auto moves = std::ranges::find_if(options.scenes, [](const std::string& scene) {
+      return std::ranges::find(format_of(scene).options, "model") != format_of(scene).options.end();
+    });
+    if (moves == options.scenes.end())
+      refuse("the scene has one frame: several are in files of molecules, in numbered files (####), or in --turntable N");
+    ImportOptions of_file;
+    for (const auto& [name, value] : options.import_options.values())
+      if (std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end()) of_file.set(name, value);
+    const std::uint32_t count = read_scene(*moves, FileImageReader(), of_file).frames;
+    source.range = {1, count, count};
+  }
+  if (asked && source.kind != FrameSource::Kind::files) {
+    if (asked->last > source.range.last) refuse(fmt::format("'{}': there are {} frames", options.frames, source.range.last));
+    source.range.first = asked->first;
+    source.range.last = asked->last;
+  }
+  return source;
+}
+
+Scene scene_of_frame(const Options& options, const FrameSource& source, std::uint32_t frame) {
+  if (source.kind == FrameSource::Kind::turntable) return import_files(options.scenes, options.import_options);
+  if (source.kind == FrameSource::Kind::files) return import_files(numbered_all(options.scenes, frame), options.import_options);
+  ImportOptions of_frame = options.import_options;
+  of_frame.set("model", std::to_string(frame));
+  return import_files(options.scenes, of_frame);
+}
+
+/// A camera that was found frames what moves: what is in some of the frames, the first and last among them.
+void frame_all(const Options& options, const FrameSource& source, const Overrides& overrides, Scene& first) {
+  constexpr std::uint32_t most = 16;
+  if (!first.automatic_camera) return;
+  Scene all = first;
+  const std::uint32_t count = source.range.last - source.range.first;
+  const bool quiet = options.quiet;
+  log::set_quiet(true);  // what there is to tell is told of each frame
+  for (std::uint32_t i = 1; i <= std::min(count, most); ++i) {
+    const auto frame = source.range.first + static_cast<std::uint32_t>(std::uint64_t{count} * i / std::min(count, most));
+    Scene other = scene_of_frame(options, source, frame);
+    other.lights.clear();
+    append(all, std::move(other));
+  }
+  log::set_quiet(quiet);
+  apply(overrides, all);
+  set_film_size(all, all.film.width, all.film.height);  // frames anew
+  move_camera(first, all.camera);
+}
+
+/// Whether all that a frame is to be written to is there.
+bool is_there(const Files& files) {
+  std::error_code ignored;
+  const auto exists = [&](const fs::path& path) { return fs::is_regular_file(path, ignored); };
+  return std::ranges::all_of(files.pictures, exists) && std::ranges::all_of(files.previews, exists);
+}
+
+/// Renders the frames one after the other: what they share (the device, its kernels, for a turntable the whole scene) is made
+/// once. Throws RunError when it is interrupted: frames that are written are whole, and the others are not there.
+RenderResult render_frames(const Work& of_all, const FrameSource& source, const Overrides& overrides, Scene scene,
+                           report::RunSeconds& seconds) {
+  const Options& options = of_all.options;
+  std::optional<Movie> movie;
+  if (!of_all.files.movie.empty()) movie.emplace(of_all.files.movie, options.frames_a_second, "-o");
+  std::optional<Turntable> table;
+  if (source.kind == FrameSource::Kind::turntable) table.emplace(scene);
+  const Camera camera = scene.camera;
+  const std::vector<Light> lights = scene.lights;
+  const bool is_automatic = scene.automatic_camera;
+  LiveScene live(std::move(scene));
+  std::optional<Session> session;
+  RenderResult result;
+  std::uint32_t made = 0;
+  const std::uint32_t count = source.range.last - source.range.first + 1;
+  const Clock::time_point began = Clock::now();
+  for (std::uint32_t frame = source.range.first; frame <= source.range.last; ++frame) {
+    Files files = of_frame(of_all.files, frame);
+    if (options.skip_existing && is_there(files)) continue;
+    if (movie) files.previews.push_back(movie->next());
+    if (interrupt_requested()) throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
+    if (table) {
+      ViewEdit view = view_of(live.scene());
+      view.camera = table->camera(frame - 1, source.range.count);
+      live.edit(view);
+      for (std::uint32_t i = 0; i < lights.size(); ++i)
+        if (table->turns(lights[i])) live.edit(LightEdit{i, table->turned(lights[i], frame - 1, source.range.count)});
+    } else if (session || frame != source.range.first) {
+      Scene next = scene_of_frame(options, source, frame);
+      apply(overrides, next);
+      if (is_automatic) {
+        next.camera = camera;
+        next.lights = lights;
+      }
+      widen_to_least(next);
+      live.replace(std::move(next));
+    }
+    if (!session)
+      session.emplace(live.flat(), live.view(), of_all.devices, session_options(of_all.render_options));
+    else
+      session->update(live.flat(), live.take_changes(), live.view());
+    const Work work{options,       of_all.invocation,  live.scene(), live.flat(),          of_all.devices,
+                    of_all.layers, of_all.film_layers, files,        of_all.render_options};
+    result = with_progress(of_all.devices, work.render_options, options.quiet,
+                           [&](const auto& progress) { return render(*session, of_all.devices, work.render_options, progress); });
+    if (result.interrupted) throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
+    result = written(work, std::move(result), seconds);
+    ++made;
+    if (!files.pictures.empty() || files.previews.size() > (movie ? 1U : 0U))
+      log::info("frame {}: wrote {}", frame, files.first().string());
+  }
+  if (movie) movie->finish();
+  if (made > 0) log::info("{} frames in {:.1f} s", made, seconds_since(began));
+  return result;
+}
+
 void run_render(const Options& options, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
@@ -281,8 +517,13 @@ void run_render(const Options& options, const Invocation& invocation) {
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
 
   phase.lap();
-  Scene scene = import_scene(options.scene, FileImageReader(), options.import_options);
+  std::optional<FrameSource> frames;
+  if (options.has_frames()) frames = source_of(options);
+  if (!files.movie.empty()) Movie(files.movie, options.frames_a_second, "-o");  // whether it can be made
+  Scene scene =
+      frames ? scene_of_frame(options, *frames, frames->range.first) : import_files(options.scenes, options.import_options);
   apply(overrides, scene);
+  if (frames && frames->kind != FrameSource::Kind::turntable) frame_all(options, *frames, overrides, scene);
   check_outputs(options, scene, layers, files);
   post::check(options.overlays, scene);
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
@@ -296,7 +537,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
   guard(devices);
   if (!options.quiet)
-    log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", options.scene, flat.primitive_count,
+    log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", scene_names(options.scenes), flat.primitive_count,
               view.view.crop_width, view.view.crop_height, scene.sampler.samples_per_pixel, names_of(devices));
   RenderOptions render_options;
   render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
@@ -308,10 +549,12 @@ void run_render(const Options& options, const Invocation& invocation) {
   render_options.layers = film_layers;
   render_options.patience = options.patience;
   const Work work{options, invocation, scene, flat, devices, layers, film_layers, files, render_options};
-  const RenderResult result = options.separation ? stereo_pictures(work, seconds) : one_picture(work, view, seconds);
+  const RenderResult result = frames               ? render_frames(work, *frames, overrides, scene, seconds)
+                              : options.separation ? stereo_pictures(work, seconds)
+                                                   : one_picture(work, view, seconds);
   seconds.total = total.lap();
   if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
-  const fs::path& first = files.picture.empty() ? files.preview.empty() ? files.stats : files.preview : files.picture;
+  const fs::path first = frames && !files.movie.empty() ? files.movie : files.first();
   if (result.interrupted)
     log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(), result.samples_per_pixel,
               scene.sampler.samples_per_pixel);
@@ -323,9 +566,30 @@ void run_render(const Options& options, const Invocation& invocation) {
 void add_render(CLI::App& app, const Invocation& invocation) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "Render a scene file to an OpenEXR picture");
-  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
-  command->add_option("-o,--output", o->output, "Picture to write, .exr (default: the scene's own name, here); none: no picture")
-      ->type_name("OUT.exr|none");
+  add_scene_files(*command, o->scenes);
+  command
+      ->add_option(
+          "-o,--output", o->outputs,
+          "What to write, as often as there is to: a picture .exr (default: the scene's own name, here), tone-mapped ones "
+          ".png, .jpg and the like, of frames numbered ones (out.####.exr) or a movie .mp4, .mov, .mkv, .webm, .gif; none: "
+          "no picture")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("OUT.exr|OUT.png|...");
+  command
+      ->add_option("--turntable", o->turntable,
+                   "Frames of a camera that goes once around the scene, with studio light where the file brings none")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
+  command
+      ->add_option("--frames", o->frames,
+                   "Which frames: of a turntable, of the models in a file of molecules, of numbered scene files (in.####.swc)")
+      ->type_name("A-B|all");
+  command->add_option("--fps", o->frames_a_second, "Frames a second of a movie")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str()
+      ->type_name("R");
+  command->add_flag("--skip-existing", o->skip_existing, "Leave out frames whose files are there");
   command->add_option("--preview", o->preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
   command->add_option("--spp", o->samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
   command->add_option("--size", o->size, "Picture size in pixels; an automatic camera frames anew")->type_name("WxH");

@@ -34,7 +34,8 @@ constexpr int exit_disagreed = 3;
 
 struct Options {
   Encoding encoding = Encoding::automatic;
-  std::string scene, device, heatmap, failures, replay, size;
+  std::vector<std::string> scenes;
+  std::string device, heatmap, failures, replay, size;
   ImportOptions import_options;
   std::uint64_t rays = 1'000'000, seed = 0;
   bool all_devices = false, json = false, quiet = false;
@@ -104,7 +105,7 @@ void run_verify(const Options& o) {
   const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
   if (o.all_devices && !o.device.empty()) refuse("--device", "does not go with --all-devices");
   if (!o.replay.empty()) {
-    if (!o.scene.empty()) refuse("--replay", "takes the scene from the cases");
+    if (!o.scenes.empty()) refuse("--replay", "takes the scene from the cases");
     if (!o.heatmap.empty()) refuse("--heatmap", "does not go with --replay");
     if (!o.failures.empty()) refuse("--save-failures", "does not go with --replay");
     if (o.json) refuse("--json", "does not go with --replay");
@@ -120,7 +121,9 @@ void run_verify(const Options& o) {
   Overrides overrides;
   if (!o.size.empty()) overrides.size = parse_size(o.size);
   std::optional<Scene> scene;
-  if (!o.scene.empty()) scene = import_scene(o.scene, FileImageReader(), o.import_options);
+  if (o.scenes.size() > 1 && !o.failures.empty()) refuse("--save-failures", "keeps the name of one scene file: not of several");
+  if (!o.scenes.empty()) scene = import_files(o.scenes, o.import_options);
+  const std::string name = scene_names(o.scenes);
   outputs.check_inputs();
   if (!o.heatmap.empty()) {
     const FilmSettings film = scene ? scene->film : verify::torture_scene(o.seed, 0).film;
@@ -141,8 +144,8 @@ void run_verify(const Options& o) {
         static_cast<double>(done) / static_cast<double>(o.rays), 0,
         fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds_since(start)));
   };
-  const verify::Report found = verify::verify(scene ? &*scene : nullptr, o.scene, devices, options);
-  const std::string label = scene_label({o.scene, o.seed, 0});
+  const verify::Report found = verify::verify(scene ? &*scene : nullptr, name, devices, options);
+  const std::string label = scene_label({name, o.seed, 0});
   fmt::print("{}", o.json ? report::json_text(found, label, options) : report::plain_text(found, label));
 
   std::size_t failures = 0;
@@ -173,7 +176,9 @@ void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");
-  command->add_option("SCENE", o->scene, "Scene file (" + scene_extensions() + "); none: a built-in torture set of all shapes");
+  command->add_option(
+      "SCENE", o->scenes,
+      "Scene file, or several that make one scene (" + scene_extensions() + "); none: a built-in torture set of all shapes");
   command->add_option("--rays", o->rays, "How many rays")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str()

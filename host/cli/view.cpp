@@ -23,8 +23,6 @@
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
-#include "film/image.h"
-#include "import/import.h"
 #include "lower/live_scene.h"
 
 namespace caplet::cli {
@@ -33,7 +31,8 @@ namespace {
 
 struct Options {
   Encoding encoding = Encoding::automatic;
-  std::string scene, device, size, host = "127.0.0.1";
+  std::vector<std::string> scenes;
+  std::string device, size, host = "127.0.0.1";
   ImportOptions import_options;
   std::uint16_t port = 0;
   int samples = 0;
@@ -61,15 +60,16 @@ void run_view(const Options& options) {
   if (!options.size.empty()) overrides.size = parse_size(options.size);
   install_interrupt_handlers();
   const Device device = choose_device(options.device, options.encoding);
+  const std::string name = scene_names(options.scenes);
   std::unique_ptr<view::Keeper> keeper;
-  if (!options.read_only && std::filesystem::is_regular_file(options.scene))
-    keeper = std::make_unique<view::Keeper>(options.scene, options.import_options.values());
-  Scene scene =
-      import_scene(keeper ? keeper->base() : std::filesystem::path(options.scene), FileImageReader(), options.import_options);
+  // Of several files that make one scene, none is where changes of it could be kept.
+  if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
+    keeper = std::make_unique<view::Keeper>(name, options.import_options.values());
+  Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);
   if (keeper) {
-    scene.source = options.scene;
+    scene.source = name;
     keeper->has_read(noted_inputs());
-    forget_input(options.scene);  // it may be saved over, the files that it names may not
+    forget_input(name);  // it may be saved over, the files that it names may not
   }
   apply(overrides, scene);
   LiveScene live(std::move(scene));
@@ -78,14 +78,14 @@ void run_view(const Options& options) {
   view::ViewerOptions viewer_options;
   viewer_options.server.host = options.host;
   viewer_options.server.port = options.port;
-  viewer_options.server.token = options.port ? view::kept_token(options.host, options.port, options.scene) : view::random_token();
+  viewer_options.server.token = options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));
   SecondTry::driver_works();
   fmt::print("{}\n", viewer.address());
   std::fflush(stdout);
-  log::info("{} is at the address above, on {}; Ctrl-C ends it", options.scene, device.info().name);
+  log::info("{} is at the address above, on {}; Ctrl-C ends it", name, device.info().name);
   if (!options.no_browser) open_browser(viewer.address());
   while (!interrupt_requested()) viewer.wait(0.1);
   if (const auto kept = viewer.end())
@@ -97,7 +97,7 @@ void run_view(const Options& options) {
 void add_view(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
-  command->add_option("SCENE", o->scene, "Scene file: " + scene_extensions())->required();
+  add_scene_files(*command, o->scenes);
   command->add_option("--host", o->host, "Address to listen at; others than this machine's own are open to its network")
       ->capture_default_str()
       ->type_name("ADDRESS");

@@ -288,7 +288,6 @@ Scene import_capsules_file(const std::filesystem::path& path, const ImageReader&
   shape.geometry = read_capsules(path, add_material);
   if (scene.materials.empty()) add_material("", shape.where);
   scene.shapes.push_back(std::move(shape));
-  add_presentation(scene);
   return scene;
 }
 

@@ -2,11 +2,21 @@
 // Copyright Caplet authors
 #include "import/import.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+#include <optional>
 #include <system_error>
 
+#include "base/log.h"
 #include "import/look.h"
+#include "present/lights.h"
+#include "present/present.h"
+#include "scene/append.h"
 
 namespace caplet {
 
@@ -19,16 +29,13 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-const Format& format_of(const fs::path& path) {
-  const std::string name = lower_case(path.filename().string());
-  std::string known;
-  for (const Format& format : formats())
-    for (const std::string& extension : format.extensions) {
-      if (name.size() > extension.size() && name.ends_with(extension)) return format;
-      known += (known.empty() ? "" : ", ") + extension;
-    }
-  throw InputError({path.string()}, "no known scene format (known: " + known + ")");
-}
+/// What people have of these fields and no importer reads, with what helps.
+constexpr std::pair<const char*, const char*> not_read[] = {
+    {".nml", "NeuroML is not read: write the morphology as SWC (the Python packages morphio and neurom, or NEURON, do)"},
+    {".h5",
+     "SONATA and other HDF5 files are not read: write the morphologies as SWC (morphio's Morphology.write), one file a cell"},
+    {".asc", "Neurolucida files are not read: write the morphology as SWC (morphio's Morphology.write)"},
+};
 
 void check_readable(const fs::path& path) {
   std::error_code error;
@@ -45,31 +52,212 @@ bool is_look(const std::string& name) {
   return found != import_option_rows().end() && found->is_look;
 }
 
-void check_known(const ImportOptions& options, const Format& format) {
+/// `formats_of_files`: each of those that are asked about.
+void check_known(const ImportOptions& options, const std::vector<const Format*>& formats_of_files) {
   for (const auto& [name, value] : options.values()) {
     if (is_look(name)) continue;
-    if (std::ranges::find(format.options, name) != format.options.end()) continue;
-    std::string who;
+    const auto knows = [&name](const Format* format) {
+      return std::ranges::find(format->options, name) != format->options.end();
+    };
+    if (std::ranges::any_of(formats_of_files, knows)) continue;
+    std::string who, whose;
     for (const Format& other : formats())
-      if (std::ranges::find(other.options, name) != other.options.end()) who += (who.empty() ? "" : ", ") + other.name;
+      if (knows(&other)) who += (who.empty() ? "" : ", ") + other.name;
+    for (const Format* format : formats_of_files)
+      if (whose.find(format->name) == std::string::npos) whose += (whose.empty() ? "" : ", ") + format->name;
     throw InputError({"--" + name},
-                     "says nothing to files of the format " + format.name + (who.empty() ? "" : " (it does to: " + who + ")"));
+                     "says nothing to files of the format " + whose + (who.empty() ? "" : " (it does to: " + who + ")"));
   }
 }
 
-}  // namespace
+/// Those of the options that the format knows.
+ImportOptions known_to(const Format& format, const ImportOptions& options) {
+  std::map<std::string, std::string> values;
+  for (const auto& [name, value] : options.values())
+    if (std::ranges::find(format.options, name) != format.options.end()) values.emplace(name, value);
+  ImportOptions out(std::move(values));
+  out.file = options.file;
+  out.files = options.files;
+  out.seen = options.seen;
+  return out;
+}
 
-Scene import_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
-  check_readable(path);
-  const Format& format = format_of(path);
-  check_known(options, format);
-  Scene scene = format.import(path, images, options);
-  const bool is_turned = std::ranges::find(format.options, "up") != format.options.end();
-  apply_look(scene, images, options, is_turned);
+void tell_range(const ValueRange& range, const ImportOptions& options) {
+  if (!range.is_there) return;
+  const auto asked = options.range("range");
+  log::info("colours: {} from {:.6g} to {:.6g}, dark blue to yellow (viridis){}", range.what, asked ? asked->first : range.low,
+            asked ? asked->second : range.high,
+            asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
+}
+
+Scene validated(Scene scene) {
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();
   return scene;
+}
+
+// --- Several files ---
+
+bool is_studio(const Light& light) {
+  const auto* infinite = std::get_if<InfiniteLight>(&light.model);
+  return infinite && infinite->image && infinite->image->preset == studio_preset;
+}
+
+/// What was framed by itself is framed again among others.
+void open_again(Imported& file) {
+  if (!file.scene.automatic_camera) return;
+  std::erase_if(file.scene.lights, is_studio);
+  file.scene.automatic_camera = false;
+  file.has_camera = false;
+  file.is_lit = is_lit(file.scene);
+}
+
+/// Names of files that tell them apart.
+std::vector<std::string> names_of(std::span<const fs::path> paths) {
+  std::map<std::string, int> count;
+  for (const fs::path& path : paths) ++count[path.stem().string()];
+  std::vector<std::string> out;
+  std::map<std::string, int> used;
+  for (const fs::path& path : paths) {
+    const std::string stem = path.stem().string();
+    out.push_back(count[stem] == 1 ? stem : fmt::format("{} {}", stem, ++used[stem]));
+  }
+  return out;
+}
+
+/// What pictures know shapes by begins with the name of their file.
+void put_names(Scene& scene, const std::string& stem, const std::string& name) {
+  const auto rename = [&](std::string& one) { one = one.empty() || one == stem ? name : name + ": " + one; };
+  for (Shape& shape : scene.shapes) rename(shape.name);
+  for (Object& object : scene.objects) {
+    rename(object.name);
+    for (Shape& shape : object.shapes) rename(shape.name);
+  }
+}
+
+Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
+  std::optional<std::size_t> with_camera;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    open_again(files[i]);
+    if (files[i].has_camera && with_camera)
+      throw InputError({paths[i].string()},
+                       "brings a camera, as " + paths[*with_camera].string() + " does: of several files one at most may");
+    if (files[i].has_camera) with_camera = i;
+  }
+  // Without a camera the first that is more than geometry says size and samples.
+  std::size_t head = with_camera.value_or(0);
+  for (std::size_t i = files.size(); !with_camera && i-- > 0;)
+    if (!files[i].scene.film.filename.empty() || files[i].is_lit) head = i;
+  Scene scene;
+  {
+    const Scene& from = files[head].scene;
+    scene.camera = from.camera;
+    scene.filter = from.filter;
+    scene.film = from.film;
+    scene.sampler = from.sampler;
+    scene.integrator = from.integrator;
+    scene.source = from.source;
+    scene.has_no_up = std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
+    scene.world_from_file = from.world_from_file;
+    if (std::ranges::all_of(files, [&](const Imported& file) { return file.scene.unit == from.unit; })) scene.unit = from.unit;
+    for (const Imported& file : files)
+      if (!scene.legend) scene.legend = file.scene.legend;
+  }
+  Imported out(std::move(scene));
+  out.has_camera = with_camera.has_value();
+  const std::vector<std::string> names = names_of(paths);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    Scene& part = files[i].scene;
+    out.is_lit |= files[i].is_lit;
+    put_names(part, paths[i].stem().string(), names[i]);
+    const Appended at = append(out.scene, std::move(part));
+    if (i == head && out.scene.camera.medium) *out.scene.camera.medium += at.media;
+    part = {};
+  }
+  return presented(std::move(out));
+}
+
+}  // namespace
+
+const Format& format_of(const fs::path& path) {
+  const std::string name = lower_case(path.filename().string());
+  std::string known;
+  for (const Format& format : formats())
+    for (const std::string& extension : format.extensions) {
+      if (name.size() > extension.size() && name.ends_with(extension)) return format;
+      known += (known.empty() ? "" : ", ") + extension;
+    }
+  for (const auto& [extension, what] : not_read)
+    if (name.ends_with(extension)) throw InputError({path.string()}, what);
+  throw InputError({path.string()}, "no known scene format (known: " + known + ")");
+}
+
+Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options, const Format* format) {
+  check_readable(path);
+  if (!format) format = &format_of(path);
+  check_known(options, {format});
+  return format->import(path, images, options);
+}
+
+Scene presented(Imported file) {
+  Scene& scene = file.scene;
+  if (scene.automatic_camera || (file.has_camera && file.is_lit)) return std::move(scene);
+  const Bounds bounds = bounds_of(scene);
+  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min)))
+    return std::move(scene);  // validate says what is wrong
+  const Camera camera = scene.camera;
+  if (file.is_lit)
+    frame_camera(scene);
+  else
+    add_presentation(scene);
+  if (file.has_camera) {
+    scene.camera = camera;
+    scene.automatic_camera = false;
+  }
+  return std::move(scene);
+}
+
+Scene import_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
+  return import_scenes(std::span(&path, 1), images, options);
+}
+
+Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, const ImportOptions& options) {
+  std::vector<const Format*> formats_of_files;
+  for (const fs::path& path : paths) {
+    check_readable(path);
+    formats_of_files.push_back(&format_of(path));
+  }
+  check_known(options, formats_of_files);
+  ValueRange all;
+  std::vector<Imported> files;
+  std::vector<std::size_t> by_values;  // files that a colour map colours
+  const auto read = [&](std::size_t i, ImportOptions of_all) {
+    of_all.file = i;
+    of_all.files = paths.size();
+    of_all.seen = std::make_shared<ValueRange>();
+    Imported file = formats_of_files[i]->import(paths[i], images, known_to(*formats_of_files[i], of_all));
+    if (const ValueRange& seen = *of_all.seen; seen.is_there) {
+      by_values.push_back(i);
+      all.what = seen.what;
+      all.extend(seen.low);
+      all.extend(seen.high);
+    }
+    return file;
+  };
+  for (std::size_t i = 0; i < paths.size(); ++i) files.push_back(read(i, options));
+  tell_range(all, options);
+  if (by_values.size() > 1 && !options.text("range") && all.low < all.high) {
+    // One scale for all of them, which is known only now.
+    ImportOptions of_all = options;
+    of_all.set("range", fmt::format("{},{}", all.low, all.high));
+    for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);
+  }
+  Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
+  apply_look(scene, images, options, std::ranges::any_of(formats_of_files, [](const Format* format) {
+               return std::ranges::find(format->options, "up") != format->options.end();
+             }));
+  return validated(std::move(scene));
 }
 
 }  // namespace caplet

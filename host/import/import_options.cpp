@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 #include "import/import_options.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "import/detail/text_file.h"
 
@@ -16,6 +19,12 @@ const std::vector<ImportOptionRow>& import_option_rows() {
 #undef LOOK_OPTION
   };
   return rows;
+}
+
+void ValueRange::extend(double value) {
+  low = is_there ? std::min(low, value) : value;
+  high = is_there ? std::max(high, value) : value;
+  is_there = true;
 }
 
 std::optional<std::string> ImportOptions::text(const std::string& name) const {
@@ -39,6 +48,19 @@ std::size_t ImportOptions::choice(const std::string& name, std::initializer_list
 
 bool ImportOptions::yes(const std::string& name, bool otherwise) const {
   return choice(name, {"no", "yes"}, otherwise ? 1 : 0) == 1;
+}
+
+std::optional<std::pair<double, double>> ImportOptions::range(const std::string& name) const {
+  const std::optional<std::string> asked = text(name);
+  if (!asked) return std::nullopt;
+  const std::string_view whole = *asked;
+  const std::size_t comma = std::min(whole.find(','), whole.size());
+  std::pair<double, double> out;
+  if (comma == whole.size() || !parse_number(whole.substr(0, comma), out.first) ||
+      !parse_number(whole.substr(comma + 1), out.second) || !std::isfinite(out.first) || !std::isfinite(out.second) ||
+      !(out.first < out.second))
+    throw InputError({"--" + name}, "'" + *asked + "' is not LOW,HIGH: two numbers, the second above the first");
+  return out;
 }
 
 std::uint32_t ImportOptions::number(const std::string& name, std::uint32_t otherwise) const {

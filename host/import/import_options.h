@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace caplet {
@@ -19,6 +21,14 @@ struct ImportOptionRow {
 };
 
 const std::vector<ImportOptionRow>& import_option_rows();
+
+/// What colours tell by a colour map, and the least and greatest value of it in the files that were read.
+struct ValueRange {
+  std::string what;
+  double low = 0, high = 0;
+  bool is_there = false;
+  void extend(double value);
+};
 
 class ImportOptions {
  public:
@@ -34,6 +44,13 @@ class ImportOptions {
   bool yes(const std::string& name, bool otherwise) const;
   /// A whole number from 1. Throws InputError naming the option.
   std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
+
+  /// "LOW,HIGH". Throws InputError naming the option.
+  std::optional<std::pair<double, double>> range(const std::string& name) const;
+
+  // Of several files for one picture: which of how many this is, and where what colours tell of it is added.
+  std::size_t file = 0, files = 1;
+  std::shared_ptr<ValueRange> seen;
 
  private:
   std::map<std::string, std::string> values_;

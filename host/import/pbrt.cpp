@@ -8,13 +8,21 @@
 
 namespace caplet {
 
-Scene pbrt::import_text(const std::string& file, std::string text, const ImageReader& images) {
+namespace {
+
+Imported import(const std::string& file, std::string text, const ImageReader& images) {
   check_text(text, file);
-  return Parser(file, images).parse(std::move(text));
+  return pbrt::Parser(file, images).parse(std::move(text));
 }
 
-Scene import_pbrt(const std::filesystem::path& path, const ImageReader& images, const ImportOptions&) {
-  return pbrt::import_text(path.string(), read_text(path, {}), images);
+}  // namespace
+
+Scene pbrt::import_text(const std::string& file, std::string text, const ImageReader& images) {
+  return presented(import(file, std::move(text), images));
+}
+
+Imported import_pbrt(const std::filesystem::path& path, const ImageReader& images, const ImportOptions&) {
+  return import(path.string(), read_text(path, {}), images);
 }
 
 }  // namespace caplet

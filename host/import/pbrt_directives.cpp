@@ -339,6 +339,7 @@ void Parser::shape() {
   Parameters given = parameters(owner(type), "shape");
   check_place();
   if (!check_name("Shape", type, where_, diagnostics_)) return;
+  if (is_file_shape(type)) return shapes_of_file(type, given);
   const auto by_name = [this](const std::string& name, const SourceLocation& where) { return use_of_name(name, where); };
   const auto finished = [this](const std::string& name, std::string& problem) { return finished_object(name, problem); };
   Shape shape = make_shape(type, given, state_.material, {textures_, by_name, finished});

@@ -11,11 +11,6 @@
 
 namespace caplet::pbrt {
 
-namespace {
-
-constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
-
-/// Calls `visit` with every index of a material that a shape has.
 void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit) {
   visit(shape.material);
   for (std::uint32_t& material : shape.materials) visit(material);
@@ -28,6 +23,10 @@ void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visi
       operand = std::move(own);
     }
 }
+
+namespace {
+
+constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
 
 /// With that of every surface that it shows.
 void each_surface(Shape& shape, const std::function<void(std::uint32_t)>& visit) {
@@ -50,9 +49,9 @@ void each_surface(Shape& shape, const std::function<void(std::uint32_t)>& visit)
 }
 
 void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visit) {
-  for (Shape& shape : scene.shapes) each_material(shape, visit);
+  for (Shape& shape : scene.shapes) pbrt::each_material(shape, visit);
   for (Object& object : scene.objects)
-    for (Shape& shape : object.shapes) each_material(shape, visit);
+    for (Shape& shape : object.shapes) pbrt::each_material(shape, visit);
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ std::vector<bool> Parser::used_materials() {
     const MaterialUse& one = uses_[index];
     if (one.statement)
       use(*one.statement);
-    else
+    else if (!one.made)
       use_name(one.name);
   });
   while (!to_follow.empty()) {
@@ -235,6 +234,10 @@ void Parser::resolve_materials() {
   std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
   for (std::size_t i = 1; i < uses_.size(); ++i) {
     const MaterialUse& use = uses_[i];
+    if (use.made) {
+      index_of_use[i] = *use.made;
+      continue;
+    }
     const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
     if (use.statement || named != named_materials_.end())
       index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
@@ -245,7 +248,7 @@ void Parser::resolve_materials() {
   take_out_interfaces([&](std::uint32_t number) -> const PartlyThere* {
     const MaterialUse& use = uses_[number];
     const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
-    if (number == 0 || (!use.statement && named == named_materials_.end())) return nullptr;
+    if (number == 0 || use.made || (!use.statement && named == named_materials_.end())) return nullptr;
     const auto found = partly_there_.find(use.statement ? *use.statement : named->second);
     return found == partly_there_.end() ? nullptr : &found->second;
   });

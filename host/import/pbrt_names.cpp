@@ -19,6 +19,7 @@ namespace {
 std::vector<std::string> shape_types() {
   std::vector<std::string> types = {
 #define SHAPE_TYPE(name, make) #name,
+#define FILE_SHAPE_TYPE(name) #name,
 #include "import/pbrt_shape_types.def"
 #undef SHAPE_TYPE
   };
@@ -37,6 +38,15 @@ NameTable table_of(std::string directive, std::vector<std::string> accepted, std
 }
 
 }  // namespace
+
+bool is_file_shape(std::string_view type) {
+#define SHAPE_TYPE(name, make)
+#define FILE_SHAPE_TYPE(name) \
+  if (type == #name) return true;
+#include "import/pbrt_shape_types.def"
+#undef SHAPE_TYPE
+  return false;
+}
 
 const std::vector<NameTable>& name_tables() {
   static const std::vector<NameTable> tables = {

@@ -75,7 +75,7 @@ const std::vector<Parser::Handler>& Parser::handlers() {
   return rows;
 }
 
-Scene Parser::parse(std::string text) {
+Imported Parser::parse(std::string text) {
   scene_.source = main_file_;
   std::error_code ignored;
   open_files_.push_back({main_file_, fs::weakly_canonical(main_file_, ignored).string()});
@@ -88,8 +88,12 @@ Scene Parser::parse(std::string text) {
   resolve_instances();
   diagnostics_.finish();
   scene_.sampler.seed = sampler_seed_.value_or(option_seed_.value_or(0));
-  present();
-  return std::move(scene_);
+  const bool lit = is_lit(scene_);
+  if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
+  Imported out(std::move(scene_));
+  out.has_camera = has_camera_;
+  out.is_lit = lit || has_camera_;  // a dark scene of its own is meant to be one
+  return out;
 }
 
 void Parser::parse_file(const std::string& file, std::string text) {
@@ -330,22 +334,6 @@ void Parser::resolve_instances() {
     }
     diagnostics_.error(use.where, "the object " + in_quotes(use.name) + " is not defined" + nearest(use.name, object_names_));
   }
-}
-
-void Parser::present() {
-  const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
-  const bool lit = !scene_.lights.empty() || std::any_of(scene_.shapes.begin(), scene_.shapes.end(), emits) ||
-                   std::any_of(scene_.objects.begin(), scene_.objects.end(), [&](const Object& object) {
-                     return std::any_of(object.shapes.begin(), object.shapes.end(), emits);
-                   });
-  if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
-  if (has_camera_) return;
-  const Bounds bounds = bounds_of(scene_);
-  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min))) return;  // validate reports it
-  if (lit)
-    frame_camera(scene_);
-  else
-    add_presentation(scene_);
 }
 
 }  // namespace caplet::pbrt

@@ -134,7 +134,11 @@ void ask(const ProgramStatement& statement, pbrt::Parameters& parameters) {
 
 std::vector<std::string> statement_types(const std::string& directive) {
   for (const pbrt::NameTable& table : pbrt::name_tables())
-    if (table.directive == directive) return table.accepted;
+    if (table.directive == directive) {
+      std::vector<std::string> types = table.accepted;
+      if (directive == "Shape") std::erase_if(types, pbrt::is_file_shape);  // no shape, but a scene
+      return types;
+    }
   return {};
 }
 

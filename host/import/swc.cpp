@@ -16,11 +16,10 @@
 #include <numeric>
 #include <type_traits>
 
-#include "base/check.h"
 #include "base/error.h"
 #include "import/detail/importers.h"
+#include "import/detail/swc_color.h"
 #include "import/detail/text_file.h"
-#include "present/present.h"
 
 namespace caplet {
 
@@ -312,56 +311,11 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   return roles;
 }
 
-struct Palette {
-  const char* name;
-  glm::dvec3 reflectance;  // linear sRGB
-};
-
-Palette palette_of_type(int type) {
-  switch (type) {
-    case 0:
-      return {"undefined", {0.55, 0.56, 0.52}};
-    case kSoma:
-      return {"soma", {0.86, 0.62, 0.22}};
-    case 2:
-      return {"axon", {0.20, 0.62, 0.95}};
-    case 3:
-      return {"basal dendrite", {0.95, 0.36, 0.18}};
-    case 4:
-      return {"apical dendrite", {0.66, 0.22, 0.66}};
-    default:
-      return {"", palette_color(static_cast<std::size_t>(type))};
-  }
-}
-
-/// Materials by SWC type, made when first asked for.
-class TypeMaterials {
- public:
-  explicit TypeMaterials(Scene& scene) : scene_(scene) {}
-  std::uint32_t operator()(const SwcSample& sample) {
-    if (sample.type == last_type_) return last_index_;
-    const auto [entry, fresh] = index_.try_emplace(sample.type, narrow<std::uint32_t>(scene_.materials.size()));
-    if (fresh) {
-      const Palette palette = palette_of_type(sample.type);
-      const std::string name = *palette.name ? palette.name : fmt::format("type {}", sample.type);
-      scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{palette.reflectance}}, name, {scene_.source, sample.line, 0}});
-    }
-    last_type_ = sample.type;
-    return last_index_ = entry->second;
-  }
-
- private:
-  Scene& scene_;
-  std::map<int, std::uint32_t> index_;
-  int last_type_ = -1;
-  std::uint32_t last_index_ = 0;
-};
-
 }  // namespace
 
 std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
 
-Scene import_swc(const std::filesystem::path& path, const ImageReader&, const ImportOptions&) {
+Scene import_swc(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
   std::vector<SwcSample> samples = parse_swc(TextFile(path).text(), scene.source);
@@ -369,7 +323,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
   resolve_marks(samples);
   const std::vector<Role> roles = roles_of(samples);
 
-  TypeMaterials material_of(scene);
+  SwcColors colors(scene, samples, path, options);
   CapsulesShape segments;
   const auto count = static_cast<std::size_t>(std::ranges::count(roles, true, &Role::segment));
   for (std::vector<glm::vec3>* points : {&segments.p0, &segments.p1}) points->reserve(count);
@@ -382,7 +336,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
       Shape sphere;
       sphere.geometry = SphereShape{sample.radius};
       sphere.world_from_object = glm::translate(glm::dmat4(1), glm::dvec3(sample.position));
-      sphere.material = material_of(sample);
+      sphere.material = colors.of(sample);
       sphere.name = fmt::format("sample {}", sample.id);
       sphere.where = {scene.source, sample.line, 0};
       scene.shapes.push_back(std::move(sphere));
@@ -395,7 +349,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
     segments.p1.push_back(sample.position);
     segments.radius0.push_back(from_soma ? sample.radius : parent.radius);
     segments.radius1.push_back(to_soma ? parent.radius : sample.radius);
-    segments.materials.push_back(material_of(to_soma ? parent : sample));
+    segments.materials.push_back(colors.of(to_soma ? parent : sample));
     tapered |= segments.radius0.back() != segments.radius1.back();
   }
   if (!tapered) segments.radius1 = {};
@@ -411,7 +365,6 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
   scene.film.least_width = 1.5;
   scene.sampler.samples_per_pixel = 64;
   scene.unit = "\u00b5m";
-  add_presentation(scene);
   return scene;
 }
 

@@ -225,12 +225,6 @@ std::vector<Shape> one_of(Geometry geometry, const ShapeOptions& options) {
   return shapes;
 }
 
-bool is_lit(const caplet::Scene& scene) {
-  const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
-  return !scene.lights.empty() || std::ranges::any_of(scene.shapes, emits) ||
-         std::ranges::any_of(scene.objects, [&](const Object& object) { return std::ranges::any_of(object.shapes, emits); });
-}
-
 void check_light(const caplet::Light& light) {
   caplet::Scene one;
   one.lights.push_back(light);

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <numbers>
@@ -268,12 +269,27 @@ void frame_camera(Scene& scene) {
   set_camera(scene, view, eye, kFieldOfView);
 }
 
+bool is_lit(const Scene& scene) {
+  const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
+  return !scene.lights.empty() || std::ranges::any_of(scene.shapes, emits) ||
+         std::ranges::any_of(scene.objects, [&](const Object& object) { return std::ranges::any_of(object.shapes, emits); });
+}
+
 void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
   light.image = studio_image();
   light.world_from_light = around(scene.camera);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
+}
+
+void move_camera(Scene& scene, const Camera& to) {
+  const glm::dmat3 turn = glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
+  scene.camera = to;
+  for (Light& light : scene.lights)
+    if (auto* infinite = std::get_if<InfiniteLight>(&light.model);
+        infinite && infinite->image && !infinite->image->preset.empty())
+      infinite->world_from_light = turn * infinite->world_from_light;
 }
 
 glm::dvec3 palette_color(std::size_t index) {

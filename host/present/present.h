@@ -17,10 +17,16 @@ namespace caplet {
 /// The scene has shapes with materials and no lights; y is taken as up.
 void add_presentation(Scene& scene);
 
+/// Whether anything gives light: a light, or a shape that emits.
+bool is_lit(const Scene& scene);
+
 /// Points the camera at the shapes and moves it so that they just fit the film's size, with a margin; sets automatic_camera. To
 /// be called again when the film's size has changed. Scene::framing says from where, which way up, and whether in perspective;
 /// where it does not, flat scenes are seen face-on with a slight tilt, others three-quarter, by the shapes alone.
 void frame_camera(Scene& scene);
+
+/// Moves an automatic camera; the studio light that belongs to it goes with it.
+void move_camera(Scene& scene, const Camera& to);
 
 /// `n` well-told-apart diffuse colours (linear sRGB reflectance), index wraps.
 glm::dvec3 palette_color(std::size_t index);

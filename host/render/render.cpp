@@ -9,16 +9,24 @@
 
 namespace caplet {
 
+SessionOptions session_options(const RenderOptions& options) {
+  CHECK_LT_(0, options.samples_per_pixel);
+  return {.layers = options.layers,
+          .batch_paths = options.batch_paths,
+          .most_samples = static_cast<std::uint32_t>(options.samples_per_pixel),
+          .time_stages = options.time_stages,
+          .patience = options.patience};
+}
+
 RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress) {
-  CHECK_LT_(0, options.samples_per_pixel);
+  Session session(scene, view, {devices.begin(), devices.end()}, session_options(options));
+  return render(session, devices, options, progress);
+}
+
+RenderResult render(Session& session, std::span<const Device> devices, const RenderOptions& options,
+                    const std::function<void(const Progress&)>& progress) {
   const auto total = static_cast<std::uint32_t>(options.samples_per_pixel);
-  Session session(scene, view, {devices.begin(), devices.end()},
-                  {.layers = options.layers,
-                   .batch_paths = options.batch_paths,
-                   .most_samples = total,
-                   .time_stages = options.time_stages,
-                   .patience = options.patience});
   RenderResult result;
   result.compile_seconds = session.compile_seconds();
   result.stage_compile_seconds = session.compile_seconds_by_stage();

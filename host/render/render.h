@@ -57,4 +57,11 @@ RenderResult render(const FlatScene& scene, const FlatView& view, std::span<cons
 RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 
+/// Those of a session for renders with these options, for pictures that follow each other.
+SessionOptions session_options(const RenderOptions& options);
+/// A picture of what such a session shows, whose film is empty (Session::update). The counts of rays, and what
+/// devices have done, are those of the session from its beginning.
+RenderResult render(Session& session, std::span<const Device> devices, const RenderOptions& options,
+                    const std::function<void(const Progress&)>& progress);
+
 }  // namespace caplet

@@ -9,6 +9,9 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -188,12 +191,21 @@ void for_each_character(std::string_view text, const Receive& receive) {
   }
 }
 
+/// IEEE 754 binary16.
+double of_half(std::uint16_t bits) {
+  const int exponent = bits >> 10 & 31;
+  const double fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
+  if (exponent == 31)
+    return fraction > 0 ? std::numeric_limits<double>::quiet_NaN() : sign * std::numeric_limits<double>::infinity();
+  return exponent == 0 ? sign * std::ldexp(fraction, -24) : sign * std::ldexp(fraction + 1024, exponent - 25);
+}
+
 /// Bytes of an element, by the number in its type, which for text counts characters of four bytes.
 std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
 
 }  // namespace
 
-NpyReader::NpyReader(const fs::path& path, std::size_t columns) : path_(path) {
+NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std::size_t dimensions) : path_(path) {
   std::error_code error;
   if (const fs::file_status status = fs::status(path, error); !fs::is_regular_file(status))
     refuse(path, fs::is_directory(status) ? "cannot read: it is a folder"
@@ -202,32 +214,77 @@ NpyReader::NpyReader(const fs::path& path, std::size_t columns) : path_(path) {
   file_.open(path, std::ios::binary);
   if (!file_) refuse(path, "cannot read");
   const NpyHeader header = read_header(file_, path);
-  if (header.type != "<f4" && header.type != "<f8")
-    refuse(path, fmt::format("the array's type is {}; '<f4' (float32) or '<f8' (float64) is needed",
-                             header.type.starts_with('[') ? "structured" : "'" + header.type.substr(0, 32) + "'"));
-  if (header.shape.size() != 2 || header.shape[1] != columns)
-    refuse(path, fmt::format("the array's shape is {}; (N, {}) is needed", shape_text(header.shape), columns));
-  if (header.fortran_order) refuse(path, "the array is in Fortran order; C order is needed (numpy.ascontiguousarray)");
-  is_double_ = header.type == "<f8";
-  rows_ = header.shape[0];
-  const std::uint64_t row_bytes = columns * (is_double_ ? sizeof(double) : sizeof(float));
-  const auto data = static_cast<std::uint64_t>(file_.tellg()), size = static_cast<std::uint64_t>(fs::file_size(path, error));
-  if (rows_ > (size - data) / row_bytes)
+  static constexpr std::string_view known[] = {"f2", "f4", "f8", "i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8"};
+  const std::string& type = header.type;
+  if (type.size() != 3 || std::string_view("<>|=").find(type[0]) == std::string_view::npos ||
+      std::ranges::find(known, std::string_view(type).substr(1)) == std::end(known))
+    refuse(path, fmt::format("the array's type is {}; floats or whole numbers are needed, such as '<f4' (float32)",
+                             type.starts_with('[') ? "structured" : "'" + type.substr(0, 32) + "'"));
+  kind_ = type[1];
+  size_ = static_cast<std::size_t>(type[2] - '0');
+  is_swapped_ = type[0] == '>';
+  shape_ = header.shape;
+  if (shape_.size() != dimensions || std::ranges::find(columns, shape_.back()) == columns.end())
+    refuse(path, fmt::format("the array's shape is {}; ({}{}) is needed", shape_text(shape_), dimensions == 2 ? "N, " : "T, N, ",
+                             fmt::join(columns, " or ")));
+  columns_ = static_cast<std::size_t>(shape_.back());
+  by_columns_ = header.fortran_order;
+  if (by_columns_ && dimensions > 2) refuse(path, "the array is in Fortran order; C order is needed (numpy.ascontiguousarray)");
+  rows_ = 1;
+  for (std::size_t i = 0; i + 1 < shape_.size(); ++i) {
+    if (shape_[i] != 0 && rows_ > UINT64_MAX / shape_[i]) refuse(path, "the file is cut off: its shape is far too large");
+    rows_ *= shape_[i];
+  }
+  const std::uint64_t row_bytes = columns_ * size_;
+  data_ = static_cast<std::uint64_t>(file_.tellg());
+  const auto size = static_cast<std::uint64_t>(fs::file_size(path, error));
+  if (rows_ > (size - data_) / row_bytes)
     refuse(path, fmt::format("the file is cut off: {} rows are {} bytes, {} are there", rows_,
-                             rows_ > UINT64_MAX / row_bytes ? "far too many" : std::to_string(rows_ * row_bytes), size - data));
-  if (rows_ * row_bytes != size - data)
-    refuse(path, fmt::format("{} bytes follow the array's {} rows", size - data - rows_ * row_bytes, rows_));
+                             rows_ > UINT64_MAX / row_bytes ? "far too many" : std::to_string(rows_ * row_bytes), size - data_));
+  if (rows_ * row_bytes != size - data_)
+    refuse(path, fmt::format("{} bytes follow the array's {} rows", size - data_ - rows_ * row_bytes, rows_));
 }
 
 void NpyReader::read(std::span<double> out) {
-  if (is_double_) {
-    file_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size_bytes()));
-  } else {
-    singles_.resize(out.size());
-    file_.read(reinterpret_cast<char*>(singles_.data()), static_cast<std::streamsize>(singles_.size() * sizeof(float)));
-    std::copy(singles_.begin(), singles_.end(), out.begin());
-  }
+  const std::size_t count = out.size() / columns_;
+  if (by_columns_)
+    for (std::size_t c = 0; c < columns_; ++c) read_elements(c * rows_ + next_, count, columns_, out.data() + c);
+  else
+    read_elements(next_ * columns_, count * columns_, 1, out.data());
+  next_ += count;
+}
+
+void NpyReader::read_elements(std::uint64_t first, std::size_t count, std::size_t stride, double* out) {
+  bytes_.resize(count * size_);
+  file_.seekg(static_cast<std::streamoff>(data_ + first * size_));
+  file_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
   if (!file_) throw RunError(fmt::format("{}: cannot be read any further", path_.string()));
+  const auto as_they_lie = [&](auto one) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(&one, bytes_.data() + i * sizeof one, sizeof one);
+      out[i * stride] = static_cast<double>(one);
+    }
+  };
+  if (kind_ == 'f' && size_ == 8 && !is_swapped_) return as_they_lie(double{});
+  if (kind_ == 'f' && size_ == 4 && !is_swapped_) return as_they_lie(float{});
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t bits = 0;
+    const unsigned char* from = bytes_.data() + i * size_;
+    for (std::size_t k = 0; k < size_; ++k) bits |= std::uint64_t{from[is_swapped_ ? size_ - 1 - k : k]} << (8 * k);
+    double& to = out[i * stride];
+    if (kind_ == 'u') {
+      to = static_cast<double>(bits);
+    } else if (kind_ == 'i') {
+      const unsigned unused = 64 - 8 * static_cast<unsigned>(size_);
+      to = static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
+    } else if (size_ == 8) {
+      to = std::bit_cast<double>(bits);
+    } else if (size_ == 4) {
+      to = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    } else {
+      to = of_half(static_cast<std::uint16_t>(bits));
+    }
+  }
 }
 
 NpyWriter::NpyWriter(const fs::path& path, std::vector<NpyField> fields, const fs::path& name)

@@ -20,23 +20,33 @@ struct NpyHeader {
   std::vector<std::uint64_t> shape;
 };
 
-/// Reads arrays of floating-point rows: two-dimensional, C order, little-endian float32 or float64.
+/// Reads arrays of rows of numbers: halves, floats and whole numbers of 1 to 8 bytes, of either byte order; two-dimensional ones
+/// in C or Fortran order, of more dimensions (all but the last of which count rows) in C order.
 class NpyReader {
  public:
-  /// Throws InputError with the file's name for what is missing, no .npy file, of another type, order or shape than rows of
-  /// `columns`, and for files of another length than their header says.
-  NpyReader(const std::filesystem::path& path, std::size_t columns);
+  /// `columns`: how many a row may have. Throws InputError with the file's name for what is missing, no .npy file, of another
+  /// type, order or shape, and for files of another length than their header says.
+  NpyReader(const std::filesystem::path& path, std::vector<std::size_t> columns, std::size_t dimensions = 2);
 
   std::uint64_t rows() const { return rows_; }
-  /// The next `out.size()` / columns rows, which must be there.
+  std::size_t columns() const { return columns_; }
+  const std::vector<std::uint64_t>& shape() const { return shape_; }
+  /// The next row that is read. At most rows().
+  void go_to(std::uint64_t row) { next_ = row; }
+  /// The next `out.size()` / columns() rows, which must be there.
   void read(std::span<double> out);
 
  private:
+  void read_elements(std::uint64_t first, std::size_t count, std::size_t stride, double* out);
+
   std::filesystem::path path_;
   std::ifstream file_;
-  std::uint64_t rows_ = 0;
-  bool is_double_ = false;
-  std::vector<float> singles_;
+  std::vector<std::uint64_t> shape_;
+  std::uint64_t rows_ = 0, next_ = 0, data_ = 0;
+  std::size_t columns_ = 0, size_ = 0;  // size_: bytes of an element
+  char kind_ = 'f';                     // f, i or u
+  bool is_swapped_ = false, by_columns_ = false;
+  std::vector<unsigned char> bytes_;
 };
 
 /// A column of a structured array: its name and NumPy's name of its type ("<f4", "|b1", "<U12").

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "base/atomic_file.h"
 
@@ -47,6 +48,25 @@ std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& r
   return std::nullopt;
 }
 
+namespace {
+
+std::optional<BadRay> to_listed(std::span<const double> numbers, ListedRay& out) {
+  std::array<double, 6> six{};
+  std::copy_n(numbers.begin(), 6, six.begin());
+  if (auto bad = to_ray(six, out.numbers)) return bad;
+  if (numbers.size() == 6) return std::nullopt;
+  if (!(numbers[6] >= 0) || numbers[6] > largest_ray_number)
+    return BadRay{6, fmt::format("t_min, {:.3g}, is not from 0 to 2^60", numbers[6])};
+  if (!(numbers[7] > numbers[6]))
+    return BadRay{7, fmt::format("t_max, {:.3g}, is not above t_min, {:.3g}", numbers[7], numbers[6])};
+  out.t_min = static_cast<float>(numbers[6]);
+  out.t_max = static_cast<float>(std::min(numbers[7], static_cast<double>(std::numeric_limits<float>::max())));
+  if (numbers[7] > largest_ray_number) out.t_max = std::numeric_limits<float>::infinity();
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::string> parse_number(std::string_view token, double& value) {
   const bool plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
   const char* begin = token.data() + (plus ? 1 : 0);
@@ -58,10 +78,11 @@ std::optional<std::string> parse_number(std::string_view token, double& value) {
   return std::nullopt;
 }
 
-RayFile::RayFile(const fs::path& path) : path_(path) {
+RayFile::RayFile(const fs::path& named) : path_(named == "-" ? fs::path("/dev/stdin") : named) {
+  const fs::path& path = path_;
   note_input(path);
   if (path.extension() == ".npy") {
-    npy_.emplace(path, 6);
+    npy_.emplace(path, std::vector<std::size_t>{6, 8});
     return;
   }
   const auto refuse = [&](const char* why) {
@@ -75,9 +96,9 @@ RayFile::RayFile(const fs::path& path) : path_(path) {
   if (!text_) refuse("permission denied");
 }
 
-std::vector<RayNumbers> RayFile::next(std::size_t most) {
+std::vector<ListedRay> RayFile::next(std::size_t most) {
   if (npy_) return next_rows(most);
-  std::vector<RayNumbers> out;
+  std::vector<ListedRay> out;
   Diagnostics diagnostics;
   while (out.size() < most) {
     const auto line = take_line();
@@ -89,18 +110,16 @@ std::vector<RayNumbers> RayFile::next(std::size_t most) {
   return out;
 }
 
-std::vector<RayNumbers> RayFile::next_rows(std::size_t most) {
+std::vector<ListedRay> RayFile::next_rows(std::size_t most) {
   const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, npy_->rows() - row_));
-  std::vector<double> numbers(6 * count);
+  const std::size_t columns = npy_->columns();
+  std::vector<double> numbers(columns * count);
   npy_->read(numbers);
-  std::vector<RayNumbers> out(count);
+  std::vector<ListedRay> out(count);
   Diagnostics diagnostics;
-  for (std::size_t i = 0; i < count; ++i, ++row_) {
-    std::array<double, 6> row;
-    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(6 * i), 6, row.begin());
-    if (const auto bad = to_ray(row, out[i]))
+  for (std::size_t i = 0; i < count; ++i, ++row_)
+    if (const auto bad = to_listed(std::span(numbers).subspan(columns * i, columns), out[i]))
       diagnostics.error(SourceLocation{path_.string()}, fmt::format("row {}: {}", row_, bad->message));
-  }
   diagnostics.finish();
   return out;
 }
@@ -127,14 +146,14 @@ std::optional<std::string_view> RayFile::take_line() {
   return line;
 }
 
-std::optional<RayNumbers> RayFile::parse_line(std::string_view line, Diagnostics& diagnostics) const {
+std::optional<ListedRay> RayFile::parse_line(std::string_view line, Diagnostics& diagnostics) const {
   line = line.substr(0, line.find('#'));
   const auto fail = [&](std::size_t column, const std::string& message) {
     diagnostics.error(SourceLocation{path_.string(), line_, static_cast<int>(column) + 1}, message);
     return std::nullopt;
   };
-  std::array<double, 6> numbers{};
-  std::array<std::size_t, 6> columns{};
+  std::array<double, 8> numbers{};
+  std::array<std::size_t, 8> columns{};
   std::size_t count = 0, i = 0;
   const auto skip = [&] {
     while (i < line.size() && is_separator(line[i])) ++i;
@@ -147,15 +166,20 @@ std::optional<RayNumbers> RayFile::parse_line(std::string_view line, Diagnostics
     const std::size_t start = i;
     while (i < line.size() && !is_separator(line[i]) && line[i] != ',') ++i;
     if (i == start) return fail(start, "a number is missing");
-    if (count == 6) return fail(start, "there are more than six numbers (origin and direction)");
+    if (count == 8) return fail(start, "there are more than eight numbers (origin, direction, t_min and t_max)");
     columns[count] = start;
-    if (const auto wrong = parse_number(line.substr(start, i - start), numbers[count])) return fail(start, *wrong);
+    const std::string_view word = line.substr(start, i - start);
+    if (count == 7 && (word == "inf" || word == "infinity"))
+      numbers[count] = std::numeric_limits<double>::infinity();
+    else if (const auto wrong = parse_number(word, numbers[count]))
+      return fail(start, *wrong);
     ++count;
   }
   if (count == 0) return std::nullopt;
   if (count < 6) return fail(line.size(), fmt::format("{} of six numbers (origin and direction)", count));
-  RayNumbers ray;
-  if (const auto bad = to_ray(numbers, ray)) return fail(columns[bad->number], bad->message);
+  if (count == 7) return fail(line.size(), "seven numbers: t_max is missing after t_min");
+  ListedRay ray;
+  if (const auto bad = to_listed(std::span(numbers).first(count), ray)) return fail(columns[bad->number], bad->message);
   return ray;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,12 @@ namespace caplet {
 
 /// Origin, then direction (of any length).
 using RayNumbers = std::array<float, 6>;
+
+/// One of a list: what lies before t_min or from t_max on, in lengths of the direction, is not met.
+struct ListedRay {
+  RayNumbers numbers{};
+  float t_min = 0, t_max = std::numeric_limits<float>::infinity();
+};
 
 /// Squares of larger coordinates, and of directions longer than this or shorter than its inverse, do not fit into floats.
 inline constexpr double largest_ray_number = 0x1p60;  // 1.15e18
@@ -34,8 +41,10 @@ std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& r
 /// A whole token as a number, decimal notation, a leading '+' allowed. Otherwise what is wrong with it.
 std::optional<std::string> parse_number(std::string_view token, double& value);
 
-/// .npy by extension (rows of six float32 or float64), else text: six numbers a line, blanks or commas between them, `#` starts a
-/// comment, blank lines are passed over.
+/// .npy by extension (rows of six or eight numbers, NpyReader), else text: six or eight numbers a line, blanks or commas between
+/// them, `#` starts a comment, blank lines are passed over. The seventh and eighth are t_min, from 0, and t_max, above it or
+/// `inf`.
+/// "-" is the standard input, text.
 class RayFile {
  public:
   /// Throws InputError when the file is missing, unreadable or no such list.
@@ -43,12 +52,12 @@ class RayFile {
 
   /// Up to `most` more rays; fewer only at the end. Throws InputError with every bad ray among them, up to 20, with line and
   /// column or, in a .npy file, its row.
-  std::vector<RayNumbers> next(std::size_t most);
+  std::vector<ListedRay> next(std::size_t most);
 
  private:
-  std::vector<RayNumbers> next_rows(std::size_t most);
+  std::vector<ListedRay> next_rows(std::size_t most);
   std::optional<std::string_view> take_line();
-  std::optional<RayNumbers> parse_line(std::string_view line, Diagnostics& diagnostics) const;
+  std::optional<ListedRay> parse_line(std::string_view line, Diagnostics& diagnostics) const;
 
   std::filesystem::path path_;
   std::optional<NpyReader> npy_;

@@ -3,7 +3,7 @@
 //
 // Any bytes as an MJCF file, in the pose of its keyframe "k" where that is one.
 #include "import/detail/importers.h"
-#include "target.h"
+#include "importer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using caplet::ImportOptions;

@@ -3,7 +3,7 @@
 //
 // Any bytes as a molecule of the format xyz.
 #include "import/detail/importers.h"
-#include "target.h"
+#include "importer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return caplet::test::fuzz_importer(caplet::import_xyz, data, size);

@@ -110,23 +110,4 @@ inline void check_scene(const Scene& scene) {
   count_primitives(scene);
 }
 
-/// The target of an importer of geometry alone: it refuses a file with its places, or its scene is one that validation has
-/// nothing to say about.
-using Importer = Scene (*)(const std::filesystem::path&, const ImageReader&, const ImportOptions&);
-inline int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {}) {
-  const MemoryFile file(data, size);
-  return run_target([&] {
-    const Scene scene = import(file.path(), OnePixel(), options);
-    Diagnostics diagnostics;
-    validate(scene, diagnostics);
-    require(!diagnostics.has_errors());
-    check_scene(scene);
-    for (const Shape& shape : scene.shapes)
-      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-        for (const float radius : capsules->radius0) require(radius > 0);
-        for (const float radius : capsules->radius1) require(radius > 0);
-      }
-  });
-}
-
 }  // namespace caplet::test

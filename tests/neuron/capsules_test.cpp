@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "import/detail/importers.h"
+#include "import/import.h"
 #include "support/import_files.h"
 
 namespace caplet {
@@ -176,7 +176,7 @@ TEST(BadCapsulesFiles, AreNamedAndErrorsCollected) {
 }
 
 TEST(CapsulesScene, HasAMaterialForEachName) {
-  const Scene scene = import_capsules_file(
+  const Scene scene = import_scene(
       test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1 a\n<0,0,0> <1,0,0> 1 b\n<0,0,0> <1,0,0> 1\n"), test::NoImages());
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].name, "a");
@@ -188,7 +188,7 @@ TEST(CapsulesScene, HasAMaterialForEachName) {
 
 // The largest numbers that are read leave room for the camera.
 TEST(CapsulesScene, OfTheLargestNumbersIsSound) {
-  const Scene scene = import_capsules_file(
+  const Scene scene = import_scene(
       test::write_file("far.capsules", "<1e16,1e16,1e16> <1e16,1e16,9e15> 1e16\n<-1e16,-1e16,-1e16> <1e16,-1e16,1e16> 1e16\n"),
       test::NoImages());
   Diagnostics diagnostics;
@@ -197,7 +197,7 @@ TEST(CapsulesScene, OfTheLargestNumbersIsSound) {
 }
 
 TEST(CapsulesScene, HasOneMaterialWithoutNames) {
-  const Scene scene = import_capsules_file(test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1\n"), test::NoImages());
+  const Scene scene = import_scene(test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1\n"), test::NoImages());
   ASSERT_EQ(scene.materials.size(), 1U);
   EXPECT_EQ(scene.shapes.at(0).material, 0U);
 }

@@ -56,7 +56,7 @@ TEST_P(SwcFile, HasTheCountsOfTheNotice) {
   EXPECT_EQ(samples.size() - roots, expected.segments);
   EXPECT_EQ(types, expected.types);
 
-  const Scene scene = import_swc(path, test::NoImages());
+  const Scene scene = import_scene(path, test::NoImages());
   EXPECT_EQ(capsules_of(scene).p0.size(), expected.capsules);
   EXPECT_EQ(spheres_of(scene).size(), expected.spheres);
   const CapsulesShape capsules = capsules_of(scene);

@@ -108,7 +108,7 @@ TEST(MjcfLooks, TheFilesLightsReplaceTheStudio) {
   EXPECT_NEAR(red(std::get<DistantLight>(scene.lights[1].model).irradiance), 0.7 * pi, 1e-9);
   EXPECT_NEAR(red(std::get<PointLight>(scene.lights[2].model).intensity), 4 * pi, 1e-9);
   EXPECT_NEAR(red(std::get<InfiniteLight>(scene.lights[3].model).radiance), 0.75, 1e-5);
-  EXPECT_EQ(scene_of_text(lit, {{{"lights", "studio"}}}).lights.size(), 1U);
+  EXPECT_EQ(scene_of_text(lit, {{{"light", "studio"}}}).lights.size(), 1U);
 }
 
 TEST(MjcfLooks, LightsAndCamerasFollowTheirTargets) {

@@ -54,7 +54,7 @@ std::vector<RayNumbers> read_all(const std::filesystem::path& path, std::size_t 
   std::vector<RayNumbers> out;
   for (;;) {
     const auto some = file.next(piece);
-    out.insert(out.end(), some.begin(), some.end());
+    for (const ListedRay& one : some) out.push_back(one.numbers);
     if (some.size() < piece) return out;
   }
 }
@@ -94,6 +94,81 @@ TEST(RayFile, ReadsArraysOfBothTypesAndAllVersions) {
   EXPECT_TRUE(read_all(path).empty());
 }
 
+/// Elements of rows as bytes of another type.
+template <class Element>
+std::string bytes_as(const std::vector<double>& numbers, bool swapped = false) {
+  std::string out;
+  for (const double number : numbers) {
+    const auto one = static_cast<Element>(number);
+    std::string bytes(reinterpret_cast<const char*>(&one), sizeof one);
+    if (swapped) std::ranges::reverse(bytes);
+    out += bytes;
+  }
+  return out;
+}
+
+TEST(RayFile, ReadsWholeNumbersOtherByteOrdersAndFortranOrder) {
+  const auto path = test::temporary_folder() / "rays.npy";
+  const std::vector<double> rows{1, 2, 3, 0, 0, 1, 4, 5, 6, 0, 7, 0}, by_columns{1, 4, 2, 5, 3, 6, 0, 0, 0, 7, 1, 0};
+  const std::vector<RayNumbers> wanted{{1, 2, 3, 0, 0, 1}, {4, 5, 6, 0, 7, 0}};
+  const auto of = [](const std::string& type, bool fortran) {
+    return "{'descr': '" + type + "', 'fortran_order': " + (fortran ? "True" : "False") + ", 'shape': (2, 6), }";
+  };
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {of("|i1", false), bytes_as<std::int8_t>(rows)},        {of("|u1", false), bytes_as<std::uint8_t>(rows)},
+      {of("<i2", false), bytes_as<std::int16_t>(rows)},       {of(">u2", false), bytes_as<std::uint16_t>(rows, true)},
+      {of("<i4", false), bytes_as<std::int32_t>(rows)},       {of("<u8", false), bytes_as<std::uint64_t>(rows)},
+      {of(">i8", false), bytes_as<std::int64_t>(rows, true)}, {of(">f4", false), bytes_as<float>(rows, true)},
+      {of("<f8", true), bytes_as<double>(by_columns)},        {of("<i4", true), bytes_as<std::int32_t>(by_columns)},
+  };
+  for (const auto& [header, data] : files) {
+    write_bytes(path, npy(header, data));
+    EXPECT_EQ(read_all(path), wanted) << header;
+    EXPECT_EQ(read_all(path, 1), wanted) << header;
+  }
+  // Negative ones, and halves: 1, -2, 0.5, 65504, the least 2^-24, 0.
+  write_bytes(path,
+              npy("{'descr': '<i2', 'fortran_order': False, 'shape': (1, 6)}", bytes_as<std::int16_t>({-1, -300, 7, 0, 0, -1})));
+  EXPECT_EQ(read_all(path), (std::vector<RayNumbers>{{-1, -300, 7, 0, 0, -1}}));
+  write_bytes(path, npy("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 6)}",
+                        std::string("\x00\x3c\x00\xc0\x00\x38\xff\x7b\x01\x00\x00\x00", 12)));
+  EXPECT_EQ(read_all(path), (std::vector<RayNumbers>{{1, -2, 0.5F, 65504, 0x1p-24F, 0}}));
+}
+
+TEST(RayFile, ReadsLimits) {
+  const auto path = test::temporary_folder() / "rays.txt";
+  write_bytes(path, "0 0 0 0 0 1 0.5 2\n0 0 0 0 0 1\n0 0 0 0 0 1 1 inf\n");
+  RayFile file(path);
+  const std::vector<ListedRay> rays = file.next(9);
+  ASSERT_EQ(rays.size(), 3u);
+  EXPECT_EQ(rays[0].t_min, 0.5f);
+  EXPECT_EQ(rays[0].t_max, 2.0f);
+  EXPECT_EQ(rays[1].t_min, 0.0f);
+  EXPECT_EQ(rays[1].t_max, INFINITY);
+  EXPECT_EQ(rays[2].t_min, 1.0f);
+  EXPECT_EQ(rays[2].t_max, INFINITY);
+  const auto array = test::temporary_folder() / "rays.npy";
+  write_bytes(array, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)}", bytes_as<float>({0, 0, 0, 0, 0, 1, 3, 4})));
+  EXPECT_EQ(RayFile(array).next(1)[0].t_max, 4.0f);
+}
+
+TEST(NpyReader, ReadsFramesOfPlaces) {
+  const auto path = test::temporary_folder() / "frames.npy";
+  std::vector<double> numbers(2 * 3 * 3);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
+  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3)}", bytes_as<float>(numbers)));
+  NpyReader reader(path, {3}, 3);
+  EXPECT_EQ(reader.shape(), (std::vector<std::uint64_t>{2, 3, 3}));
+  reader.go_to(3);
+  std::vector<double> second(9);
+  reader.read(second);
+  EXPECT_EQ(second.front(), 9);
+  EXPECT_EQ(second.back(), 17);
+  EXPECT_THROW(NpyReader(path, {3}), InputError);
+  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3, 3)}", bytes_as<float>(numbers)));
+  EXPECT_THROW(NpyReader(path, {3}, 3), InputError);
+}
+
 TEST(RayFile, RefusesOtherArrays) {
   const auto path = test::temporary_folder() / "rays.npy";
   const std::string data = bytes_of(two_rays);
@@ -103,14 +178,15 @@ TEST(RayFile, RefusesOtherArrays) {
     return out;
   };
   const std::vector<std::pair<std::string, std::string>> rows = {
-      {npy(with("<f4", "<i4"), data), "'<i4'"},
-      {npy(with("<f4", ">f4"), data), "'>f4'"},
+      {npy(with("<f4", "<c8"), data), "'<c8'"},
+      {npy(with("<f4", "|b1"), data), "'|b1'"},
+      {npy(with("<f4", "<U6"), data), "'<U6'"},
       {npy(with("'<f4'", "[('x', '<f4'), ('y', '<f4')]"), data), "structured"},
       {npy(with("(2, 6)", "(6, 2)"), data), "(6, 2)"},
       {npy(with("(2, 6)", "(12,)"), data), "(12,)"},
       {npy(with("(2, 6)", "(2, 3, 2)"), data), "(2, 3, 2)"},
       {npy(with("(2, 6)", "()"), data), "()"},
-      {npy(with("False", "True"), data), "Fortran"},
+      {npy(with("(2, 6)", "(2, 7)"), data), "(N, 6 or 8)"},
       {npy(dictionary, data.substr(0, 40)), "cut off"},
       {npy(with("(2, 6)", "(3, 6)"), data), "cut off"},
       {npy(with("(2, 6)", "(18446744073709551615, 6)"), data), "cut off"},
@@ -173,7 +249,11 @@ TEST(RayFile, RefusesTextWithItsPlace) {
   const auto path = test::temporary_folder() / "rays.txt";
   const std::vector<std::pair<std::string, std::string>> rows = {
       {"0 0 0 0 0 1\n1 2 three 0 0 1\n", ":2:5: 'three' is not a number"},
-      {"0 0 0 0 0 1 7\n", ":1:13: there are more than six numbers"},
+      {"0 0 0 0 0 1 7\n", ":1:14: seven numbers: t_max is missing"},
+      {"0 0 0 0 0 1 7 8 9\n", ":1:17: there are more than eight numbers"},
+      {"0 0 0 0 0 1 -1 2\n", ":1:13: t_min, -1, is not from 0"},
+      {"0 0 0 0 0 1 2 2\n", ":1:15: t_max, 2, is not above t_min, 2"},
+      {"0 0 0 0 0 1 inf inf\n", ":1:13: 'inf' is not finite"},
       {"\n0 0 0 0 1 # five\n", ":2:11: 5 of six numbers"},
       {"0,0,,0,0,1\n", ":1:5: a number is missing"},
       {"0,0,0,0,0,\n", ":1:11: a number is missing"},

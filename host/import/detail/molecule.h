@@ -62,6 +62,7 @@ struct Molecule {
   ComponentBonds components;            // that the file brings
   std::map<std::string, std::vector<AssemblyPart>> assemblies;
   bool has_b_factors = false;
+  std::uint32_t frames = 1;  // models or frames of the file
 };
 
 /// Readers, each of one family of files; `path` is for messages and `text` the file, gzip taken off. The options model, altloc,

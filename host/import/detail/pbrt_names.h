@@ -21,6 +21,9 @@ struct NameTable {
 /// One row a directive that takes a type name.
 const std::vector<NameTable>& name_tables();
 
+/// Whether a type of Shape is a file of another format.
+bool is_file_shape(std::string_view type);
+
 /// All directives.
 const std::vector<std::string>& directive_names();
 

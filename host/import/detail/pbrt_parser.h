@@ -21,10 +21,14 @@
 #include "import/detail/pbrt_media.h"
 #include "import/detail/pbrt_names.h"
 #include "import/detail/pbrt_parameters.h"
+#include "import/import.h"
 #include "scene/image_reader.h"
 #include "scene/scene.h"
 
 namespace caplet::pbrt {
+
+/// Calls `visit` with every index of a material that a shape has.
+void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit);
 
 class Parser {
  public:
@@ -32,7 +36,7 @@ class Parser {
       : main_file_(std::move(main_file)), images_(images), light_files_(images) {}
 
   /// The scene of the main file's text. Throws InputError with everything that is wrong.
-  Scene parse(std::string text);
+  Imported parse(std::string text);
 
  private:
   struct Flat {
@@ -66,6 +70,7 @@ class Parser {
     std::optional<std::size_t> statement;
     std::string name;
     SourceLocation where;
+    std::optional<std::uint32_t> made = {};  // one of another file, in the scene already
   };
   class MaterialMaking;
   /// Of a mix with an interface: the chance of the other material, that is an alpha.
@@ -151,6 +156,8 @@ class Parser {
   void world_begin();
 
   // Help for directives
+  void shapes_of_file(const std::string& type, Parameters& given);
+  void put_as_stated(Shape& shape, const SourceLocation& where, bool is_instanced) const;
   TextureContext texture_context();
   std::shared_ptr<const TextureImage> texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
                                                     std::string& problem);
@@ -189,7 +196,6 @@ class Parser {
   std::uint32_t float_texture(Texture texture);
   MediumSides media_of_csg(const Shape& shape);
   void resolve_instances();
-  void present();
 
   std::string main_file_;
   const ImageReader& images_;

@@ -5,26 +5,14 @@
 // Conventions: docs/formats/swc.md.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scene/scene.h"
+#include "import/detail/swc_sample.h"
 
 namespace caplet {
-
-/// One line of the file.
-struct SwcSample {
-  std::int64_t id = 0;
-  std::int64_t parent_id = -1;
-  std::int32_t type = 0;
-  std::int32_t parent = -1;  // index into the samples; -1: root
-  glm::vec3 position{0};
-  float radius = 0;
-  int line = 0;
-};
 
 /// Parses the text of an SWC file and links parents. Radii are as written, 0 included. `name` is the file's name in messages.
 /// Throws InputError with file:line:column (up to 20 at once): wrong columns, non-numbers, non-finite or negative values,

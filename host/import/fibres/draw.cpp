@@ -143,7 +143,6 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   scene.world_from_file = glm::dmat3(shape.world_from_object);
   scene.unit = usual.unit;
   scene.shapes.push_back(std::move(shape));
-  add_presentation(scene);
   return scene;
 }
 

@@ -16,7 +16,6 @@
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
-#include "present/present.h"
 
 namespace caplet {
 
@@ -36,7 +35,7 @@ class GltfReader {
     scene_.unit = "m";
   }
 
-  Scene read() {
+  Imported read() {
     file_.check_version();
     const Json& nodes = file_.list("nodes");
     std::vector<std::size_t> roots;
@@ -53,15 +52,12 @@ class GltfReader {
     for (const std::size_t root : roots) visit(root, world, 0);
     place_meshes();
     if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");
-    if (scene_.lights.empty() && !(emits_ && camera_))
-      add_presentation(scene_);
-    else
-      frame_camera(scene_);
-    if (camera_) {
-      scene_.camera = *camera_;
-      scene_.automatic_camera = false;
-    }
-    return std::move(scene_);
+    const bool is_lit = !scene_.lights.empty() || (emits_ && camera_);
+    if (camera_) scene_.camera = *camera_;
+    Imported out(std::move(scene_));
+    out.has_camera = camera_.has_value();
+    out.is_lit = is_lit;
+    return out;
   }
 
  private:
@@ -226,7 +222,7 @@ class GltfReader {
 
 }  // namespace
 
-Scene import_gltf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported import_gltf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
   return GltfReader(gltf::File(path, read_file(path, {})), images, options).read();
 }
 

@@ -12,7 +12,6 @@
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
-#include "present/present.h"
 
 namespace caplet {
 
@@ -220,7 +219,6 @@ class ObjReader {
       scene_.shapes.push_back(std::move(shape));
     }
     if (scene_.shapes.empty()) throw InputError({scene_.source, 0, 0}, "holds no faces");
-    add_presentation(scene_);
   }
 
   const std::filesystem::path& path_;

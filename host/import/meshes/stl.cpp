@@ -15,7 +15,6 @@
 #include "import/detail/mesh_file.h"
 #include "import/detail/ply.h"
 #include "import/detail/text_file.h"
-#include "present/present.h"
 
 namespace caplet {
 
@@ -195,7 +194,6 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
   shape.world_from_object = world_from_file(options, usual_up);
   scene.world_from_file = glm::dmat3(shape.world_from_object);
   scene.shapes.push_back(std::move(shape));
-  add_presentation(scene);
   return scene;
 }
 

@@ -6,18 +6,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
 #include "import/detail/color_map.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"
+#include "import/detail/text_file.h"
 #include "present/present.h"
+#include "table/npy.h"
 
 namespace caplet {
 
@@ -265,12 +269,37 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
   if (scene.instances.empty()) throw InputError({"--assembly"}, "'" + name + "' holds none of the atoms");
 }
 
+/// Puts the atoms where frame `number` of the array has them; the bonds are those of the file's own places.
+void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t number) {
+  note_input(path);
+  NpyReader reader(path, {3}, 3);
+  const std::uint64_t frames = reader.shape()[0], atoms = reader.shape()[1];
+  if (atoms != molecule.atoms.size())
+    throw InputError({path},
+                     fmt::format("has places of {} atoms, and {} are drawn of the molecule", atoms, molecule.atoms.size()));
+  if (number > frames) throw InputError({"--model"}, fmt::format("{}: the array has {} frames", number, frames));
+  std::vector<double> places(3 * molecule.atoms.size());
+  reader.go_to((number - 1) * atoms);
+  reader.read(places);
+  for (std::size_t i = 0; i < molecule.atoms.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = places[3 * i + static_cast<std::size_t>(axis)];
+      if (!(std::abs(at) <= static_cast<double>(largest_number)))
+        throw InputError({path}, fmt::format("frame {}, atom {}: the place is not finite or out of range", number, i + 1));
+      molecule.atoms[i].position[axis] = static_cast<float>(at);
+    }
+  molecule.frames = narrow<std::uint32_t>(frames);
+}
+
 using Reader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
 
-Scene import_molecule(const std::filesystem::path& path, const ImportOptions& options, Reader reader) {
+Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options, Reader reader) {
   Scene scene;
   scene.source = path.string();
-  Molecule molecule = reader(read_text(path, {}), scene.source, options);
+  const std::optional<std::string> positions = options.text("positions");
+  ImportOptions of_file = options;
+  if (positions) of_file.set("model", "1");  // the frame is one of the array
+  Molecule molecule = reader(read_text(path, {}), scene.source, of_file);
   if (const std::optional<std::string> file = options.text("components"))
     for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
       molecule.components.insert_or_assign(name, std::move(bonds));
@@ -283,6 +312,7 @@ Scene import_molecule(const std::filesystem::path& path, const ImportOptions& op
   if (style == Style::trace && std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
     throw InputError({"--style"}, "trace: the file has neither alpha carbons nor phosphorus of a polymer");
   const std::vector<Bond> bonds = style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
+  if (positions) move_atoms(molecule, *positions, options.number("model", 1));
   Painter painter(scene, molecule, by);
   Drawing drawing(molecule, bonds, style, painter);
   const std::optional<std::string> assembly = options.text("assembly");
@@ -293,22 +323,23 @@ Scene import_molecule(const std::filesystem::path& path, const ImportOptions& op
   scene.legend = painter.legend();
   scene.has_no_up = true;
   scene.unit = "\u00c5";
-  add_presentation(scene);
-  return scene;
+  Imported out(std::move(scene));
+  out.frames = molecule.frames;
+  return out;
 }
 
 }  // namespace
 
-Scene import_pdb(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_pdb(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return import_molecule(path, options, read_pdb);
 }
-Scene import_mmcif(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_mmcif(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return import_molecule(path, options, read_mmcif);
 }
-Scene import_sdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_sdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return import_molecule(path, options, read_sdf);
 }
-Scene import_xyz(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_xyz(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return import_molecule(path, options, read_xyz);
 }
 

@@ -88,6 +88,7 @@ class Builder {
     add_connections();
     add_assemblies();
     out_.name = structure_.name;
+    out_.frames = static_cast<std::uint32_t>(structure_.models.size());
     return std::move(out_);
   }
 

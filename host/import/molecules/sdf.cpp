@@ -24,7 +24,8 @@ class Reader {
   }
 
   Molecule read() {
-    skip_records(options_.number("model", 1));
+    const std::uint32_t wanted = options_.number("model", 1);
+    skip_records(wanted);
     out_.chains = {""};
     out_.name = std::string(trimmed(line()));
     line();  // program and date
@@ -39,6 +40,7 @@ class Reader {
     all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
     out_.residues.push_back(all);
     out_.bonds_are_complete = true;
+    out_.frames = wanted + records_behind();
     return std::move(out_);
   }
 
@@ -60,6 +62,13 @@ class Reader {
       } while (line() != "$$$$");
       if (trimmed(text_).empty()) throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
     }
+  }
+
+  std::uint32_t records_behind() const {
+    std::uint32_t records = 0;
+    for (std::string_view rest = text_; !rest.empty();)
+      if (take_line(rest) == "$$$$" && !trimmed(rest).empty()) ++records;
+    return records;
   }
 
   /// A field of fixed columns, from 0.

@@ -62,6 +62,7 @@ class Reader {
       }
       if (frame == wanted) break;
     }
+    out_.frames = wanted + frames_behind();
     if (out_.atoms.empty()) throw InputError({path_, line_, 0}, "holds no atoms that are asked for");
     out_.chains = {""};
     Residue all;
@@ -81,6 +82,21 @@ class Reader {
     ++line_;
     if (text_.empty()) fail("the file ends where a line of it is missing");
     return take_line(text_);
+  }
+
+  /// What follows the frame that is read and begins as one does.
+  std::uint32_t frames_behind() const {
+    std::uint32_t frames = 0;
+    for (std::string_view rest = text_; !rest.empty();) {
+      const std::vector<std::string_view> words = words_of(take_line(rest));
+      if (words.empty()) continue;
+      std::uint64_t lines = 0;
+      if (words.size() != 1 || !parse_number(words[0], lines)) break;
+      for (++lines; lines > 0 && !rest.empty(); --lines) take_line(rest);
+      if (lines > 0) break;
+      ++frames;
+    }
+    return frames;
   }
 
   std::uint64_t count_of(std::string_view text) const {

@@ -309,12 +309,11 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   add(sky, whole);
 }
 
-/// The camera that is asked for, or one framed to the scene; the robot's lights, or the studio's.
-void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Scene& scene) {
-  if (robot.lights.empty())
-    add_presentation(scene);
-  else
-    frame_camera(scene);
+/// The camera that is asked for, and the robot's lights.
+void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Imported& out) {
+  Scene& scene = out.scene;
+  out.is_lit = !robot.lights.empty();
+  if (out.is_lit) frame_camera(scene);  // for the headlight
   if (const std::optional<std::string> name = options.text("camera")) {
     const auto camera = std::ranges::find(robot.cameras, *name, &RobotCamera::name);
     if (camera == robot.cameras.end()) {
@@ -323,6 +322,7 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
       throw InputError({"--camera"},
                        "the file has no camera '" + *name + "'" + (known.empty() ? "" : " (it has: " + known + ")"));
     }
+    out.has_camera = true;
     scene.automatic_camera = false;
     const glm::dmat4 at = world * camera->world;
     scene.camera = Camera{};
@@ -334,7 +334,7 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
       scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
     }
   }
-  if (!robot.lights.empty()) light_by_robot(robot, world, scene);
+  if (out.is_lit) light_by_robot(robot, world, scene);
 }
 
 void draw(const Robot& robot, const glm::dmat4& world, const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
@@ -358,19 +358,19 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const I
   const Robot robot = read_urdf(path, Pose(options));
   draw(
       robot, world, [&](const RobotGeom& geom) { return groups == all || geom.collides == (groups == collision); }, scene);
-  add_presentation(scene);
   return scene;
 }
 
-Scene import_mjcf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported import_mjcf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
   const auto shown = shown_by(options);
   const glm::dmat4 world = world_from_file(options, "z");
   const Robot robot = read_mjcf(path, Pose(options), images);
   draw(robot, world, shown, scene);
-  present(robot, world, options, scene);
-  return scene;
+  Imported out(std::move(scene));
+  present(robot, world, options, out);
+  return out;
 }
 
 }  // namespace caplet

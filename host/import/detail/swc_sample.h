@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+namespace caplet {
+
+/// One line of the file.
+struct SwcSample {
+  std::int64_t id = 0;
+  std::int64_t parent_id = -1;
+  std::int32_t type = 0;
+  std::int32_t parent = -1;  // index into the samples; -1: root
+  glm::vec3 position{0};
+  float radius = 0;
+  int line = 0;
+};
+
+}  // namespace caplet

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Several files, several outputs, and frames: turntables, numbered files, models, movies.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+
+#include "film/image.h"
+#include "program.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+namespace fs = std::filesystem;
+using test::names_in;
+using test::render;
+using test::Result;
+using test::run_program;
+using test::write_file;
+using testing::AllOf;
+using testing::HasSubstr;
+
+using Names = std::vector<std::string>;
+
+constexpr const char* neuron = "1 1 0 0 0 2 -1\n2 3 3 0 0 1 1\n3 3 6 0 2 0.5 2\n";
+constexpr const char* two_frames = "2\nfirst\nC 0 0 0\nO 1.2 0 0\n2\nsecond\nC 0 0 0\nO 0 3 0\n";
+
+fs::path folder_of(const std::map<std::string, std::string>& files) {
+  const fs::path folder = test::folder_with_scene();
+  fs::remove(folder / "scene.pbrt");
+  for (const auto& [name, text] : files) write_file(folder / name, text);
+  return folder;
+}
+
+Result run(const fs::path& folder, Names arguments) {
+  arguments.insert(arguments.begin(), "render");
+  for (const char* more : {"-q", "--size", "24x16", "--spp", "4"}) arguments.emplace_back(more);
+  return run_program(arguments, folder);
+}
+
+void expect_equal(const fs::path& a, const fs::path& b) {
+  const LayeredImage one = read_exr(a), other = read_exr(b);
+  for (const Channel& channel : one.channels) {
+    ASSERT_NE(other.find(channel.name), nullptr);
+    EXPECT_EQ(channel.floats, other.find(channel.name)->floats) << b << " " << channel.name;
+    EXPECT_EQ(channel.uints, other.find(channel.name)->uints) << b << " " << channel.name;
+  }
+}
+bool differ(const fs::path& a, const fs::path& b) { return read_exr(a).find("R")->floats != read_exr(b).find("R")->floats; }
+
+TEST(SeveralScenes, AreInOnePicture) {
+  const fs::path folder = folder_of({{"a.swc", neuron}, {"b.swc", "1 2 0 9 0 1 -1\n2 2 4 9 0 1 1\n"}});
+  ASSERT_EQ(run(folder, {"a.swc", "b.swc", "-o", "out.exr"}).code, 0);
+  EXPECT_EQ(read_exr(folder / "out.exr").metadata.at("caplet.scene"), "a.swc b.swc");
+  const Result info = run_program({"info", "a.swc", "b.swc"}, folder);
+  EXPECT_THAT(info.out, HasSubstr("capsule      3\n"));
+  const Result pick = run_program({"pick", "a.swc", "b.swc", "--ray", "2,9,9,0,0,-1"}, folder);
+  EXPECT_THAT(pick.out, HasSubstr("b"));
+  const Result verify = run_program({"verify", "a.swc", "b.swc", "--rays", "1000", "-q"}, folder);
+  EXPECT_EQ(verify.code, 0) << verify.err;
+  // The same picture from one file.
+  ASSERT_EQ(run_program({"convert", "a.swc", "b.swc", "both.pbrt", "-q"}, folder).code, 0);
+  ASSERT_EQ(run(folder, {"both.pbrt", "-o", "both.exr"}).code, 0);
+  expect_equal(folder / "out.exr", folder / "both.exr");
+  EXPECT_EQ(run_program({"convert", "a.swc"}, folder).code, 2);
+}
+
+TEST(SeveralOutputs, AreOfOneRender) {
+  const fs::path folder = test::folder_with_scene();
+  const Result result = render(folder, {"-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.jpg", "--preview", "e.png"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(names_in(folder), (Names{"a.exr", "b.png", "c.exr", "d.jpg", "e.png", "scene.pbrt"}));
+  expect_equal(folder / "a.exr", folder / "c.exr");
+  EXPECT_EQ(test::read_file(folder / "b.png"), test::read_file(folder / "e.png"));
+  const fs::path alone = test::folder_with_scene();
+  ASSERT_EQ(render(alone, {"-o", "b.png"}).code, 0);
+  EXPECT_EQ(names_in(alone), (Names{"b.png", "scene.pbrt"}));
+  EXPECT_EQ(test::read_file(alone / "b.png"), test::read_file(folder / "b.png"));
+}
+
+TEST(Frames, ATurntableGoesRoundOnce) {
+  const fs::path folder = folder_of({{"a.swc", neuron}});
+  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "4", "-o", "t.##.exr", "-o", "p%d.png"}).code, 0);
+  EXPECT_EQ(names_in(folder),
+            (Names{"a.swc", "p1.png", "p2.png", "p3.png", "p4.png", "t.01.exr", "t.02.exr", "t.03.exr", "t.04.exr"}));
+  EXPECT_TRUE(differ(folder / "t.01.exr", folder / "t.02.exr"));
+  EXPECT_TRUE(differ(folder / "t.01.exr", folder / "t.03.exr"));
+  // Each by itself is the same, whatever was rendered before it.
+  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "4", "--frames", "3-3", "-o", "again.#.exr"}).code, 0);
+  expect_equal(folder / "t.03.exr", folder / "again.3.exr");
+  EXPECT_FALSE(fs::exists(folder / "again.1.exr"));
+}
+
+// A camera that the file says goes round what is up there, and lights stay: of a scene that is the same all round, frames
+// differ by them alone. Half a turn of a ball with a light at the camera's side leaves the dark side.
+TEST(Frames, OnlyTheCameraOfAFileMoves) {
+  const fs::path folder = test::folder_with_scene(
+      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
+      "Film \"rgb\" \"integer xresolution\" 9 \"integer yresolution\" 9\nWorldBegin\n"
+      "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\nShape \"sphere\"\n");
+  ASSERT_EQ(render(folder, {"--turntable", "2", "-o", "f#.exr", "--spp", "4"}).code, 0);
+  const auto middle = [&](const char* name) { return read_exr(folder / name).find("R")->floats.at(40); };
+  EXPECT_GT(middle("f1.exr"), 0.1F);
+  EXPECT_EQ(middle("f2.exr"), 0.0F);
+  const LayeredImage first = read_exr(folder / "f1.exr"), second = read_exr(folder / "f2.exr");
+  EXPECT_NEAR(first.find("Z")->floats.at(40), 4, 0.1);
+  EXPECT_NEAR(second.find("Z")->floats.at(40), 4, 0.1);
+}
+
+TEST(Frames, ModelsFollowEachOtherBeforeOneCamera) {
+  const fs::path folder = folder_of({{"m.xyz", two_frames}});
+  ASSERT_EQ(run(folder, {"m.xyz", "--frames", "all", "-o", "m#.exr"}).code, 0);
+  EXPECT_EQ(names_in(folder), (Names{"m.xyz", "m1.exr", "m2.exr"}));
+  EXPECT_TRUE(differ(folder / "m1.exr", folder / "m2.exr"));
+  // Nothing is cut off, though the second frame is three times as large: no object at the rim.
+  for (const char* name : {"m1.exr", "m2.exr"}) {
+    const LayeredImage image = read_exr(folder / name);
+    const Channel& ids = *image.find("object.id");
+    std::size_t seen = 0;
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const std::uint32_t id = ids.uints.at(static_cast<std::size_t>(24 * y + x));
+        seen += id != 0;
+        if (x == 0 || y == 0 || x == 23 || y == 15) EXPECT_EQ(id, 0U) << name << " " << x << " " << y;
+      }
+    EXPECT_GT(seen, 3U);
+  }
+}
+
+TEST(Frames, NumberedFilesFollowEachOther) {
+  const fs::path folder = folder_of({{"n.01.swc", neuron}, {"n.02.swc", "1 1 0 0 0 2 -1\n2 3 3 4 0 1 1\n"}});
+  ASSERT_EQ(run(folder, {"n.##.swc", "--frames", "1-2", "-o", "n.##.exr"}).code, 0);
+  EXPECT_TRUE(differ(folder / "n.01.exr", folder / "n.02.exr"));
+}
+
+TEST(Frames, WhatIsThereMayStay) {
+  const fs::path folder = folder_of({{"a.swc", neuron}});
+  write_file(folder / "t2.exr", "mine");
+  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "3", "--skip-existing", "-o", "t#.exr"}).code, 0);
+  EXPECT_EQ(test::read_file(folder / "t2.exr"), "mine");
+  EXPECT_EQ(names_in(folder), (Names{"a.swc", "t1.exr", "t2.exr", "t3.exr"}));
+}
+
+/// A program that notes its arguments and the number of pictures, and writes what is asked for.
+std::map<std::string, std::string> with_stand_in(const fs::path& folder) {
+  const fs::path bin = folder.parent_path() / (folder.filename().string() + "-bin");
+  fs::create_directories(bin);
+  write_file(
+      bin / "ffmpeg",
+      "#!/bin/sh\nfor last; do :; done\npictures=\"\"\nwhile [ $# -gt 0 ]; do [ \"$1\" = -i ] && pictures=\"$2\"; shift; done\n"
+      "ls \"$(dirname \"$pictures\")\" | grep -c png > \"$last\"\n");
+  ::chmod((bin / "ffmpeg").c_str(), 0755);
+  return {{"PATH", bin.string() + ":" + std::getenv("PATH")}};
+}
+
+TEST(Frames, FfmpegMakesAMovie) {
+  const fs::path folder = folder_of({{"a.swc", neuron}});
+  const Names arguments{"render", "a.swc", "--turntable", "3", "-o", "m.mp4", "-q", "--size", "24x16", "--spp", "1"};
+  const Result result = run_program(arguments, folder, with_stand_in(folder));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(names_in(folder), (Names{"a.swc", "m.mp4"}));
+  EXPECT_EQ(test::read_file(folder / "m.mp4"), "3\n");
+  const Result without = run_program(arguments, folder, {{"PATH", "/nowhere"}});
+  EXPECT_EQ(without.code, 2);
+  EXPECT_THAT(without.err, AllOf(HasSubstr("-o"), HasSubstr("install the package ffmpeg")));
+}
+
+TEST(Frames, AnInterruptLeavesWholeOnes) {
+  const fs::path folder = folder_of({{"a.swc", neuron}});
+  test::Running running({"render", "a.swc", "--turntable", "1000", "-o", "t.####.exr", "--size", "64x48", "--spp", "4"}, folder);
+  ASSERT_TRUE(running.wait_for_stderr("frame 2: wrote"));
+  running.send(SIGINT);
+  const Result result = running.wait();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("of 1000 frames are written"));
+  const Names names = names_in(folder);
+  ASSERT_GE(names.size(), 3U);
+  EXPECT_LT(names.size(), 900U);
+  for (const std::string& name : names)
+    if (name != "a.swc") EXPECT_EQ(read_exr(folder / name).metadata.at("caplet.interrupted"), "no") << name;
+}
+
+TEST(Frames, SayWhatIsWrong) {
+  const fs::path folder = folder_of({{"a.swc", neuron}, {"m.xyz", two_frames}});
+  const Names before = names_in(folder);
+  const auto refused = [&](Names arguments, const std::string& flag, const std::string& why) {
+    const Result result = run(folder, arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr(flag), HasSubstr(why)));
+    EXPECT_EQ(names_in(folder), before);
+  };
+  refused({"a.swc", "--turntable", "3", "-o", "t.exr"}, "-o", "t.####.exr");
+  refused({"a.swc", "--turntable", "3"}, "-o", "frames need a name");
+  refused({"a.swc", "--turntable", "0", "-o", "t#.exr"}, "--turntable", "");
+  refused({"a.swc", "--turntable", "3", "--frames", "2-4", "-o", "t#.exr"}, "--frames", "there are 3 frames");
+  for (const char* frames : {"0-1", "2-1", "a", "1-", "-2", "1-2-3"})
+    refused({"a.swc", "--turntable", "3", std::string("--frames=") + frames, "-o", "t#.exr"}, "--frames", "neither A-B");
+  refused({"a.swc", "--frames", "1-2", "-o", "t#.exr"}, "--frames", "the scene has one frame");
+  refused({"m.xyz", "--frames", "1-3", "-o", "t#.exr"}, "--frames", "there are 2 frames");
+  refused({"m.xyz", "--frames", "all", "--model", "2", "-o", "t#.exr"}, "--model", "does not go");
+  refused({"n.#.swc", "--frames", "all", "-o", "t#.exr"}, "--frames", "such as 1-100");
+  refused({"n.#.swc", "--frames", "1-2", "-o", "t#.exr"}, "n.1.swc", "no such file");
+  refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable or --frames");
+  refused({"a.swc", "-o", "m.xyzzy"}, "-o", "pictures are written as .exr");
+  refused({"a.swc", "--skip-existing", "-o", "t.exr"}, "--skip-existing", "goes with");
+  refused({"a.swc", "--turntable", "3", "--stereo", "1", "-o", "t#.exr"}, "--stereo", "does not go");
+  refused({"a.swc", "-o", "none", "-o", "t.exr"}, "-o", "does not go with another");
+  refused({"a.swc", "-o", "t.exr", "-o", "t.exr"}, "-o", "t.exr");
+}
+
+}  // namespace
+}  // namespace caplet
