@@ -15,6 +15,7 @@
 #include "export/export.h"
 #include "flat_equal.h"
 #include "import/detail/pbrt.h"
+#include "present/lights.h"
 #include "present/present.h"
 #include "random_scene.h"
 #include "scene_files.h"
