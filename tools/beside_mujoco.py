@@ -61,7 +61,8 @@ def points_of(model, data, geom):
     kind, size, pose = solid_of(model, data, geom)
     if kind == GEOM.mjGEOM_MESH:
         mesh = model.geom_dataid[geom]
-        points = model.mesh_vert[model.mesh_vertadr[mesh]:][:model.mesh_vertnum[mesh]]
+        faces = model.mesh_face[model.mesh_faceadr[mesh]:][:model.mesh_facenum[mesh]]
+        points = model.mesh_vert[model.mesh_vertadr[mesh] + np.unique(faces)]  # those of some face
     else:
         field = model.geom_dataid[geom]
         rows, columns = model.hfield_nrow[field], model.hfield_ncol[field]
@@ -173,7 +174,7 @@ def compare(path, list_geoms, key):
 
 
 def rays(path, caplet, model, data, count, key):
-    """(hits, the largest difference of distances, rays that differ by more)"""
+    """Distances by the program and by MuJoCo (-1: no hit), and how far origins are from the middle."""
     generator = np.random.default_rng(7)
     shown = [g for g in range(model.ngeom) if model.geom_group[g] <= 2]
     bounded = [g for g in shown if int(model.geom_type[g]) not in (int(GEOM.mjGEOM_PLANE), int(GEOM.mjGEOM_HFIELD))] or shown
@@ -193,8 +194,8 @@ def rays(path, caplet, model, data, count, key):
         if asked.returncode:
             return asked.stderr.strip()
         hits = np.load(f"{folder}/hits.npy")
-    own = hits["t"].astype(float)
-    own[~np.isfinite(own)] = -1
+    own = np.full(count, -1.0)
+    own[hits["ray"]] = hits["t"]
     groups = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
     other, geom = np.empty(count), np.zeros(1, dtype=np.int32)
     for i in range(count):
@@ -234,6 +235,8 @@ def main():
                 print("  rays: " + got)
                 continue
             own, other, reach = got
+            # Endless planes end here far off: hits beyond three times the way to the middle are not compared.
+            own, other = (np.where(t > 3 * reach, -1, t) for t in (own, other))
             both = (own >= 0) & (other >= 0)
             one = (own >= 0) != (other >= 0)
             gaps = np.abs(own - other)[both]

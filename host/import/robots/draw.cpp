@@ -26,7 +26,8 @@ namespace caplet {
 namespace {
 
 constexpr glm::dvec4 kGrey{0.5, 0.5, 0.5, 1};
-constexpr double kFar = 50;  // of an endless plane: so many times the size of what stands on it, to each side
+constexpr double kFar = 50;             // of an endless plane: so many times the size of what stands on it, to each side
+constexpr double kBrightestSky = 0.35;  // the mean of its radiance
 constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
 
 double linear(double screen) { return decoded_value({}, std::clamp(screen, 0.0, 1.0)); }
@@ -263,6 +264,18 @@ std::function<bool(const RobotGeom&)> shown_by(const ImportOptions& options) {
   return [groups](const RobotGeom& geom) { return groups.contains(geom.group); };
 }
 
+/// Of all directions and channels.
+double mean_of(const EnvironmentImage& image) {
+  double sum = 0, weight = 0;
+  const auto width = static_cast<std::size_t>(image.width);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const double across = std::sin(std::numbers::pi * (static_cast<double>(i / 3 / width) + 0.5) / image.height);
+    sum += across * static_cast<double>(image.rgb[i]);
+    weight += across;
+  }
+  return sum / weight;
+}
+
 /// MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the middle of what is seen.
 void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   Bounds bounds;
@@ -307,6 +320,8 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
     sky.world_from_light = glm::dmat3(world);
   }
   add(sky, whole);
+  // MuJoCo's sky is seen and lights nothing: here it lights in the place of ambient light, and not more than usual for that.
+  if (robot.sky) scene.lights.back().scale = std::min(1.0, kBrightestSky / std::max(mean_of(*robot.sky), 1e-6));
 }
 
 /// The camera that is asked for, and the robot's lights.
