@@ -127,7 +127,9 @@ TEST(Frames, ModelsFollowEachOtherBeforeOneCamera) {
       for (int x = 0; x < 24; ++x) {
         const std::uint32_t id = ids.uints.at(static_cast<std::size_t>(24 * y + x));
         seen += id != 0;
-        if (x == 0 || y == 0 || x == 23 || y == 15) EXPECT_EQ(id, 0U) << name << " " << x << " " << y;
+        if (x == 0 || y == 0 || x == 23 || y == 15) {
+          EXPECT_EQ(id, 0U) << name << " " << x << " " << y;
+        }
       }
     EXPECT_GT(seen, 3U);
   }
@@ -183,7 +185,9 @@ TEST(Frames, AnInterruptLeavesWholeOnes) {
   ASSERT_GE(names.size(), 3U);
   EXPECT_LT(names.size(), 900U);
   for (const std::string& name : names)
-    if (name != "a.swc") EXPECT_EQ(read_exr(folder / name).metadata.at("caplet.interrupted"), "no") << name;
+    if (name != "a.swc") {
+      EXPECT_EQ(read_exr(folder / name).metadata.at("caplet.interrupted"), "no") << name;
+    }
 }
 
 TEST(Frames, SayWhatIsWrong) {

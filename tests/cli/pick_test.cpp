@@ -2,9 +2,11 @@
 // Copyright Caplet authors
 //
 // `caplet pick`: reports, tables, and lists of rays longer than memory should hold.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <cmath>
@@ -241,6 +243,21 @@ TEST(Pick, ArraysAndTextAreTheSameRays) {
     EXPECT_EQ(test::run_program({"pick", "scene.pbrt", "--rays", "none.txt", "--out", out}, folder).code, 0);
   EXPECT_EQ(test::read_file(folder / "none.csv"), std::string(header) + "\n");
   EXPECT_EQ(read_table(folder / "none.npy").rows, 0u);
+}
+
+// A ball of radius 1 before the ray: it enters at 4 and leaves at 6.
+TEST(Pick, RaysOfStdinHaveLimits) {
+  const auto folder = test::folder_with_scene("WorldBegin\nShape \"sphere\"\n");
+  const auto rays = folder.parent_path() / (folder.filename().string() + "-rays");
+  test::write_file(rays, "0 0 -5 0 0 1\n0 0 -5 0 0 1 5 inf\n0 0 -5 0 0 1 0 3\n0 0 -5 0 0 2 0 2.5\n0 0 -5 0 0 1 4.5 5.5\n");
+  const Result result = test::run_program({"pick", "scene.pbrt", "--rays", "-", "--out", "-", "-q"}, folder, {},
+                                          [&] { ::dup2(::open(rays.c_str(), O_RDONLY), STDIN_FILENO); });
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto lines = test::lines_of(result.out);
+  ASSERT_EQ(lines.size(), 4u) << result.out;
+  EXPECT_THAT(lines[1], testing::StartsWith("0,4,"));
+  EXPECT_THAT(lines[2], testing::StartsWith("1,6,"));
+  EXPECT_THAT(lines[3], testing::StartsWith("3,2,"));
 }
 
 TEST(Pick, TooManyCrossingsAreAnErrorThatNamesTheRays) {
