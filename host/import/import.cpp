@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "base/log.h"
+#include "import/detail/color_map.h"
 #include "import/look.h"
 #include "present/lights.h"
 #include "present/present.h"
@@ -88,6 +89,15 @@ void tell_range(const ValueRange& range, const ImportOptions& options) {
   log::info("colours: {} from {:.6g} to {:.6g}, dark blue to yellow (viridis){}", range.what, asked ? asked->first : range.low,
             asked ? asked->second : range.high,
             asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
+}
+
+/// What the colours of a colour map tell.
+Legend legend_of(const ValueRange& range, const ImportOptions& options) {
+  constexpr int steps = 64;
+  const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
+  Legend out{range.what, "", low, high, {}};
+  for (int step = 0; step < steps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (steps - 1)));
+  return out;
 }
 
 Scene validated(Scene scene) {
@@ -254,6 +264,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
     for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);
   }
   Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
+  if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
   apply_look(scene, images, options, std::ranges::any_of(formats_of_files, [](const Format* format) {
                return std::ranges::find(format->options, "up") != format->options.end();
              }));

@@ -17,7 +17,9 @@ Layers Overlays::layers() const {
 void check(const Overlays& overlays, const Scene& scene) {
   if (overlays.scale_bar) bar_of(*overlays.scale_bar, scene, "--scale-bar");
   if (overlays.color_bar && !scene.legend)
-    throw InputError(SourceLocation{"--color-bar"}, "the scene's colours tell no number (molecules do with --color bfactor)");
+    throw InputError(SourceLocation{"--color-bar"},
+                     "the scene's colours tell no number (those of molecules do with --color bfactor, of neurons with --color "
+                     "order or a file)");
 }
 
 void draw(Shown& picture, const LayeredImage& layers, const Scene& scene, const Overlays& overlays) {

@@ -247,9 +247,18 @@ TEST(SwcColors, HaveOneScale) {
   const Paths two{write_file("one.swc", neuron(0)), write_file("two.swc", "1 1 50 0 0 2 -1\n2 3 50 12 0 1 1\n")};
   const Scene scene = several(two, color("depth"));  // to 6, and to 12
   EXPECT_LT(glm::length(color_of_segment(scene, 1) - linear(33, 145, 140)), 0.02);
+  ASSERT_TRUE(scene.legend);
+  EXPECT_EQ(scene.legend->low, 0);
+  EXPECT_EQ(scene.legend->high, 12);
+  EXPECT_LT(glm::length(scene.legend->colors.front() - linear(68, 1, 84)), 0.01);
+  EXPECT_LT(glm::length(scene.legend->colors.back() - linear(253, 231, 37)), 0.01);
   ImportOptions options = color("depth");
   options.set("range", "0,3");
-  EXPECT_LT(glm::length(color_of_segment(several(two, options), 1) - linear(253, 231, 37)), 0.01);
+  const Scene asked = several(two, options);
+  EXPECT_LT(glm::length(color_of_segment(asked, 1) - linear(253, 231, 37)), 0.01);
+  ASSERT_TRUE(asked.legend);
+  EXPECT_EQ(asked.legend->high, 3);
+  EXPECT_FALSE(several(two, color("file")).legend);
 }
 
 TEST(SwcColors, OfAFileForEachNeuron) {
