@@ -107,6 +107,7 @@ void add_output(const Options& options, Files& files, const fs::path& path) {
     files.movie = path;
     files.all.add("-o", path);
   } else {
+    files.all.add("-o", path);
     try {
       check_preview_format(path, "-o");
     } catch (const InputError& error) {
@@ -115,7 +116,7 @@ void add_output(const Options& options, Files& files, const fs::path& path) {
                                    "frames as .mp4, .mov, .mkv, .webm or .gif",
                                    path.string()));
     }
-    add_preview(files, path, "-o");
+    files.previews.push_back(path);
   }
 }
 

@@ -115,20 +115,22 @@ TEST(Frames, OnlyTheCameraOfAFileMoves) {
 
 TEST(Frames, ModelsFollowEachOtherBeforeOneCamera) {
   const fs::path folder = folder_of({{"m.xyz", two_frames}});
-  ASSERT_EQ(run(folder, {"m.xyz", "--frames", "all", "-o", "m#.exr"}).code, 0);
+  ASSERT_EQ(
+      run_program({"render", "m.xyz", "--frames", "all", "-o", "m#.exr", "-q", "--size", "96x64", "--spp", "1"}, folder).code, 0);
   EXPECT_EQ(names_in(folder), (Names{"m.xyz", "m1.exr", "m2.exr"}));
   EXPECT_TRUE(differ(folder / "m1.exr", folder / "m2.exr"));
   // Nothing is cut off, though the second frame is three times as large: no object at the rim.
   for (const char* name : {"m1.exr", "m2.exr"}) {
     const LayeredImage image = read_exr(folder / name);
     const Channel& ids = *image.find("object.id");
+    constexpr std::uint32_t nothing = 0xffffffff;
     std::size_t seen = 0;
-    for (int y = 0; y < 16; ++y)
-      for (int x = 0; x < 24; ++x) {
-        const std::uint32_t id = ids.uints.at(static_cast<std::size_t>(24 * y + x));
-        seen += id != 0;
-        if (x == 0 || y == 0 || x == 23 || y == 15) {
-          EXPECT_EQ(id, 0U) << name << " " << x << " " << y;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const std::uint32_t id = ids.uints.at(static_cast<std::size_t>(96 * y + x));
+        seen += id != nothing;
+        if (x == 0 || y == 0 || x == 95 || y == 63) {
+          EXPECT_EQ(id, nothing) << name << " " << x << " " << y;
         }
       }
     EXPECT_GT(seen, 3U);
