@@ -13,7 +13,7 @@ namespace caplet::v0 {
 
 std::vector<SceneFormat> scene_formats() {
   std::vector<SceneFormat> out;
-  for (const Format& format : formats()) out.push_back({format.name, format.extensions});
+  for (const Format& format : formats()) out.push_back({format.name, format.extensions, format.options});
   return out;
 }
 

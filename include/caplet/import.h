@@ -16,7 +16,11 @@ CAPLET_BEGIN
 struct SceneFormat {
   std::string name;                     // "pbrt-v4"
   std::vector<std::string> extensions;  // ".pbrt"
+  std::vector<std::string> options;     // names of import options that say something to it
 };
+
+/// Values of import options by name, as the program's --NAME takes them: {{"style", "sticks"}, {"up", "z"}}.
+using ImportOptions = std::map<std::string, std::string>;
 
 CAPLET_API std::vector<SceneFormat> scene_formats();
 
