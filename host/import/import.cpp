@@ -53,29 +53,34 @@ bool is_look(const std::string& name) {
   return found != import_option_rows().end() && found->is_look;
 }
 
+bool knows(const Format& format, const std::string& option) {
+  return std::ranges::find(format.options, option) != format.options.end();
+}
+
+[[noreturn]] void refuse_option(const std::string& name, const std::vector<const Format*>& formats_of_files) {
+  std::vector<std::string> who, whose;
+  for (const Format& other : formats())
+    if (knows(other, name)) who.push_back(other.name);
+  for (const Format* format : formats_of_files)
+    if (std::ranges::find(whose, format->name) == whose.end()) whose.push_back(format->name);
+  std::string message = fmt::format("says nothing to files of the format {}", fmt::join(whose, ", "));
+  if (!who.empty()) message += fmt::format(" (it does to: {})", fmt::join(who, ", "));
+  throw InputError({"--" + name}, message);
+}
+
 /// `formats_of_files`: each of those that are asked about.
 void check_known(const ImportOptions& options, const std::vector<const Format*>& formats_of_files) {
-  for (const auto& [name, value] : options.values()) {
-    if (is_look(name)) continue;
-    const auto knows = [&name](const Format* format) {
-      return std::ranges::find(format->options, name) != format->options.end();
-    };
-    if (std::ranges::any_of(formats_of_files, knows)) continue;
-    std::string who, whose;
-    for (const Format& other : formats())
-      if (knows(&other)) who += (who.empty() ? "" : ", ") + other.name;
-    for (const Format* format : formats_of_files)
-      if (whose.find(format->name) == std::string::npos) whose += (whose.empty() ? "" : ", ") + format->name;
-    throw InputError({"--" + name},
-                     "says nothing to files of the format " + whose + (who.empty() ? "" : " (it does to: " + who + ")"));
-  }
+  for (const auto& [name, value] : options.values())
+    if (!is_look(name) &&
+        std::ranges::none_of(formats_of_files, [&name = name](const Format* format) { return knows(*format, name); }))
+      refuse_option(name, formats_of_files);
 }
 
 /// Those of the options that the format knows.
 ImportOptions known_to(const Format& format, const ImportOptions& options) {
   std::map<std::string, std::string> values;
   for (const auto& [name, value] : options.values())
-    if (std::ranges::find(format.options, name) != format.options.end()) values.emplace(name, value);
+    if (knows(format, name)) values.emplace(name, value);
   ImportOptions out(std::move(values));
   out.file = options.file;
   out.files = options.files;
@@ -265,9 +270,8 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   }
   Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
-  apply_look(scene, images, options, std::ranges::any_of(formats_of_files, [](const Format* format) {
-               return std::ranges::find(format->options, "up") != format->options.end();
-             }));
+  apply_look(scene, images, options,
+             std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
   return validated(std::move(scene));
 }
 

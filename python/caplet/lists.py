@@ -42,7 +42,8 @@ EXTRA = {
 
 def signature(kind, type):
     """[(keyword, parameter, types)] of the constructor of a type, without what all of its kind have."""
-    out = [(spelled(name), name, kinds) for name, kinds in known_parameters(kind, type)]
+    extra = {name for name, _ in EXTRA.get(kind, ())}  # of a name of the file's: that of an automatic camera
+    out = [(spelled(name), name, kinds) for name, kinds in known_parameters(kind, type) if name not in extra]
     names = {name for name, _, _ in out}
     if {"alpha_u", "alpha_v"} <= names and "alpha" not in names:
         out.append(("alpha", "alpha", ()))

@@ -144,7 +144,7 @@ std::vector<BadInput> bad_inputs() {
       option("time_nan", {"-o", "out.exr", "--time", "nan"}, "--time", "nan"),
       option("max_depth_negative", {"-o", "out.exr", "--max-depth=-1"}, "--max-depth", "-1"),
       option("unknown_option", {"-o", "out.exr", "--fast"}, "", "--fast"),
-      option("output_not_exr", {"-o", "out.png"}, "-o", ".exr"),
+      option("output_of_no_format", {"-o", "out.dwg"}, "-o", ".dwg"),
       option("output_folder_missing", {"-o", "nowhere/out.exr"}, "-o", "nowhere"),
       option("preview_unknown_format", {"-o", "out.exr", "--preview", "out.xyz"}, "--preview", ""),
       option("preview_folder_missing", {"-o", "out.exr", "--preview", "nowhere/out.png"}, "--preview", ""),
