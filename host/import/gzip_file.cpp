@@ -23,11 +23,9 @@ namespace {
   throw InputError(where, path.string() + ": " + what);
 }
 
-/// What a gzipped file of `size` bytes may unpack to. Deflate packs 1032 to 1 at best, text and meshes less than a tenth of that:
-/// a file that unpacks to more was made to fill the memory.
-std::uintmax_t most_unpacked(std::uintmax_t size) { return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size); }
-
 }  // namespace
+
+std::uintmax_t most_unpacked(std::uintmax_t size) { return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size); }
 
 std::string read_file(const fs::path& path, const SourceLocation& where, std::size_t limit) {
   std::error_code error;

@@ -15,6 +15,7 @@
 #include "import/import.h"
 #include "support/data.h"
 #include "support/import_files.h"
+#include "support/zip_text.h"
 
 namespace caplet {
 namespace {
@@ -282,6 +283,62 @@ TEST(BadFibres, AreRefused) {
                          {{{"radius", "-1"}}});
               }),
               AllOf(HasSubstr("--radius"), HasSubstr("not positive")));
+}
+
+// --- TRX ---
+
+std::string trx_file(const std::string& type, const std::string& positions, const std::string& offset_type,
+                     const std::string& offsets, int points, int tracks) {
+  return test::zip_of({{"header.json", "{\"NB_VERTICES\": " + std::to_string(points) +
+                                           ", \"NB_STREAMLINES\": " + std::to_string(tracks) + ", \"DIMENSIONS\": [1, 1, 1]}"},
+                       {"dps/score.float32", "abcd"},
+                       {"positions.3." + type, positions},
+                       {"offsets." + offset_type, offsets}},
+                      true);
+}
+Fibres trx_of(const std::string& bytes) { return read_trx(test::write_file("a.trx", bytes)); }
+
+TEST(Trx, OfAllWidths) {
+  Writer half, wide;
+  // 1, 100, -2; the largest; the smallest.
+  for (const int bits : {0x3c00, 0x5640, 0xc000, 0x7bff, 0x0001, 0x8000}) half.put(static_cast<std::uint16_t>(bits));
+  for (const double value : {1.0, 100.0, -2.0, 65504.0, 0x1p-24, 0.0}) wide.put(value);
+  const std::string one = Writer().put(std::uint32_t{0}).put(std::uint32_t{1}).bytes();
+  const std::string with_end = Writer().put(std::uint64_t{0}).put(std::uint64_t{1}).put(std::uint64_t{2}).bytes();
+  for (const Fibres& all : {trx_of(trx_file("float16", half.bytes(), "uint32", one, 2, 2)),
+                            trx_of(trx_file("float64", wide.bytes(), "uint64", with_end, 2, 2))}) {
+    EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{1, 2}));
+    EXPECT_EQ(all.points, (std::vector<glm::vec3>{{1, 100, -2}, {65504, 0x1p-24F, 0}}));
+  }
+}
+
+// Numbers of what tests/lattices/files/make.py gave to trx-python 0.6.
+TEST(Trx, AFileOfTrxPython) {
+  const Fibres all = read_trx(test::source_folder() / "tests/lattices/files/trx_python.trx");
+  EXPECT_EQ(all.ends, (std::vector<std::uint64_t>{2, 5, 6}));
+  EXPECT_EQ(all.points, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0.5F, 0}, {-2, 8, 1}, {0.25F, 100, 3}, {4, 4, 4}, {7, 0, -1}}));
+}
+
+TEST(BadTrx, IsRefused) {
+  const std::string points(36, '\0'), good = Writer().put(std::uint32_t{0}).put(std::uint32_t{2}).bytes();
+  const auto said = [](const std::string& bytes) { return complaint([&] { trx_of(bytes); }); };
+  EXPECT_EQ(said(trx_file("float32", points, "uint32", good, 3, 2)), "");
+  EXPECT_THAT(said("not a zip"), HasSubstr("no zip archive"));
+  EXPECT_THAT(said(test::zip_of({{"header.json", "{]"}})), AllOf(HasSubstr("header.json: byte 2"), HasSubstr("no JSON")));
+  EXPECT_THAT(said(test::zip_of({{"header.json", "{\"NB_VERTICES\": -1}"}})), HasSubstr("NB_VERTICES"));
+  EXPECT_THAT(said(trx_file("float32", points, "uint32", good, 1000000000, 2)),
+              AllOf(HasSubstr("3000000000"), HasSubstr("36 bytes")));
+  EXPECT_THAT(said(trx_file("float32", points, "uint32", good, 3, 1000000000)), HasSubstr("1000000000 streamlines"));
+  EXPECT_THAT(said(trx_file("int8", points, "uint32", good, 3, 2)), HasSubstr("positions are float16"));
+  EXPECT_THAT(said(trx_file("float32", points, "float32", good, 3, 2)), HasSubstr("offsets are"));
+  EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(0u).put(9u).bytes(), 3, 2)),
+              HasSubstr("streamline 0 ends at point 9"));
+  EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(1u).put(2u).bytes(), 3, 2)), HasSubstr("does not begin"));
+  EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(0u).put(1u).put(2u).bytes(), 3, 2)),
+              HasSubstr("ends at point 2 of 3"));
+  const std::string infinite =
+      Writer().put(0.0F).put(std::numeric_limits<float>::infinity()).put(0.0F).bytes() + points.substr(12);
+  EXPECT_THAT(said(trx_file("float32", infinite, "uint32", good, 3, 2)), HasSubstr("point 0 is not finite"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
@@ -25,6 +26,7 @@ Fibres read_hair(std::string_view bytes, const std::string& path);     // cyHair
 Fibres read_tressfx(std::string_view bytes, const std::string& path);  // TressFX .tfx, version 4
 Fibres read_trk(std::string_view bytes, const std::string& path);      // TrackVis; points in RAS+ millimetres
 Fibres read_tck(std::string_view bytes, const std::string& path);      // MRtrix
+Fibres read_trx(const std::filesystem::path& path);                    // TRX, an archive
 Fibres read_vtk(std::string_view bytes, const std::string& path);      // legacy VTK, POLYDATA with LINES
 
 }  // namespace caplet

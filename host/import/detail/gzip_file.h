@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -16,6 +17,10 @@ namespace caplet {
 /// InputError when the file is missing, no regular file, unreadable, broken, longer than `limit` bytes, or gzipped and unpacking
 /// to more than 64 MiB and 100 times its size.
 std::string read_file(const std::filesystem::path& path, const SourceLocation& where, std::size_t limit = std::size_t{1} << 32);
+
+/// What a packed file of `size` bytes may unpack to. Deflate packs 1032 to 1 at best, text and meshes less than a tenth of that:
+/// a file that unpacks to more was made to fill the memory.
+std::uintmax_t most_unpacked(std::uintmax_t size);
 
 /// As read_file, for text: bytes that cannot be in a text file are an error with their place.
 std::string read_text(const std::filesystem::path& path, const SourceLocation& where);

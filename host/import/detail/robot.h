@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "import/detail/xml.h"
 #include "import/import_options.h"
 
 namespace caplet {
@@ -37,27 +38,6 @@ struct RobotGeom {
 struct Robot {
   std::vector<RobotGeom> geoms;
 };
-
-/// An XML file in memory, and the places of its elements.
-class XmlFile {
- public:
-  /// Throws InputError with line and column for what is no XML. NUL bytes at the end are left out.
-  explicit XmlFile(const std::filesystem::path& path, const SourceLocation& named_at = {});
-  pugi::xml_node root() const { return document_.document_element(); }
-  SourceLocation place(pugi::xml_node node) const { return place(node.offset_debug()); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  SourceLocation place(std::ptrdiff_t offset) const;
-  std::filesystem::path path_;
-  std::string text_;
-  std::vector<std::size_t> line_begins_{0};
-  pugi::xml_document document_;
-};
-
-/// Finite numbers with blanks between them, at least `least` and at most `most`. Throws InputError.
-std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
-                               const std::string& what);
 
 /// What --pose says: joint=value pairs.
 struct Pose {

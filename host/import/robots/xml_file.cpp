@@ -1,55 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "import/detail/gzip_file.h"
 #include "import/detail/robot.h"
 #include "import/detail/text_file.h"
 
 namespace caplet {
-
-XmlFile::XmlFile(const std::filesystem::path& path, const SourceLocation& named_at)
-    : path_(path), text_(read_file(path, named_at)) {
-  while (!text_.empty() && text_.back() == '\0') text_.pop_back();
-  check_text(text_, path_.string());
-  for (std::size_t i = 0; i < text_.size(); ++i)
-    if (text_[i] == '\n') line_begins_.push_back(i + 1);
-  const pugi::xml_parse_result result =
-      document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
-  if (!result) throw InputError(place(result.offset), std::string("no XML: ") + result.description());
-}
-
-SourceLocation XmlFile::place(std::ptrdiff_t offset) const {
-  const std::size_t at = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size());
-  const auto line = std::ranges::upper_bound(line_begins_, at) - 1;
-  return {path_.string(), static_cast<int>(line - line_begins_.begin()) + 1, static_cast<int>(at - *line) + 1};
-}
-
-std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
-                               const std::string& what) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  std::vector<double> out;
-  for (;;) {
-    const std::size_t begin = text.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) break;
-    text.remove_prefix(begin);
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-    text.remove_prefix(word.size());
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-    double value = 0;
-    if (!parse_number(digits, value)) throw InputError(where, what + ": " + quoted(word) + " is not a number");
-    if (!(std::abs(value) <= static_cast<double>(largest_number)))
-      throw InputError(where, what + ": " + quoted(word) + " is not finite or out of range");
-    out.push_back(value);
-  }
-  if (out.size() < least || out.size() > most)
-    throw InputError(where, least == most ? fmt::format("{}: {} numbers, not {}", what, least, out.size())
-                                          : fmt::format("{}: {} to {} numbers, not {}", what, least, most, out.size()));
-  return out;
-}
 
 Pose::Pose(const ImportOptions& options) {
   const std::string text = options.text("pose").value_or("");

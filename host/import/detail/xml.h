@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// XML with the places of its elements, and lists of numbers in attributes.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace caplet {
+
+/// An XML file in memory, and the places of its elements.
+class XmlFile {
+ public:
+  /// Throws InputError with line and column for what is no XML. NUL bytes at the end are left out.
+  explicit XmlFile(const std::filesystem::path& path, const SourceLocation& named_at = {});
+  /// Text from elsewhere, which messages call `path`.
+  XmlFile(const std::filesystem::path& path, std::string text);
+  pugi::xml_node root() const { return document_.document_element(); }
+  SourceLocation place(pugi::xml_node node) const { return place(node.offset_debug()); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  SourceLocation place(std::ptrdiff_t offset) const;
+  std::filesystem::path path_;
+  std::string text_;
+  std::vector<std::size_t> line_begins_{0};
+  pugi::xml_document document_;
+};
+
+/// Finite numbers with blanks between them, at least `least` and at most `most`. Throws InputError.
+std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
+                               const std::string& what);
+
+}  // namespace caplet
