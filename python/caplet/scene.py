@@ -624,10 +624,16 @@ def _distinct(colors):
     raise AssertionError("16^3 colours are not more than 4096")
 
 
-def load(path):
-    """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError)."""
+def load(path, **options):
+    """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
+
+    options: what the format's page knows, as on the command line: load("1crn.pdb", style="sticks", color="chain"), up="z". True
+    and False are yes and no.
+    """
+    words = {True: "yes", False: "no"}
+    given = {name: words[value] if isinstance(value, bool) else str(value) for name, value in options.items()}
     try:
-        return Scene(_caplet.load(os.fspath(path)))
+        return Scene(_caplet.load(os.fspath(path), given))
     except InputError as error:
         if error.file is None:  # of the file as a whole
             error.file = os.fspath(path)

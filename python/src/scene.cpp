@@ -179,9 +179,9 @@ void bind_scene(nb::module_& m) {
   });
   m.def(
       "load",
-      [](const std::string& file) {
+      [](const std::string& file, const caplet::ImportOptions& options) {
         std::optional<Scene> scene;
-        run_interruptibly([&] { scene = caplet::import_scene(file); }, [] {}, [] {});
+        run_interruptibly([&] { scene = caplet::import_scene(file, options); }, [] {}, [] {});
         return *std::move(scene);
       },
       "Reads a scene of any known format.");

@@ -243,3 +243,86 @@ def test_xarray():
     held = caplet.to_xarray(image)
     assert held.rgb.shape == (8, 12, 3) and held.depth.dims == ("y", "x") and held.attrs["samples_per_pixel"] == 1
     assert np.array_equal(held.object_id.values, image.object_id)
+
+
+def test_a_scanner_measures_a_ball():
+    scene = caplet.Scene()
+    scene.add("sphere", radius=1, name="ball")
+    around, above = np.array([-8.0, 0.0, 10.0, 90.0]), np.array([0.0, 5.0, 12.0])
+    distance, shapes = caplet.lidar(scene, (-5, 0, 0), around, above)
+    # The angle between a ray and the way to the middle, five away: cos = cos(above) cos(around).
+    cosine = np.outer(np.cos(np.deg2rad(above)), np.cos(np.deg2rad(around)))
+    inside = 1 - 25 * (1 - cosine**2)
+    expected = np.where((inside > 0) & (cosine > 0), 5 * cosine - np.sqrt(np.maximum(inside, 0)), np.inf)
+    assert distance.shape == (3, 4) and np.isfinite(expected).sum() == 6
+    assert np.allclose(distance, expected, atol=1e-5)
+    assert (shapes == np.where(np.isfinite(expected), 0, 2**32 - 1)).all()
+    # Turned by a quarter about z: what was ahead is now to the right of a scanner that looks along y.
+    pose = np.array([[0, -1, 0, -5], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+    assert np.allclose(caplet.lidar(scene, pose, around - 90, above)[0], expected, atol=1e-5)
+    assert np.isinf(caplet.lidar(scene, (-5, 0, 0), [0.0], [0.0], reach=3.9)[0]).all()
+    with pytest.raises(caplet.InputError, match="pose"):
+        caplet.lidar(scene, np.eye(3), around, above)
+
+
+def test_a_scanner_on_a_robot_is_mujocos_rays():
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(EVERY_GEOM)
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    scene = caplet.from_mujoco(model, state)
+    around, above = np.linspace(-180, 170, 36), np.linspace(-40, 30, 8)
+    distance, shapes = caplet.lidar(scene, (0.2, 0.1, 3.3), around, above)
+    agree = 0
+    for i, up in enumerate(np.deg2rad(above)):
+        for k, turn in enumerate(np.deg2rad(around)):
+            way = np.array([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)])
+            geom = np.full((1, 1), -1, dtype=np.int32)
+            t = mujoco.mj_ray(model, state, np.array([0.2, 0.1, 3.3]), way, np.array([1, 1, 1, 0, 0, 0], np.uint8), 1, -1, geom)
+            same = np.isinf(distance[i, k]) if t < 0 else abs(distance[i, k] - t) < 1e-3 and scene.info["geom"][shapes[i, k]] == geom[0, 0]
+            agree += bool(same)
+    assert agree >= 0.99 * distance.size
+
+
+def test_cells_of_meshio():
+    meshio = pytest.importorskip("meshio")
+    grid = np.array([[x, y, z] for x in range(3) for y in range(2) for z in range(2)], dtype=float)
+    number = {tuple(p): i for i, p in enumerate(grid.astype(int).tolist())}
+    cube = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = [[number[x + by, y, z] for x, y, z in cube] for by in (0, 1)]
+    scene = caplet.from_meshio(meshio.Mesh(grid, [("hexahedron", np.array(cells)), ("line", np.array([[0, 11], [1, 2]]))]), radius=0.1)
+    assert scene.primitives == {"triangle": 20, "capsule": 2}  # ten faces: that between the cubes is none
+    hits = caplet.trace(scene, (-5, 0.4, 0.3), (1, 0, 0), mode="all")
+    faces = hits[[scene.shapes[i] == "faces" for i in hits["shape"]]]
+    assert faces["t"].tolist() == [5, 7]
+    tetra = caplet.from_meshio(meshio.Mesh(np.eye(4)[:, :3], [("tetra", np.array([[3, 0, 1, 2]]))]))
+    assert tetra.primitives == {"triangle": 4}
+    with pytest.raises(caplet.InputError, match="triangle6"):
+        caplet.from_meshio(meshio.Mesh(np.zeros((6, 3)), [("triangle6", np.arange(6)[None])]))
+
+
+def test_neurons_of_morphio():
+    morphio = pytest.importorskip("morphio")
+    path = os.path.join(os.environ["CAPLET_SCENES"], "neuron.swc")
+    neuron = morphio.Morphology(path)
+    scene = caplet.from_morphio(neuron)
+    sections = list(neuron.iter())
+    assert len(scene["neurites"]) == sum(len(one.points) - 1 for one in sections)
+    first = sections[0]
+    assert np.array_equal(scene["neurites"].p0[0], first.points[0]) and scene.info["type"][0] == int(first.type)
+    assert np.allclose(scene["neurites"].radius[0], first.diameters[:2] / 2)
+    assert scene["soma"].radius[0, 0] == pytest.approx(neuron.soma.diameters[0] / 2)
+    # What the program reads has these segments, and those to the soma.
+    own = caplet.load(path)
+    assert 0 <= own.primitives["capsule"] - len(scene["neurites"]) <= len(neuron.root_sections)
+
+
+def test_pictures_without_noise():
+    pytest.importorskip("pyoidn")
+    scene = caplet.Scene()
+    scene.add("sphere", radius=1, color=(0.7, 0.4, 0.2))
+    scene.add_boxes((-3, -1.2, -3), (3, -1, 3), color=(0.5, 0.5, 0.5))
+    noisy, good = caplet.render(scene, spp=2, size=(96, 64)), caplet.render(scene, spp=256, size=(96, 64), seed=5)
+    clean = caplet.denoise(noisy)
+    assert clean.shape == (64, 96, 3) and clean.dtype == np.float32
+    assert np.abs(clean - good.rgb).mean() < 0.6 * np.abs(noisy.rgb - good.rgb).mean()

@@ -2,9 +2,12 @@
 # Copyright Caplet authors
 """From and to other packages, which are imported when they are asked for."""
 from .gemmi import from_gemmi
-from .images import to_xarray
-from .meshes import from_trimesh
+from .images import denoise, to_xarray
+from .lidar import lidar
+from .meshes import from_meshio, from_trimesh
 from .mujoco import from_mujoco, update_mujoco
+from .neurons import from_morphio
 from .streamlines import from_nibabel
 
-__all__ = ["from_gemmi", "from_mujoco", "from_nibabel", "from_trimesh", "to_xarray", "update_mujoco"]
+__all__ = ["denoise", "from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_nibabel", "from_trimesh", "lidar", "to_xarray",
+           "update_mujoco"]
