@@ -254,7 +254,7 @@ def test_a_scanner_measures_a_ball():
     cosine = np.outer(np.cos(np.deg2rad(above)), np.cos(np.deg2rad(around)))
     inside = 1 - 25 * (1 - cosine**2)
     expected = np.where((inside > 0) & (cosine > 0), 5 * cosine - np.sqrt(np.maximum(inside, 0)), np.inf)
-    assert distance.shape == (3, 4) and np.isfinite(expected).sum() == 5
+    assert distance.shape == (3, 4) and np.isfinite(expected).sum() == 6
     assert np.allclose(distance, expected, atol=1e-5)
     assert (shapes == np.where(np.isfinite(expected), 0, 2**32 - 1)).all()
     # Turned by a quarter about z: what was ahead is now to the right of a scanner that looks along y.
