@@ -165,9 +165,6 @@ Scene import_tck(const std::filesystem::path& path, const ImageReader&, const Im
 Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_trx(path), path, options, {kStreamline, ColorBy::direction, "z", false});
 }
-Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trx(path), path, options, {kStreamline, ColorBy::direction, "z", false});
-}
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_vtk(read_file(path, {}), path.string()), path, options, {0, ColorBy::direction, "z", false});
 }
