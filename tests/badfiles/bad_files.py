@@ -29,7 +29,7 @@ WORDS = (b"1000000000", b"-1", b"1e400", b"nan", b"18446744073709551616", b"", b
 
 def formats():
     """(name, first ending) of each row."""
-    rows = re.findall(r'^IMPORTER\(\w+, "([^"]+)", OPTIONS\([^)]*\), "([^"]+)"', (ROOT / "host/import/importers.def").read_text(), re.M)
+    rows = re.findall(r'^(?:FULL_)?IMPORTER\(\w+, "([^"]+)", OPTIONS\([^)]*\), "([^"]+)"', (ROOT / "host/import/importers.def").read_text(), re.M)
     assert len(rows) >= 20, rows
     return rows
 
