@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <ranges>
 
 #include "import/detail/mjcf.h"
 #include "import/detail/text_file.h"
@@ -46,8 +45,8 @@ template <class Use>
 void Element::levels(Use&& use) const {
   if (use(node_)) return;
   for (const Class* at = class_; at; at = at->parent)
-    for (const pugi::xml_node element : std::views::reverse(at->elements))
-      if (std::string_view(element.name()) == tag_ && use(element)) return;
+    for (auto element = at->elements.rbegin(); element != at->elements.rend(); ++element)
+      if (std::string_view(element->name()) == tag_ && use(*element)) return;
 }
 
 pugi::xml_attribute Element::attribute(const char* name) const {
@@ -84,7 +83,7 @@ std::vector<double> Element::numbers(const char* name, std::size_t least, std::v
       said.push_back(numbers_of(found.value(), least, most, model_->place(node), name));
     return !said.empty() && said.back().size() == most;
   });
-  for (const std::vector<double>& values : std::views::reverse(said)) std::ranges::copy(values, otherwise.begin());
+  for (auto values = said.rbegin(); values != said.rend(); ++values) std::ranges::copy(*values, otherwise.begin());
   return otherwise;
 }
 
