@@ -5,20 +5,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <string_view>
+
+#include "base/spelling.h"
 
 namespace caplet {
 
 namespace {
 
 using Devices = std::vector<DeviceInfo>;
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 [[noreturn]] void refuse(const std::string& message, const Devices& devices) {
   std::string list;

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/spelling.h"
 #include "film/detail/image_files.h"
 
 namespace caplet {
@@ -20,12 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_exr(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".exr";
-}
+bool is_exr(const fs::path& path) { return lower_case(path.extension().string()) == ".exr"; }
 
 /// The channels that stand for red, green and blue: the main layer's, else luminance, else the first layer with all three, else a
 /// single channel.

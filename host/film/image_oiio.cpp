@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/spelling.h"
 #include "film/detail/image_files.h"
 #include "film/detail/limits.h"
 #include "film/transfer.h"
@@ -174,9 +174,7 @@ bool can_write(const std::filesystem::path& path) {
 }
 
 bool can_hold(const std::filesystem::path& path, int width, int height) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(path.extension().string());
   for (const Limit& limit : limits)
     if (limit.extension == extension) return width <= limit.side && height <= limit.side;
   // The other formats say so when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -13,6 +12,7 @@
 #include <system_error>
 
 #include "base/log.h"
+#include "base/spelling.h"
 #include "import/detail/color_map.h"
 #include "import/look.h"
 #include "present/lights.h"
@@ -24,11 +24,6 @@ namespace caplet {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// What people have of these fields and no importer reads, with what helps.
 constexpr std::pair<const char*, const char*> not_read[] = {
@@ -98,11 +93,8 @@ void tell_range(const ValueRange& range, const ImportOptions& options) {
 
 /// What the colours of a colour map tell.
 Legend legend_of(const ValueRange& range, const ImportOptions& options) {
-  constexpr int steps = 64;
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
-  Legend out{range.what, "", low, high, {}};
-  for (int step = 0; step < steps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (steps - 1)));
-  return out;
+  return viridis_legend(range.what, "", low, high);
 }
 
 Scene validated(Scene scene) {
@@ -141,16 +133,6 @@ std::vector<std::string> names_of(std::span<const fs::path> paths) {
   return out;
 }
 
-/// What pictures know shapes by begins with the name of their file.
-void put_names(Scene& scene, const std::string& stem, const std::string& name) {
-  const auto rename = [&](std::string& one) { one = one.empty() || one == stem ? name : name + ": " + one; };
-  for (Shape& shape : scene.shapes) rename(shape.name);
-  for (Object& object : scene.objects) {
-    rename(object.name);
-    for (Shape& shape : object.shapes) rename(shape.name);
-  }
-}
-
 Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   std::optional<std::size_t> with_camera;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -160,10 +142,12 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
                        "brings a camera, as " + paths[*with_camera].string() + " does: of several files one at most may");
     if (files[i].has_camera) with_camera = i;
   }
-  // Without a camera the first that is more than geometry says size and samples.
-  std::size_t head = with_camera.value_or(0);
-  for (std::size_t i = files.size(); !with_camera && i-- > 0;)
-    if (!files[i].scene.film.filename.empty() || files[i].is_lit) head = i;
+  // Without a camera the first that is more than geometry says size and samples; where all are no more, the format that asks for
+  // most does.
+  std::optional<std::size_t> settings = with_camera;
+  for (std::size_t i = 0; i < files.size() && !settings; ++i)
+    if (!files[i].scene.film.filename.empty() || files[i].is_lit) settings = i;
+  const std::size_t head = settings.value_or(0);
   Scene scene;
   {
     const Scene& from = files[head].scene;
@@ -176,8 +160,12 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     scene.has_no_up = std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
     scene.world_from_file = from.world_from_file;
     if (std::ranges::all_of(files, [&](const Imported& file) { return file.scene.unit == from.unit; })) scene.unit = from.unit;
-    for (const Imported& file : files)
+    for (const Imported& file : files) {
       if (!scene.legend) scene.legend = file.scene.legend;
+      if (settings) continue;
+      scene.film.least_width = std::max(scene.film.least_width, file.scene.film.least_width);
+      scene.sampler.samples_per_pixel = std::max(scene.sampler.samples_per_pixel, file.scene.sampler.samples_per_pixel);
+    }
   }
   Imported out(std::move(scene));
   out.has_camera = with_camera.has_value();
@@ -185,7 +173,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     Scene& part = files[i].scene;
     out.is_lit |= files[i].is_lit;
-    put_names(part, paths[i].stem().string(), names[i]);
+    prefix_names(part, names[i], paths[i].stem().string());  // what pictures know shapes by
     const Appended at = append(out.scene, std::move(part));
     if (i == head && out.scene.camera.medium) *out.scene.camera.medium += at.media;
     part = {};

@@ -69,14 +69,7 @@ void Parser::shapes_of_file(const std::string& type, Parameters& given) {
   part.lights.clear();
   if (!own_materials) take_off_materials(part);
   const std::size_t first_shape = scene_.shapes.size(), first_instance = scene_.instances.size();
-  const auto rename = [&](std::string& one) {
-    if (!prefix.empty()) one = one.empty() ? prefix : prefix + ": " + one;
-  };
-  for (Shape& shape : part.shapes) rename(shape.name);
-  for (Object& object : part.objects) {
-    rename(object.name);
-    for (Shape& shape : object.shapes) rename(shape.name);
-  }
+  if (!prefix.empty()) prefix_names(part, prefix);
   const Appended added = append(scene_, std::move(part));
   std::map<std::uint32_t, std::uint32_t> uses;
   const auto visit = [&](Shape& shape, bool is_instanced) {

@@ -22,7 +22,7 @@ namespace caplet {
 namespace {
 
 constexpr int kSoma = 1;
-constexpr int kMapSteps = 64, kMostOrders = 256;  // colours of a map; whole numbers that have one each
+constexpr int kMostOrders = 256;  // whole numbers that have a colour each
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// `value(sample, parent's value)` of each sample, parents before children.
@@ -205,7 +205,7 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
   const auto asked = options.range("range");
   low_ = asked ? asked->first : range.low;
   high_ = asked ? asked->second : range.high;
-  steps_ = kMapSteps;
+  steps_ = map_steps;
   if (by == "order" && high_ - low_ < kMostOrders && std::floor(low_) == low_ && std::floor(high_) == high_)
     steps_ = static_cast<int>(high_ - low_) + 1;
   index_.assign(static_cast<std::size_t>(steps_), -1);

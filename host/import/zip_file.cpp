@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 
 namespace caplet {
@@ -19,12 +20,6 @@ namespace {
 
 constexpr std::int64_t kMostFiles = 100'000;
 constexpr std::size_t kPiece = std::size_t{1} << 20;
-
-char lower(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; }
-
-bool same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
-}
 
 zip_t* archive(const std::shared_ptr<void>& file) { return static_cast<zip_t*>(file.get()); }
 
@@ -51,7 +46,8 @@ ZipFile::ZipFile(const std::filesystem::path& path) : path_(path) {
 void ZipFile::fail(const std::string& message) const { throw InputError({path_.string(), 0, 0}, message); }
 
 std::optional<std::string> ZipFile::find(std::string_view name) const {
-  const auto found = std::ranges::find_if(names_, [&](const std::string& other) { return same_name(other, name); });
+  const std::string wanted = lower_case(std::string(name));
+  const auto found = std::ranges::find_if(names_, [&](const std::string& other) { return lower_case(other) == wanted; });
   return found == names_.end() ? std::nullopt : std::optional(*found);
 }
 

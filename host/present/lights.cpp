@@ -83,6 +83,11 @@ std::shared_ptr<const EnvironmentImage> light_preset(const std::string& name) {
   return name == studio_preset ? studio_image() : name == dramatic_preset ? hard : nullptr;
 }
 
+bool is_preset(const Light& light) {
+  const auto* infinite = std::get_if<InfiniteLight>(&light.model);
+  return infinite && infinite->image && !infinite->image->preset.empty();
+}
+
 glm::dmat3 around(const Camera& camera) {
   glm::dmat3 axes(camera.world_from_camera);
   for (int k = 0; k < 3; ++k)

@@ -22,6 +22,9 @@ std::vector<std::string> light_presets();
 std::shared_ptr<const EnvironmentImage> light_preset(const std::string& name);
 std::shared_ptr<const EnvironmentImage> studio_image();
 
+/// Whether a light is a preset, which goes with the camera.
+bool is_preset(const Light& light);
+
 /// InfiniteLight::world_from_light of one that stands around this camera.
 glm::dmat3 around(const Camera& camera);
 

@@ -165,8 +165,7 @@ void set_light(Scene& scene, const std::string& name, const std::string& flag) {
 
 void turn_lights_to_camera(Scene& scene) {
   for (Light& light : scene.lights)
-    if (auto* sky = std::get_if<InfiniteLight>(&light.model); sky && sky->image && !sky->image->preset.empty())
-      sky->world_from_light = around(scene.camera);
+    if (is_preset(light)) std::get<InfiniteLight>(light.model).world_from_light = around(scene.camera);
 }
 
 }  // namespace caplet

@@ -26,7 +26,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double radians(double degrees) { return degrees * kPi / 180; }
 
 constexpr double kFieldOfView = radians(35);  // of the shorter side
-constexpr double kMargin = 0.05;              // of the half image, on each side
 /// Thinner than this part of its middle extent, a scene counts as flat (extents as standard deviations along the principal axes).
 constexpr double kFlat = 0.35;
 
@@ -223,7 +222,7 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
     low = glm::min(low, p - ball.radius);
     high = glm::max(high, p + ball.radius);
   }
-  const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - kMargin);
+  const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - frame_margin);
   const double width = scene.film.width, height = scene.film.height;
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
   if (!(per_pixel > 0)) per_pixel = 1 / width;  // a point
@@ -245,7 +244,7 @@ void frame_camera(Scene& scene) {
   // A ball is inside a side of the view pyramid when its centre is one radius behind the plane. With the plane's angle a to the
   // axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and -cos(a) x - sin(a) z >= L, R and L being the largest of
   // +-cos(a) cx - sin(a) cz + r; both are equal when x is centred, which gives the nearest apex.
-  const double half = std::tan(kFieldOfView / 2) * (1 - kMargin);
+  const double half = std::tan(kFieldOfView / 2) * (1 - frame_margin);
   struct Side {
     double sine, cosine, right, left;
   };
@@ -287,9 +286,10 @@ void move_camera(Scene& scene, const Camera& to) {
   const glm::dmat3 turn = glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
   scene.camera = to;
   for (Light& light : scene.lights)
-    if (auto* infinite = std::get_if<InfiniteLight>(&light.model);
-        infinite && infinite->image && !infinite->image->preset.empty())
-      infinite->world_from_light = turn * infinite->world_from_light;
+    if (is_preset(light)) {
+      auto& infinite = std::get<InfiniteLight>(light.model);
+      infinite.world_from_light = turn * infinite.world_from_light;
+    }
 }
 
 glm::dvec3 palette_color(std::size_t index) {

@@ -20,6 +20,9 @@ void add_presentation(Scene& scene);
 /// Whether anything gives light: a light, or a shape that emits.
 bool is_lit(const Scene& scene);
 
+/// What an automatic camera leaves free around all that it sees, on each side, of the half image.
+inline constexpr double frame_margin = 0.05;
+
 /// Points the camera at the shapes and moves it so that they just fit the film's size, with a margin; sets automatic_camera. To
 /// be called again when the film's size has changed. Scene::framing says from where, which way up, and whether in perspective;
 /// where it does not, flat scenes are seen face-on with a slight tilt, others three-quarter, by the shapes alone.

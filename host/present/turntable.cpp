@@ -9,12 +9,14 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "present/lights.h"
+#include "present/present.h"
+
 namespace caplet {
 
 namespace {
 
-constexpr double kMargin = 0.05;  // of the half image, on each side
-constexpr int kSides = 64;        // of the rims that are to be seen; a polygon around the circle
+constexpr int kSides = 64;  // of the rims that are to be seen; a polygon around the circle
 
 /// What turns: the least cylinder around the axis.
 struct Swept {
@@ -84,7 +86,7 @@ void Turntable::step_back(const Scene& scene) {
       glm::normalize(glm::cross(axis_, std::abs(axis_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(axis_, across);
   const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
-  const double half = std::tan(camera_.fov / 2) * (1 - kMargin);
+  const double half = std::tan(camera_.fov / 2) * (1 - frame_margin);
   const double rim = swept.radius / std::cos(std::numbers::pi / kSides);
   double distance = 0;
   for (const double along : {swept.low, swept.high})
@@ -110,10 +112,7 @@ Camera Turntable::camera(std::uint32_t number, std::uint32_t count) const {
   return out;
 }
 
-bool Turntable::turns(const Light& light) const {
-  const auto* infinite = std::get_if<InfiniteLight>(&light.model);
-  return is_automatic_ && infinite && infinite->image && !infinite->image->preset.empty();
-}
+bool Turntable::turns(const Light& light) const { return is_automatic_ && is_preset(light); }
 
 Light Turntable::turned(const Light& light, std::uint32_t number, std::uint32_t count) const {
   Light out = light;

@@ -114,6 +114,15 @@ class Appending {
 
 }  // namespace
 
+void prefix_names(Scene& scene, const std::string& name, const std::string& itself) {
+  const auto rename = [&](std::string& one) { one = one.empty() || one == itself ? name : name + ": " + one; };
+  for (Shape& shape : scene.shapes) rename(shape.name);
+  for (Object& object : scene.objects) {
+    rename(object.name);
+    for (Shape& shape : object.shapes) rename(shape.name);
+  }
+}
+
 Appended append(Scene& to, Scene part) { return Appending(to, part).run(); }
 
 }  // namespace caplet

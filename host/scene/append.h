@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "scene/scene.h"
 
@@ -19,5 +20,8 @@ struct Appended {
 /// Adds what `part` consists of, its lights among it; `to` keeps its camera, film and settings. A diffuse material without
 /// textures that is there already, by its name and colour, is not added again.
 Appended append(Scene& to, Scene part);
+
+/// Puts `name` and a colon before the names of shapes and objects; those without a name, or called `itself`, get `name` alone.
+void prefix_names(Scene& scene, const std::string& name, const std::string& itself = "");
 
 }  // namespace caplet

@@ -103,6 +103,19 @@ TEST(SeveralFiles, AScenesCameraAndLightsCountForAll) {
   EXPECT_TRUE(std::holds_alternative<PointLight>(scene.lights[0].model));
 }
 
+// What a format asks for its thin branches does not depend on the order of files; what a scene says does not change.
+TEST(SeveralFiles, AreDrawnAsTheMostDemandingOfThemAsks) {
+  const fs::path neuron_file = write_file("one.swc", neuron(0)), mesh = write_file("tri.off", triangle);
+  for (const Paths& paths : {Paths{neuron_file, mesh}, Paths{mesh, neuron_file}}) {
+    const Scene scene = several(paths);
+    EXPECT_EQ(scene.film.least_width, 1.5) << paths[0];
+    EXPECT_EQ(scene.sampler.samples_per_pixel, 64) << paths[0];
+  }
+  const Scene scene = several({neuron_file, write_file("scene.pbrt", pbrt_with_camera)});
+  EXPECT_EQ(scene.film.least_width, 0);
+  EXPECT_EQ(scene.sampler.samples_per_pixel, 16);
+}
+
 // Everything that names something by its number names the same as before.
 TEST(SeveralFiles, KeepWhatTheirThingsReferTo) {
   const fs::path path = write_file("scene.pbrt", pbrt_with_camera);

@@ -9,16 +9,13 @@ import base64
 import contextlib
 import itertools
 import json
-import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
-import traceback
 
-from page_test import PATIENCE, SKIPPED, editable, mean_difference, viewer
+from page_test import PATIENCE, SKIPPED, editable, main, mean_difference, viewer
 
 try:
     import websocket
@@ -26,7 +23,6 @@ except ImportError:
     print("SKIPPED: no WebSocket for Python (python3-websocket)")
     sys.exit(SKIPPED)
 
-FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
 ENTER, CONTROL, LEFT = "\ue007", "\ue009", "\ue012"  # https://www.w3.org/TR/webdriver/#keyboard-actions
 
 
@@ -34,7 +30,7 @@ class Page:
     """A tab of a Firefox of its own."""
 
     def __init__(self, address, folder):
-        self.process = subprocess.Popen([FIREFOX, "--headless", "--no-remote", "--profile", folder, "--width", "1000", "--height", "640", "--remote-debugging-port", "0"],
+        self.process = subprocess.Popen(["firefox-esr", "--headless", "--no-remote", "--profile", folder, "--width", "1000", "--height", "640", "--remote-debugging-port", "0"],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         for line in self.process.stderr:
             where = re.search(r"WebDriver BiDi listening on (ws://\S+)", line)
@@ -230,26 +226,5 @@ def edits(program, scenes, out):
 CASES = [converges, camera, inspects, edits]
 
 
-def main(arguments):
-    if len(arguments) < 3:
-        print(__doc__)
-        return 2
-    program, scenes, out = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
-    if not FIREFOX:
-        print("SKIPPED: no Firefox (firefox-esr)")
-        return SKIPPED
-    out.mkdir(parents=True, exist_ok=True)
-    failed = []
-    for case in CASES if len(arguments) == 3 else [case for case in CASES if case.__name__ in arguments[3:]]:
-        start = time.monotonic()
-        try:
-            case(program, scenes, out)
-        except Exception:  # the next cases shall run too
-            traceback.print_exc()
-            failed.append(case.__name__)
-        print(f"{case.__name__}: {'FAILED' if case.__name__ in failed else 'passed'}, {time.monotonic() - start:.1f} s", flush=True)
-    return 1 if failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(sys.argv[1:], __doc__, CASES, browser="firefox-esr", package="firefox-esr"))

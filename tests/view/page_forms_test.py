@@ -338,5 +338,4 @@ def figures(program, scenes, out):
 CASES = [forms, shapes, hides, cameras, handles, within_reach]
 
 if __name__ == "__main__":
-    page_test.CASES, page_test.figures, page_test.__doc__ = CASES, figures, __doc__
-    sys.exit(page_test.main(sys.argv[1:]))
+    sys.exit(page_test.main(sys.argv[1:], __doc__, CASES, figures))

@@ -648,17 +648,18 @@ def figures(program, scenes, out):
 CASES = [converges, camera, picks, picks_everywhere, edits, saves, keeps, asks_about_older_changes, asks_before_changes_are_lost, read_only, keeps_strangers_out, comes_back, two_pages]
 
 
-def main(arguments):
+def main(arguments, usage, cases, *others, browser="chromedriver", package="chromium-driver"):
+    """Runs the cases, or of them and the others those that are named."""
     if len(arguments) < 3:
-        print(__doc__)
+        print(usage)
         return 2
     program, scenes, out = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
-    if not shutil.which("chromedriver"):
-        print("SKIPPED: no chromedriver (chromium-driver)")
+    if not shutil.which(browser):
+        print(f"SKIPPED: no {browser} ({package})")
         return SKIPPED
     out.mkdir(parents=True, exist_ok=True)
     failed = []
-    for case in CASES if len(arguments) == 3 else [case for case in [*CASES, figures] if case.__name__ in arguments[3:]]:
+    for case in cases if len(arguments) == 3 else [case for case in [*cases, *others] if case.__name__ in arguments[3:]]:
         start = time.monotonic()
         try:
             case(program, scenes, out)
@@ -670,4 +671,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(sys.argv[1:], __doc__, CASES, figures))

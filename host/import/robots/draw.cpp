@@ -61,12 +61,7 @@ class Drawing {
 
   /// After everything else, whose size endless planes depend on.
   void finish() {
-    Bounds bounds;
-    for (const Shape& shape : scene_.shapes) {
-      const Bounds one = bounds_of(shape);
-      bounds.extend(one.min);
-      bounds.extend(one.max);
-    }
+    const Bounds bounds = bounds_of(scene_);
     const bool alone = scene_.shapes.empty();
     const glm::dvec3 middle = alone ? glm::dvec3(0) : (bounds.min + bounds.max) / 2.0;
     const double size = alone ? 1 : std::max(glm::length(bounds.max - bounds.min) / 2, 1e-6);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/ply.h"
@@ -109,11 +110,7 @@ constexpr std::string_view kEndings[] = {".stl", ".obj", ".msh", ".dae", ".ply",
 
 }  // namespace
 
-std::string lower_case_ending(const std::filesystem::path& path) {
-  std::string out = path.extension().string();
-  std::ranges::transform(out, out.begin(), [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return out;
-}
+std::string lower_case_ending(const std::filesystem::path& path) { return lower_case(path.extension().string()); }
 
 bool is_mesh_file(const std::filesystem::path& path) {
   return std::ranges::find(kEndings, lower_case_ending(path)) != std::end(kEndings);
