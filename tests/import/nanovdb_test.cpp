@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "import_text.h"
@@ -100,7 +99,7 @@ std::string file_of(const std::string& name, const Memory& of, bool zipped, cons
   out.bytes.insert(out.bytes.end(), grid_name.begin(), grid_name.end());
   out.bytes.push_back(0);
   out.bytes.insert(out.bytes.end(), body.begin(), body.end());
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  const std::string path = (test::temporary_folder() / name).string();
   std::ofstream(path, std::ios::binary).write(out.bytes.data(), static_cast<std::streamsize>(out.bytes.size()));
   return path;
 }
@@ -174,7 +173,7 @@ TEST(Nanovdb, RawGridsAreRead) {
   std::memcpy(&first.bytes[40], "temperature", 11);
   std::memcpy(&second.bytes[40], "density", 7);
   second.put<float>(leaf + 96, 3);
-  const std::string path = (std::filesystem::path(testing::TempDir()) / "raw.nvdb").string();
+  const std::string path = (test::temporary_folder() / "raw.nvdb").string();
   const auto write = [&](std::size_t less) {
     std::ofstream out(path, std::ios::binary);
     out.write(first.bytes.data(), static_cast<std::streamsize>(first.bytes.size()));

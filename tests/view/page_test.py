@@ -10,6 +10,7 @@ import csv
 import http.client
 import json
 import math
+import os
 import pathlib
 import random
 import re
@@ -18,6 +19,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import traceback
 import urllib.parse
@@ -659,14 +661,16 @@ def main(arguments, usage, cases, *others, browser="chromedriver", package="chro
         return SKIPPED
     out.mkdir(parents=True, exist_ok=True)
     failed = []
-    for case in cases if len(arguments) == 3 else [case for case in [*cases, *others] if case.__name__ in arguments[3:]]:
-        start = time.monotonic()
-        try:
-            case(program, scenes, out)
-        except Exception:  # the next cases shall run too
-            traceback.print_exc()
-            failed.append(case.__name__)
-        print(f"{case.__name__}: {'FAILED' if case.__name__ in failed else 'passed'}, {time.monotonic() - start:.1f} s", flush=True)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        os.environ["TMPDIR"] = folder  # browsers leave theirs behind
+        for case in cases if len(arguments) == 3 else [case for case in [*cases, *others] if case.__name__ in arguments[3:]]:
+            start = time.monotonic()
+            try:
+                case(program, scenes, out)
+            except Exception:  # the next cases shall run too
+                traceback.print_exc()
+                failed.append(case.__name__)
+            print(f"{case.__name__}: {'FAILED' if case.__name__ in failed else 'passed'}, {time.monotonic() - start:.1f} s", flush=True)
     return 1 if failed else 0
 
 
