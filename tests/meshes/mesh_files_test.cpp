@@ -18,7 +18,7 @@ using test::complaint;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Every image is one texel.
+/// Every image is one texel; those called "two" are two texels with alpha.
 class OneTexel : public test::NoImages {
  public:
   TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override {
@@ -26,6 +26,11 @@ class OneTexel : public test::NoImages {
     image.width = image.height = 1;
     image.channels = 3;
     image.bytes = {10, 20, 30};
+    if (path.stem() == "two") {
+      image.width = 2;
+      image.channels = 4;
+      image.bytes = {10, 20, 30, 100, 40, 50, 60, 200};
+    }
     for (std::size_t i = 0; i < image.decoded.size(); ++i) image.decoded.at(i) = static_cast<float>(i) / 255.0F;
     image.file = path.string();
     image.encoding = encoding;
@@ -232,6 +237,101 @@ TEST(Gltf, TexturesOfChannels) {
   // v from the bottom is 1 - (4 (1 - v) + 0.5).
   EXPECT_EQ(map("metallic").mapping.vscale, 4);
   EXPECT_EQ(map("metallic").mapping.vdelta, -3.5);
+}
+
+/// A glTF file of one triangle with this material; its textures are "one.png" and "two.png".
+Scene with_material(const std::string& material) {
+  return scene_of("x.gltf", gltf_text(R"([{"mesh":0}])",
+                                      R"(,"images":[{"uri":"one.png"},{"uri":"two.png"}],"textures":[{"source":0},{"source":1}],)"
+                                      R"("materials":[{"name":"it",)" +
+                                          material + "}]",
+                                      R"(,"material":0)"));
+}
+
+// Alpha is that of the base colour, times its factor; what is masked is there or not.
+TEST(Gltf, AlphaModes) {
+  const auto alpha = [](const std::string& mode, const std::string& texture, const std::string& factor) {
+    const Scene scene = with_material(mode + R"("pbrMetallicRoughness":{"baseColorTexture":{"index":)" + texture +
+                                      R"(},"baseColorFactor":[1,1,0.5,)" + factor + "]}");
+    const auto& by = scene.shapes.at(0).alpha;
+    if (!by) return std::vector<float>();
+    if (!by->texture) return std::vector<float>{static_cast<float>(std::get<ConstantSpectrum>(by->value).value)};
+    const Texture& map = scene.textures.at(*by->texture);
+    EXPECT_TRUE(map.is_float);
+    EXPECT_EQ(std::get<ImagemapTexture>(map.model).image->width, 2);
+    return std::get<ImagemapTexture>(map.model).image->floats;
+  };
+  const std::string blend = R"("alphaMode":"BLEND",)", mask = R"("alphaMode":"MASK",)", opaque = R"("alphaMode":"OPAQUE",)";
+  using Values = std::vector<float>;
+  EXPECT_THAT(alpha(blend, "1", "1"), testing::Pointwise(testing::FloatEq(), Values{100 / 255.0F, 200 / 255.0F}));
+  EXPECT_THAT(alpha(blend, "1", "0.5"), testing::Pointwise(testing::FloatEq(), Values{50 / 255.0F, 100 / 255.0F}));
+  EXPECT_EQ(alpha(mask, "1", "1"), (Values{0, 1}));
+  EXPECT_EQ(alpha(mask + R"("alphaCutoff":0.25,)", "1", "1"), (Values{1, 1}));
+  EXPECT_EQ(alpha(mask + R"("alphaCutoff":0.25,)", "1", "0.5"), (Values{0, 1}));
+  EXPECT_EQ(alpha(blend, "0", "1"), Values());
+  EXPECT_EQ(alpha(blend, "0", "0.75"), Values{0.75});
+  EXPECT_EQ(alpha(mask, "0", "0.75"), Values{1});
+  EXPECT_EQ(alpha(mask, "0", "0.25"), Values{0});
+  EXPECT_EQ(alpha(opaque, "1", "0.5"), Values());
+  EXPECT_EQ(alpha("", "1", "0.5"), Values());
+}
+
+TEST(Gltf, ColoursOfTexturesAreTinted) {
+  const Scene scene = with_material(
+      R"("emissiveFactor":[0.5,1,2],"emissiveTexture":{"index":1},"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":4}},)"
+      R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"baseColorFactor":[1,0.5,0.25,1]})");
+  const Material& material = scene.materials.at(scene.shapes.at(0).material);
+  const auto& image = *std::get<ImagemapTexture>(scene.textures.at(*texture_of(material, "base_color")).model).image;
+  EXPECT_EQ(image.channels, 3);
+  EXPECT_THAT(image.floats, testing::Pointwise(testing::FloatEq(), std::vector<float>{10 / 255.0F, 10 / 255.0F, 7.5F / 255,  //
+                                                                                      40 / 255.0F, 25 / 255.0F, 15 / 255.0F}));
+  const AreaEmission& emission = scene.shapes[0].emission.value();
+  EXPECT_TRUE(emission.two_sided);
+  ASSERT_TRUE(emission.image);
+  EXPECT_EQ(emission.image->width, 2);
+  EXPECT_EQ(emission.image->height, 1);
+  EXPECT_THAT(emission.image->rgb,
+              testing::Pointwise(testing::FloatEq(), std::vector<float>{20 / 255.0F, 80 / 255.0F, 240 / 255.0F,  //
+                                                                        80 / 255.0F, 200 / 255.0F, 480 / 255.0F}));
+}
+
+// Colours are (x + 1, y + 1, z + 1) / 2; a scale is of x and y.
+TEST(Gltf, NormalTextures) {
+  const auto map_of = [](const std::string& more) -> std::shared_ptr<const TextureImage> {
+    const Scene scene = with_material(R"("normalTexture":{"index":0)" + more + "}");
+    const auto& map = scene.materials.at(scene.shapes.at(0).material).normalmap;
+    return map ? std::get<NormalmapTexture>(scene.textures.at(*map).model).image : nullptr;
+  };
+  const auto plain = map_of("");
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->encoding.kind, ImageEncoding::Kind::linear);
+  EXPECT_EQ(plain->bytes, (std::vector<std::uint8_t>{10, 20, 30}));
+  const glm::dvec3 n(20 / 255.0 - 1, 40 / 255.0 - 1, 60 / 255.0 - 1);
+  const glm::dvec3 half = glm::normalize(n * glm::dvec3(0.5, 0.5, 1));
+  const auto scaled = map_of(R"(,"scale":0.5)");
+  ASSERT_TRUE(scaled);
+  ASSERT_EQ(scaled->floats.size(), 3U);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(scaled->floats[static_cast<std::size_t>(k)], (half[k] + 1) / 2, 1e-6) << k;
+  EXPECT_FALSE(map_of(R"(,"scale":0)"));
+  EXPECT_FALSE(map_of(R"(,"extensions":{"KHR_texture_transform":{"scale":[2,2]}})"));
+  EXPECT_FALSE(map_of(R"(,"extensions":{"KHR_texture_transform":{"offset":[0,0.5]}})"));
+}
+
+// The picture has the shape of the camera's window.
+TEST(Gltf, OrthographicCameras) {
+  const auto with = [](const std::string& window) {
+    return scene_of("x.gltf",
+                    gltf_text(R"([{"mesh":0,"children":[1]},{"camera":0,"translation":[0,0,4]}])",
+                              R"(,"cameras":[{"type":"orthographic","orthographic":{)" + window + R"("znear":0.1,"zfar":9}}])"));
+  };
+  const Scene scene = with(R"("xmag":4,"ymag":1,)");
+  EXPECT_EQ(scene.camera.fov, 0);
+  EXPECT_EQ(scene.camera.screen_window, (std::array<double, 4>{-4, 4, -1, 1}));
+  EXPECT_EQ(scene.film.height, scene.film.width / 4);
+  EXPECT_FALSE(scene.automatic_camera);
+  EXPECT_EQ(glm::dvec3(scene.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)), glm::dvec3(1, 2, 1));
+  for (const char* bad : {R"("xmag":0,"ymag":1,)", R"("xmag":1,"ymag":0,)", R"("xmag":1,"ymag":1e9,)"})
+    EXPECT_THAT(complaint([&] { with(bad); }), HasSubstr("xmag and ymag")) << bad;
 }
 
 TEST(Gltf, BinaryFiles) {

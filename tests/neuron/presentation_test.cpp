@@ -14,6 +14,7 @@
 #include <random>
 
 #include "import/detail/importers.h"
+#include "present/turntable.h"
 #include "support/import_files.h"
 
 namespace caplet {
@@ -189,6 +190,35 @@ TEST(Studio, ASurfaceFacingTheKeyIsWellExposed) {
   const double shown = 0.6 / std::numbers::pi * irradiance;
   EXPECT_GT(shown, 0.55);
   EXPECT_LT(shown, 0.8);
+}
+
+// Two rims of a cylinder that stands on y, of small balls: all of it is seen in each frame, and in one of them nearly to the
+// margin. The balls' radius is a thousandth of the cylinder's.
+TEST_P(Framing, OfATurntable) {
+  const auto [width, height] = GetParam();
+  CapsulesShape rims;
+  for (const float y : {-3.0F, 2.0F})
+    for (const float x : {-5.0F, 5.0F}) rims.p0.push_back(glm::vec3(x, y, 0) + glm::vec3(7, 8, 9));
+  rims.p1 = rims.p0;
+  rims.radius0.assign(rims.p0.size(), 0.005F);
+  Scene scene = capsules_scene(rims, width, height);
+  const Turntable table(scene);
+  const int count = 48;
+  glm::dvec2 most(0);
+  const Camera first = table.camera(0, count);
+  for (int i = 0; i < count; ++i) {
+    scene.camera = table.camera(static_cast<std::uint32_t>(i), count);
+    most = glm::max(most, reach(scene));
+    // Around the vertical axis through the middle of the bounds, to the camera's right: seen from above against the clock.
+    const double angle = 2 * std::numbers::pi * i / count;
+    const glm::dvec3 middle(7, 7.5, 9), from = glm::dvec3(first.world_from_camera[3]) - middle;
+    const glm::dvec3 to(std::cos(angle) * from.x + std::sin(angle) * from.z, from.y,
+                        -std::sin(angle) * from.x + std::cos(angle) * from.z);
+    EXPECT_LT(glm::length(glm::dvec3(scene.camera.world_from_camera[3]) - middle - to), 1e-4 * glm::length(from)) << i;
+  }
+  // The rims are held by polygons of 64 sides, which are a thousandth wider.
+  EXPECT_LE(std::max(most.x, most.y), 0.951);
+  EXPECT_GE(std::max(most.x, most.y), 0.945);
 }
 
 TEST(Palette, ColoursAreReflectancesAndDiffer) {

@@ -24,6 +24,7 @@ namespace {
 constexpr std::size_t kDeepest = 256;           // nodes within nodes
 constexpr std::size_t kMostNodes = 10'000'000;  // placed: shared children count each time
 constexpr double kLumensPerWatt = 683;          // as Blender's exporter
+constexpr double kHighestPicture = 65535;       // pixels, of an orthographic camera's window
 
 using Json = nlohmann::json;
 
@@ -76,14 +77,19 @@ class GltfReader {
   }
 
   void add_camera(const Json& camera, const glm::dmat4& world) {
-    if (file_.text(camera, "type", "") != "perspective") {
-      Diagnostics().warning({scene_.source, 0, 0}, "an orthographic camera is left out");
-      return;
-    }
     Camera out = scene_.camera;
-    const Json& perspective = file_.object(camera, "perspective");
-    out.fov = file_.number(perspective, "yfov", 0.8);
-    if (!(out.fov > 0 && out.fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
+    if (file_.text(camera, "type", "") == "orthographic") {
+      const Json& window = file_.object(camera, "orthographic");
+      const double x = std::abs(file_.number(window, "xmag", 1)), y = std::abs(file_.number(window, "ymag", 1));
+      const double height = std::round(scene_.film.width * y / x);
+      if (!(height >= 1 && height <= kHighestPicture)) file_.fail("a camera's xmag and ymag are no window");
+      out.fov = 0;
+      out.screen_window = {-x, x, -y, y};
+      scene_.film.height = static_cast<int>(height);
+    } else {
+      out.fov = file_.number(file_.object(camera, "perspective"), "yfov", 0.8);
+      if (!(out.fov > 0 && out.fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
+    }
     // It looks along -z; ours along +z.
     glm::dmat4 rigid(1);
     for (int k = 0; k < 3; ++k) rigid[k] = glm::dvec4(glm::normalize(glm::dvec3(world[k])), 0);

@@ -74,6 +74,23 @@ std::shared_ptr<const TextureImage> tinted(std::shared_ptr<const TextureImage> i
   return out;
 }
 
+/// Normals whose parts along the surface are `scale` times as long, as an image's colours.
+std::shared_ptr<const TextureImage> bent(const TextureImage& image, double scale) {
+  auto out = std::make_shared<TextureImage>();
+  out->width = image.width;
+  out->height = image.height;
+  out->channels = 3;
+  const std::size_t texels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  for (std::size_t i = 0; i < texels; ++i) {
+    glm::dvec3 n;
+    for (int k = 0; k < 3; ++k) n[k] = (2.0 * static_cast<double>(value_of(image, i, k)) - 1) * (k < 2 ? scale : 1);
+    const double length = glm::length(n);
+    n = length > 0 ? n / length : glm::dvec3(0, 0, 1);
+    for (int k = 0; k < 3; ++k) out->floats.push_back(static_cast<float>((n[k] + 1) / 2));
+  }
+  return out;
+}
+
 double within(double value, double low, double high) { return std::clamp(value, low, high); }
 
 }  // namespace
@@ -185,6 +202,19 @@ Look Materials::make(const Json& from) {
     const auto scaled = [](double by) { return [by](float value) { return within(static_cast<double>(value) * by, 0, 1); }; };
     material.textures.push_back({"roughness", add_texture(channel_of(*image, 1, scaled(model.roughness)), both->second, true)});
     material.textures.push_back({"metallic", add_texture(channel_of(*image, 2, scaled(model.metallic)), both->second, true)});
+  }
+  if (const auto map = lookup(from, "normalTexture")) {
+    const std::shared_ptr<const TextureImage> image = this->image(map->first, false);
+    const double scale = file_.number(file_.object(from, "normalTexture"), "scale", 1);
+    if (image->channels < 3) file_.fail("a normal texture is an image in grey, which has no normals");
+    const TextureMapping& to = map->second.mapping;
+    if (to.uscale != 1 || to.vscale != 1 || to.udelta != 0 || to.vdelta != 0)
+      Diagnostics().warning(material.where, "the normal texture of '" + material.name + "' is left out, since it is transformed");
+    else if (scale != 0) {
+      material.normalmap = narrow<std::uint32_t>(scene_.textures.size());
+      scene_.textures.push_back({NormalmapTexture{scale == 1 ? image : bent(*image, scale)}, false,
+                                 fmt::format("image {}", scene_.textures.size()), material.where});
+    }
   }
   const double strength = file_.number(file_.extension(from, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
   const auto emissive = glm::max(file_.vector(from, "emissiveFactor", glm::dvec3(0)), glm::dvec3(0)) * std::max(0.0, strength);
