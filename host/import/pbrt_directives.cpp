@@ -104,10 +104,8 @@ void Parser::multiply(const glm::dmat4& matrix) {
     if (!state_.flat) state_.flat = {where_, directive_ + " has no inverse"};
     return;
   }
-  if (!is_affine(matrix)) {
-    diagnostics_.error(where_, directive_ + " is not affine (its last row must be 0 0 0 1)");
-    return;
-  }
+  if (!is_affine(matrix) && !state_.skewed)
+    state_.skewed = {where_, directive_ + " is not affine (its last row must be 0 0 0 1)"};
   set_transform(state_.ctm * matrix);
 }
 
@@ -126,7 +124,17 @@ void Parser::active_transform() {
 void Parser::concat_transform() { multiply(matrix_argument()); }
 
 void Parser::check_place() {
-  if (state_.flat) diagnostics_.error(state_.flat->where, state_.flat->what, state_.flat->where.to_string());
+  for (const std::optional<Flat>& bad : {state_.flat, state_.skewed})
+    if (bad) diagnostics_.error(bad->where, bad->what, bad->where.to_string());
+}
+
+/// Of a light that has no place, as pbrt-v4: it looks directions up through the inverse, whose last row they do not meet.
+glm::dmat4 Parser::place_of_light(const std::string& type) {
+  if (type != "infinite" || !state_.skewed || state_.flat) {
+    check_place();
+    return state_.ctm;
+  }
+  return glm::dmat4(glm::inverse(glm::dmat3(inverse_of_transform())));
 }
 
 void Parser::transform() {
@@ -150,6 +158,7 @@ void Parser::inverse_transform() {
 void Parser::identity() {
   set_transform(glm::dmat4(1));
   state_.flat.reset();
+  state_.skewed.reset();
 }
 
 void Parser::coordinate_system() {
@@ -163,6 +172,7 @@ void Parser::coord_sys_transform() {
   if (const auto found = coordinate_systems_.find(name); found != coordinate_systems_.end()) {
     set_transform(found->second);
     state_.flat.reset();
+    state_.skewed.reset();
     return;
   }
   diagnostics_.error(place, "unknown coordinate system " + in_quotes(name) + nearest(name, coordinate_systems_));
@@ -202,7 +212,7 @@ void Parser::attribute() {
   static const std::vector<std::string> targets = {"light", "material", "medium", "shape", "texture"};
   const SourceLocation place = lexer_->place(lexer_->peek());
   const std::string target = string_argument("a target");
-  std::vector<Parameter> given = parse_parameters(*lexer_, state_.space, diagnostics_);
+  std::vector<Parameter> given = own_parameters();
   if (std::find(targets.begin(), targets.end(), target) == targets.end()) {
     diagnostics_.error(place, "unknown Attribute target " + in_quotes(target) + "; the nearest known name is \"" +
                                   nearest_name(target, targets) + "\"");
@@ -227,7 +237,8 @@ void Parser::attribute() {
 void Parser::material() {
   std::string type = string_argument("a type");
   if (type.empty() || type == "none") {
-    diagnostics_.warning(where_, "Material " + in_quotes(type) + " is the old name of \"interface\"");
+    const std::string old = "Material " + in_quotes(type) + " is the old name of \"interface\"";
+    warn_of_kind(where_, old, old);
     type = "interface";
   }
   Parameters given = parameters(owner(type), "material");
@@ -303,6 +314,7 @@ void Parser::texture() {
   const SourceLocation class_place = lexer_->place(lexer_->peek());
   const std::string texture_class = string_argument("a class");
   Parameters given = parameters(owner(name), "texture");
+  if (state_.skewed) check_place();
   if (kind != "float" && kind != "spectrum") {
     const std::string old = v3_name("Texture", kind), said = "a texture is \"float\" or \"spectrum\", not " + in_quotes(kind);
     diagnostics_.error(kind_place, said + (old.empty() ? "" : ": that is " + old), said);
@@ -323,9 +335,9 @@ void Parser::texture() {
 void Parser::light_source() {
   const std::string type = string_argument("a type");
   Parameters given = parameters(owner(type), "light");
-  check_place();
+  const glm::dmat4 world_from_light = place_of_light(type);
   if (!check_name("LightSource", type, where_, diagnostics_)) return;
-  if (auto light = make_light(type, given, state_.ctm, light_files_)) scene_.lights.push_back(std::move(*light));
+  if (auto light = make_light(type, given, world_from_light, light_files_)) scene_.lights.push_back(std::move(*light));
 }
 
 void Parser::area_light_source() {

@@ -51,7 +51,8 @@ int parse_integer(const Token& token, const Lexer& lexer) {
   return value;
 }
 
-Lexer::Lexer(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
+Lexer::Lexer(std::string file, std::string text, Lexer* behind)
+    : file_(std::move(file)), text_(std::move(text)), behind_(behind) {
   if (text_.starts_with("\xef\xbb\xbf")) at_ = line_start_ = 3;
 }
 

@@ -232,6 +232,8 @@ std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used)
 void Parser::resolve_materials() {
   const std::vector<std::uint32_t> index_of_statement = make_materials(used_materials());
   std::vector<std::uint32_t> index_of_use(uses_.size(), 0);
+  std::vector<bool> of_shape(uses_.size(), false);
+  each_material(scene_, [&](std::uint32_t& use) { of_shape[use] = true; });
   for (std::size_t i = 1; i < uses_.size(); ++i) {
     const MaterialUse& use = uses_[i];
     if (use.made) {
@@ -241,9 +243,11 @@ void Parser::resolve_materials() {
     const auto named = use.statement ? named_materials_.end() : named_materials_.find(use.name);
     if (use.statement || named != named_materials_.end())
       index_of_use[i] = index_of_statement[use.statement ? *use.statement : named->second];
-    else
+    else if (of_shape[i])
       diagnostics_.error(use.where,
                          "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
+    else  // as pbrt-v4, which looks a name up where a shape has it
+      warn_of_kind(use.where, "the material " + in_quotes(use.name) + " is not defined (no shape has it)", "undefined material");
   }
   take_out_interfaces([&](std::uint32_t number) -> const PartlyThere* {
     const MaterialUse& use = uses_[number];
@@ -358,7 +362,8 @@ void Parser::drop_interfaces(const std::vector<std::uint32_t>& index_of_use) {
     bool all = true;
     each_surface(shape, [&](std::uint32_t use) { all = all && is_interface(use); });
     if (all && shape.emission) {
-      diagnostics_.warning(shape.where, "the shape emits nothing, as its material is \"interface\"");
+      const std::string dark = "the shape emits nothing, as its material is \"interface\"";
+      warn_of_kind(shape.where, dark, dark);
       shape.emission.reset();
     }
     return all && !shape.media.differ();

@@ -13,6 +13,7 @@ namespace caplet::pbrt {
 void Parser::make_named_medium() {
   const std::string name = string_argument("a name");
   Parameters given = parameters(owner(name), "medium");
+  if (state_.skewed) check_place();
   const bool has_type = given.has("type");
   const std::string type = given.text("type", "");
   const auto [at, fresh] = media_.emplace(name, MediumStatement{});

@@ -125,7 +125,7 @@ std::string kind_of(const std::string& refusal) { return refusal.substr(0, refus
 /// Finds a parameter by its name: among the few that a sound statement has one by one, among more by a table.
 class GivenNames {
  public:
-  const Parameter* find(const std::vector<Parameter>& parameters, const std::string& name) {
+  Parameter* find(std::vector<Parameter>& parameters, const std::string& name) {
     constexpr std::size_t few = 32;
     const std::size_t count = parameters.size();
     for (std::size_t i = 0; i < std::min(count, few); ++i)
@@ -138,6 +138,14 @@ class GivenNames {
  private:
   std::unordered_map<std::string, std::size_t> table_;
 };
+
+/// Where the next parameter stands, null when none follows. A statement at the end of an included file goes on behind the
+/// Include, as in pbrt-v4.
+Lexer* at_parameter(Lexer& lexer) {
+  Lexer* at = &lexer;
+  while (at && at->peek().kind == Token::Kind::end) at = at->behind();
+  return at && at->peek().kind == Token::Kind::string ? at : nullptr;
+}
 
 /// Whether values that were given without a type can be of this one. A spectrum of one number is a float, of three an rgb.
 bool suits(const Parameter& parameter, std::string_view type) {
@@ -183,10 +191,11 @@ std::string check_count(const Parameter& parameter, const TypeRow& row) {
 
 }  // namespace
 
-std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnostics& diagnostics) {
+std::vector<Parameter> parse_parameters(Lexer& statement, ColorSpace space, Diagnostics& diagnostics) {
   std::vector<Parameter> parameters;
   GivenNames given;
-  while (lexer.peek().kind == Token::Kind::string) {
+  while (Lexer* const at = at_parameter(statement)) {
+    Lexer& lexer = *at;
     const Token declaration = lexer.next();
     Parameter parameter;
     parameter.where = lexer.place(declaration);
@@ -215,9 +224,15 @@ std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnost
       diagnostics.error(parameter.where, complaint);
       parameter.broken = true;
     }
-    if (const Parameter* first = given.find(parameters, parameter.name)) {
-      diagnostics.error(parameter.where,
-                        "the parameter \"" + parameter.name + "\" is given twice (first at " + first->where.to_string() + ")");
+    if (Parameter* first = given.find(parameters, parameter.name)) {
+      const std::string twice =
+          "the parameter \"" + parameter.name + "\" is given twice (first at " + first->where.to_string() + ")";
+      if (first->type != parameter.type) {
+        diagnostics.error(parameter.where, twice + ", as " + first->type + " and as " + parameter.type);
+        continue;
+      }
+      parameter.again = twice + ": this one counts";
+      *first = std::move(parameter);
       continue;
     }
     parameters.push_back(std::move(parameter));

@@ -86,6 +86,7 @@ Imported Parser::parse(std::string text) {
   resolve_materials();
   finish_attributes();
   resolve_instances();
+  log_warnings();
   diagnostics_.finish();
   scene_.sampler.seed = sampler_seed_.value_or(option_seed_.value_or(0));
   const bool lit = is_lit(scene_);
@@ -96,8 +97,8 @@ Imported Parser::parse(std::string text) {
   return out;
 }
 
-void Parser::parse_file(const std::string& file, std::string text) {
-  Lexer lexer(file, std::move(text));
+void Parser::parse_file(const std::string& file, std::string text, Lexer* behind) {
+  Lexer lexer(file, std::move(text), behind);
   Lexer* const outer = std::exchange(lexer_, &lexer);
   for (bool more = true; more;) {
     try {
@@ -188,17 +189,18 @@ glm::dmat4 Parser::matrix_argument() {
   return matrix;
 }
 
+std::vector<Parameter> Parser::own_parameters() {
+  std::vector<Parameter> own = parse_parameters(*lexer_, state_.space, diagnostics_);
+  for (const Parameter& parameter : own)
+    if (!parameter.again.empty()) warn_of_kind(parameter.where, parameter.again, "parameter given twice");
+  return own;
+}
+
 Parameters Parser::parameters(const std::string& owner, const char* attribute_target) {
   SharedParameters attributes;
   if (attribute_target)
     if (const auto found = state_.attributes.find(attribute_target); found != state_.attributes.end()) attributes = found->second;
-  return {parse_parameters(*lexer_, state_.space, diagnostics_),
-          std::move(attributes),
-          owner,
-          where_,
-          main_file_,
-          state_.space,
-          diagnostics_};
+  return {own_parameters(), std::move(attributes), owner, where_, main_file_, state_.space, diagnostics_};
 }
 
 // --- Files ---
@@ -227,7 +229,7 @@ std::string Parser::included_file() {
   return file;
 }
 
-void Parser::read_included(const std::string& file) {
+void Parser::read_included(const std::string& file, Lexer* behind) {
   std::optional<std::string> text;
   try {
     text = read_text(file, where_);
@@ -239,18 +241,21 @@ void Parser::read_included(const std::string& file) {
     diagnostics_.error(where_, "the same files are included over and over: more than 256 MiB of text that was read before");
     diagnostics_.finish();
   }
-  if (text) parse_file(file, std::move(*text));
+  if (text) parse_file(file, std::move(*text), behind);
   open_files_.pop_back();
 }
 
-void Parser::include() { read_included(included_file()); }
+void Parser::include() {
+  const std::string file = included_file();
+  read_included(file, lexer_);
+}
 
 void Parser::import() {
   const std::string file = included_file();
   const State saved = state_;
   const auto saved_systems = coordinate_systems_;
   const std::size_t outer_floor = std::exchange(block_floor_, blocks_.size());
-  read_included(file);
+  read_included(file, nullptr);
   report_unclosed(block_floor_);
   block_floor_ = outer_floor;
   state_ = saved;
@@ -316,6 +321,19 @@ void Parser::world_begin() {
 }
 
 // --- The end ---
+
+void Parser::warn_of_kind(const SourceLocation& where, const std::string& message, const std::string& kind) {
+  if (const auto found = std::ranges::find(warnings_, kind, &Warning::kind); found != warnings_.end())
+    ++found->others;
+  else
+    warnings_.push_back({where, message, kind});
+}
+
+void Parser::log_warnings() {
+  for (const Warning& one : warnings_)
+    diagnostics_.warning(one.where,
+                         one.message + (one.others > 0 ? " (and " + std::to_string(one.others) + " more of this kind)" : ""));
+}
 
 void Parser::finish_attributes() {
   // An earlier Attribute counts as used where a later one of the same name, which replaced it, was: hence from the end.

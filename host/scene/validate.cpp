@@ -330,6 +330,7 @@ class Validator {
   }
 
   /// A medium needs something that encloses it: a solid, a closed mesh, or several surfaces, which are trusted to do it together.
+  /// One open surface may be a window of a room, whose walls nothing goes through.
   void open_surfaces() {
     std::map<std::pair<std::optional<std::uint32_t>, std::optional<std::uint32_t>>, std::vector<const Shape*>> open;
     const auto add = [&](const std::vector<Shape>& shapes) {
@@ -342,12 +343,15 @@ class Validator {
     for (const auto& [sides, shapes] : open) {
       if (shapes.size() > 1) continue;
       const Shape& shape = *shapes[0];
-      const std::string said = "the medium " + scene_.media[*shape.media.inside].name + " is on an open surface: a " +
-                               geometry_name(shape) + " does not enclose it";
-      if (open_edges(shape) > most_open_edges)
+      const Medium& medium = scene_.media[*shape.media.inside];
+      const std::string said =
+          "the medium " + medium.name + " is on an open surface: a " + geometry_name(shape) + " does not enclose it";
+      if (open_edges(shape) <= most_open_edges)
+        diagnostics_.warning(shape.where, said + " altogether");
+      else if (medium.subsurface)
         error(shape.where, said);
       else
-        diagnostics_.warning(shape.where, said + " altogether");
+        diagnostics_.warning(shape.where, said + "; what goes through it is within");
     }
   }
   static constexpr double most_open_edges = 0.1;  // of a mesh that counts as closed but for holes

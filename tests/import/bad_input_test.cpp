@@ -66,8 +66,6 @@ const Bad bad_scenes[] = {
      "scene.pbrt:1:40: \"integer pixelsamples\": expected an integer, found \"1.5\""},
     {"HugeInteger", "Sampler \"sobol\" \"integer pixelsamples\" 5000000000\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:40: \"integer pixelsamples\": the integer \"5000000000\" is out of range (32 bits)"},
-    {"Duplicate", "WorldBegin\nShape \"sphere\" \"float radius\" 1 \"float radius\" 2",
-     "scene.pbrt:2:33: the parameter \"radius\" is given twice (first at scene.pbrt:2:16)"},
     {"NoValue", "WorldBegin\nShape \"sphere\" \"float radius\" []",
      "scene.pbrt:2:16: the parameter \"float radius\" has no value"},
     {"UnclosedBlock", "WorldBegin\n  AttributeBegin\nShape \"sphere\"", "scene.pbrt:2:3: AttributeBegin is never closed"},

@@ -74,6 +74,20 @@ TEST(Nesting, MeshesHoldMediaByTheirNormals) {
   EXPECT_NEAR(lost(-9, at + sides), 2 * 0.5, near);
 }
 
+// The window of a room: what goes in is within until it comes out again, or is stopped by a wall.
+TEST(Nesting, OneOpenSurfaceLetsIn) {
+  const std::string window =
+      "AttributeBegin ReverseOrientation Material \"interface\" MediumInterface \"b\" \"\" Shape \"disk\" \"float height\" -1 "
+      "AttributeEnd\n";
+  const std::string wall =
+      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool "
+      "twosided\" true Shape \"disk\" \"float height\" 2 AttributeEnd\n";
+  EXPECT_NEAR(lost(-9, window + wall), 0.5 * 3, near);
+  EXPECT_NEAR(lost(-9, window + sphere(0, 0.5, "c", "b") + wall), 0.5 * 2 + 0.9 * 1, near);
+  EXPECT_NEAR(lost(0, window + wall), 0, near);
+  EXPECT_NEAR(lost(-9, "Translate 3 0 0\n" + window + "Translate -3 0 0\n" + wall), 0, near);  // beside it
+}
+
 TEST(Nesting, EveryClosedSolidHoldsAMedium) {
   const std::string in = "MediumInterface \"b\" \"\" ";
   EXPECT_NEAR(lost(-9, in + "Shape \"cylinder\" \"point3 p0\" [0 0 -1] \"point3 p1\" [0 0 1] \"float radius\" 1\n"), 1, near);

@@ -30,7 +30,8 @@ struct Token {
 /// Splits text into words, "strings" and brackets; `#` starts a comment. Columns count bytes from 1.
 class Lexer {
  public:
-  Lexer(std::string file, std::string text);
+  /// `behind`: what follows where this text ends, that of the file which includes it; null: nothing.
+  Lexer(std::string file, std::string text, Lexer* behind = nullptr);
   Lexer(const Lexer&) = delete;
   Lexer& operator=(const Lexer&) = delete;
 
@@ -42,6 +43,7 @@ class Lexer {
   void take_numbers(std::vector<double>& numbers, bool whole);
   SourceLocation place(const Token& token) const { return {file_, token.line, token.column}; }
   const std::string& file() const { return file_; }
+  Lexer* behind() const { return behind_; }
 
  private:
   Token scan();
@@ -50,6 +52,7 @@ class Lexer {
   int column() const { return static_cast<int>(at_ - line_start_) + 1; }
 
   std::string file_, text_;
+  Lexer* behind_;
   std::size_t at_ = 0, line_start_ = 0;
   int line_ = 1;
   Token ahead_;

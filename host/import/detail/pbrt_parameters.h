@@ -32,6 +32,7 @@ struct Parameter {
   std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
   std::vector<bool> bools;
   ColorSpace space = ColorSpace::srgb;
+  std::string again;                       // what to warn of where an earlier one of its statement had its name and type
   bool broken = false;                     // reported already; it counts as given, without a value
   bool used = false;                       // something took its value
   bool consulted = false;                  // an Attribute's: a statement of its target followed
@@ -40,7 +41,7 @@ struct Parameter {
 
 /// Reads the parameters up to the next directive. Errors of single parameters are reported
 /// and the parameter is marked broken.
-std::vector<Parameter> parse_parameters(Lexer& lexer, ColorSpace space, Diagnostics& diagnostics);
+std::vector<Parameter> parse_parameters(Lexer& statement, ColorSpace space, Diagnostics& diagnostics);
 
 enum class SpectrumUse { albedo, unbounded, illuminant };
 

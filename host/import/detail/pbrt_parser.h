@@ -46,6 +46,7 @@ class Parser {
   struct State {
     glm::dmat4 ctm{1};
     std::optional<Flat> flat;           // the first transform in it that has no inverse, and is not in ctm
+    std::optional<Flat> skewed;         // the first that is not affine, and is in ctm: for directions alone
     std::optional<glm::dmat4> inverse;  // of ctm, where the file states that: it is not to be computed from ctm
     bool reverse_orientation = false;
     ColorSpace space = ColorSpace::srgb;
@@ -91,6 +92,11 @@ class Parser {
   struct OpenFile {
     std::string name, canonical;
   };
+  struct Warning {
+    SourceLocation where;
+    std::string message, kind;
+    std::size_t others = 0;
+  };
   struct InstanceUse {
     std::string name;
     glm::dmat4 world_from_object;
@@ -104,13 +110,14 @@ class Parser {
   static const std::vector<Handler>& handlers();
 
   // Reading
-  void parse_file(const std::string& file, std::string text);
+  void parse_file(const std::string& file, std::string text, Lexer* behind = nullptr);
   void parse_statement();
   void skip_to_directive();
   std::string string_argument(const char* what);
   double number_argument();
   glm::dvec3 vector_argument();
   glm::dmat4 matrix_argument();
+  std::vector<Parameter> own_parameters();
   Parameters parameters(const std::string& owner, const char* attribute_target = nullptr);
   std::string owner(const std::string& type) const { return directive_ + " \"" + type + "\""; }
 
@@ -162,17 +169,21 @@ class Parser {
   std::shared_ptr<const TextureImage> texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
                                                     std::string& problem);
   void multiply(const glm::dmat4& matrix);
-  /// Reports the transform where it has no inverse, before something is put there.
+  /// Reports the transform where it has no inverse or is not affine, before something is put there.
   void check_place();
+  glm::dmat4 place_of_light(const std::string& type);
   void set_transform(const glm::dmat4& ctm);
   glm::dmat4 inverse_of_transform() const;
   void open_block();
   void close_block(const std::string& opener);
   void report_unclosed(std::size_t first_block);
   std::string included_file();
-  void read_included(const std::string& file);
+  void read_included(const std::string& file, Lexer* behind);
   std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
   const Object* finished_object(const std::string& name, std::string& problem) const;
+
+  /// Logged at the end: the first of its kind, with the number of the others.
+  void warn_of_kind(const SourceLocation& where, const std::string& message, const std::string& kind);
 
   // At the end
   /// "; the nearest known name is ..." for an error that is shown: one among many does without, as it takes time by their number.
@@ -184,6 +195,7 @@ class Parser {
     for (const auto& [one, value] : map) known.push_back(one);
     return "; the nearest known name is \"" + nearest_name(name, known) + "\"";
   }
+  void log_warnings();
   void finish_attributes();
   std::vector<bool> used_materials();
   std::vector<std::uint32_t> make_materials(const std::vector<bool>& used);
@@ -201,6 +213,7 @@ class Parser {
   const ImageReader& images_;
   LightFiles light_files_;
   Diagnostics diagnostics_;
+  std::vector<Warning> warnings_;
   Scene scene_;
 
   Lexer* lexer_ = nullptr;
