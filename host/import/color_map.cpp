@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 
 #include <algorithm>
 #include <array>
@@ -30,6 +30,13 @@ glm::dvec3 viridis(double part) {
   const double f = at - static_cast<double>(i);
   const glm::dvec3 c = knots.at(i) * (1 - f) + knots.at(i + 1) * f;
   return {decoded_value({}, c.x), decoded_value({}, c.y), decoded_value({}, c.z)};
+}
+
+Legend legend_of(const std::string& title, const std::string& unit, double low, double high) {
+  Legend out{title, unit, low, high, {}};
+  for (int step = 0; step < color_map_steps; ++step)
+    out.colors.push_back(viridis(static_cast<double>(step) / (color_map_steps - 1)));
+  return out;
 }
 
 }  // namespace caplet

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "base/log.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/look.h"
 #include "present/lights.h"
 #include "present/present.h"
@@ -97,12 +97,9 @@ void tell_range(const ValueRange& range, const ImportOptions& options) {
 }
 
 /// What the colours of a colour map tell.
-Legend legend_of(const ValueRange& range, const ImportOptions& options) {
-  constexpr int steps = 64;
+Legend legend_of_range(const ValueRange& range, const ImportOptions& options) {
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
-  Legend out{range.what, "", low, high, {}};
-  for (int step = 0; step < steps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (steps - 1)));
-  return out;
+  return legend_of(range.what, "", low, high);
 }
 
 Scene validated(Scene scene) {
@@ -269,7 +266,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
     for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);
   }
   Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
-  if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
+  if (all.is_there && !scene.legend) scene.legend = legend_of_range(all, options);
   apply_look(scene, images, options,
              std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
   return validated(std::move(scene));

@@ -73,6 +73,27 @@ def numbers(value, name):
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
+def pixels(value, name):
+    """(height, width, channels) of 32-bit floats: of images of bytes, which are a screen's, the linear values; alpha is linear."""
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError) as problem:
+        raise InputError(f"{name}: not an image ({problem})") from None
+    if array.ndim == 2:
+        array = array[:, :, np.newaxis]
+    if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or not array.size or max(array.shape) > 2**15:
+        raise InputError(f"{name}: shape (height, width), (height, width, 3) or 4, of at most 32768 a side, is needed, not {array.shape}")
+    if array.dtype == np.uint8:
+        screen = np.arange(256) / 255
+        linear = np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)
+        out = linear[array]
+        if array.shape[2] == 4:
+            out[:, :, 3] = array[:, :, 3] / 255
+        array = out
+    with np.errstate(over="ignore"):  # what is infinite then is refused
+        return np.ascontiguousarray(floats(array, name), dtype=np.float32)
+
+
 def transform(value, name="transform"):
     """A matrix of 4 x 4, or its first 3 rows, that maps column vectors: 12 numbers."""
     return transforms(value, name, single=True)[0]

@@ -15,7 +15,7 @@
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"
@@ -36,7 +36,6 @@ constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F; 
 constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;                          // of least and most b factor
 constexpr int kTraceSteps = 6;                                                   // capsules from one residue to the next
 constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // what is further apart has something missing between
-constexpr int kMapSteps = 64;
 
 class Painter {
  public:
@@ -63,9 +62,9 @@ class Painter {
       case ColorBy::residue:
         return named(residue.name.empty() ? "residue" : residue.name, [&] { return palette_color(index_.size()); });
       case ColorBy::bfactor: {
-        const int step = static_cast<int>(part(atom) * (kMapSteps - 1) + 0.5F);
-        return named(fmt::format("bfactor {:.4g}", low_ + (high_ - low_) * static_cast<float>(step) / (kMapSteps - 1)),
-                     [&] { return viridis(static_cast<double>(step) / (kMapSteps - 1)); });
+        const int step = static_cast<int>(part(atom) * (color_map_steps - 1) + 0.5F);
+        return named(fmt::format("bfactor {:.4g}", low_ + (high_ - low_) * static_cast<float>(step) / (color_map_steps - 1)),
+                     [&] { return viridis(static_cast<double>(step) / (color_map_steps - 1)); });
       }
     }
     return 0;
@@ -74,9 +73,7 @@ class Painter {
   /// Of the b factors' colours; none of colours that tell no number.
   std::optional<Legend> legend() const {
     if (by_ != ColorBy::bfactor) return std::nullopt;
-    Legend out{"B factor", "\u00c5\u00b2", low_, high_, {}};
-    for (int step = 0; step < kMapSteps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (kMapSteps - 1)));
-    return out;
+    return legend_of("B factor", "\u00c5\u00b2", low_, high_);
   }
 
   std::uint32_t of_element(const Atom& atom) {
