@@ -5,7 +5,7 @@ import numpy as np
 
 from .errors import InputError
 
-_MOST = 2**31 - 1  # of anything, in one array
+MOST = 2**31 - 1  # of anything, in one array
 
 
 def floats(value, name):
@@ -26,8 +26,8 @@ def floats(value, name):
 
 
 def _small(array, name):
-    if array.shape and array.shape[0] > _MOST:
-        raise InputError(f"{name}: {array.shape[0]} rows; at most {_MOST}")
+    if array.shape and array.shape[0] > MOST:
+        raise InputError(f"{name}: {array.shape[0]} rows; at most {MOST}")
     return array
 
 
@@ -71,6 +71,14 @@ def numbers(value, name):
     if array.size and (array.min() < 0 or array.max() > 2**32 - 1):
         raise InputError(f"{name}: numbers from 0 to 2^32 - 1 are needed")
     return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def size(value, name="size"):
+    """(width, height), two whole numbers."""
+    array = floats(value, name)
+    if array.shape != (2,) or not np.isfinite(array).all() or (array != np.floor(array)).any() or abs(array).max() > MOST:
+        raise InputError(f"{name}: a width and a height, whole numbers of pixels, are needed, not {value!r}")
+    return int(array[0]), int(array[1])
 
 
 def pixels(value, name):

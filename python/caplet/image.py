@@ -64,6 +64,8 @@ class Image:
 
     def __getitem__(self, name):
         """One channel by its name, (height, width)."""
+        if not isinstance(name, str):
+            raise InputError(f"a channel's name is needed, not {name!r}")
         if name not in self._cache:
             self._cache[name] = self._film.ids(name) if name.endswith(".id") else self._film.values(name)
         return self._cache[name]
@@ -186,5 +188,7 @@ _describe(Image.png, ("self",))
 
 def load_film(path, scene):
     """A film that save_film wrote, of this scene."""
-    from ._caplet import Film
-    return Image(Film.load(os.fspath(path), scene._native))
+    native = getattr(scene, "_native", None)
+    if not isinstance(native, _caplet.Scene):
+        raise InputError(f"scene: a caplet.Scene is needed, not {type(scene).__name__}")
+    return Image(_caplet.Film.load(os.fspath(path), native))

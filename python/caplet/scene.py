@@ -216,7 +216,7 @@ class Scene:
 
     @size.setter
     def size(self, to):
-        self._native.set_size(*(int(one) for one in to))
+        self._native.set_size(*arrays.size(to))
         self._changed()
 
     def crop(self, x0, y0, x1, y1):
@@ -395,6 +395,8 @@ class Scene:
 
     def set_material(self, which, material):
         """Another material in the place of one, by number or name; its shapes have it at once."""
+        if not isinstance(material, Material):
+            raise InputError(f"material: one of caplet.materials is needed, not {type(material).__name__}")
         self._native.set_material(self._material(which), material.type, self._parameters(material.parameters))
         self._changed()
 
@@ -519,6 +521,8 @@ class Scene:
         if count < 1:
             raise InputError(f"{type}: there are none")
         held = {}
+        if not (each is None or isinstance(each, dict)):
+            raise InputError(f"each: arrays by the parameters' names are needed, not {type(each).__name__}")
         for key, value in (each or {}).items():
             array = arrays.floats(value, key)
             if array.ndim < 1 or array.shape[0] != count:
