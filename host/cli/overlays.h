@@ -10,7 +10,7 @@
 
 namespace caplet::cli {
 
-/// Adds --scale-bar, --outline, --depth-cue, --axes and --color-bar, which go into `overlays`.
+/// Adds an option for each row of post/overlays.def; what they say goes into `overlays`.
 void add_overlays(CLI::App& command, post::Overlays& overlays);
 
 }  // namespace caplet::cli

@@ -526,7 +526,7 @@ void run_render(const Options& options, const Invocation& invocation) {
   apply(overrides, scene);
   if (frames && frames->kind != FrameSource::Kind::turntable) frame_all(options, *frames, overrides, scene);
   check_outputs(options, scene, layers, files);
-  post::check(options.overlays, scene);
+  post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
   widen_to_least(scene);
   seconds.load = phase.lap();

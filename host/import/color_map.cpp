@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 
 #include <algorithm>
 #include <array>

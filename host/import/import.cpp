@@ -13,7 +13,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/look.h"
 #include "present/lights.h"
 #include "present/present.h"

@@ -13,7 +13,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/detail/text_file.h"
 #include "present/present.h"
 

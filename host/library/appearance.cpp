@@ -15,6 +15,7 @@
 
 #include "base/spelling.h"
 #include "film/image.h"
+#include "import/color_map.h"
 #include "scene/texture_visitor.h"
 
 namespace caplet::v0 {
@@ -88,6 +89,8 @@ class Given {
   const Parameters& parameters_;
   std::vector<std::string> asked_;
 };
+
+constexpr int most_texels = 1 << 15;  // a side
 
 /// The greatest number of a spectrum that is given by such.
 double greatest_of(const caplet::Spectrum& spectrum) {
@@ -175,11 +178,34 @@ struct TextureTaker : TextureVisitor {
   void image(std::shared_ptr<const TextureImage>& image) { read(image, {}); }
   void vectors(std::shared_ptr<const TextureImage>& image) { read(image, {ImageEncoding::Kind::linear, 1}); }
   void read(std::shared_ptr<const TextureImage>& image, ImageEncoding encoding) {
+    const auto* pixels = given.get<std::shared_ptr<const Pixels>>("pixels", "an image");
     const std::string* file = given.get<std::string>("filename", "the name of a file");
     if (const std::string* name = given.get<std::string>("encoding", "a name")) encoding = encoding_named(*name);
     if (!reads) return;
+    if (pixels) {
+      if (file || given.find("encoding")) given.wrong("pixels", "alone, without filename and encoding");
+      image = image_of(**pixels);
+      return;
+    }
     if (!file) given.wrong("filename", "there");
     image = std::make_shared<TextureImage>(FileImageReader().read_texture(*file, encoding));
+  }
+  std::shared_ptr<const TextureImage> image_of(const Pixels& pixels) const {
+    const auto wide = static_cast<std::size_t>(pixels.width), tall = static_cast<std::size_t>(pixels.height);
+    if (pixels.width < 1 || pixels.height < 1 || pixels.width > most_texels || pixels.height > most_texels)
+      given.wrong("pixels", fmt::format("an image of 1 to {} pixels a side", most_texels));
+    if (pixels.channels != 1 && pixels.channels != 3 && pixels.channels != 4)
+      given.wrong("pixels", "an image of 1, 3 or 4 channels");
+    if (pixels.values.size() != wide * tall * static_cast<std::size_t>(pixels.channels))
+      given.wrong("pixels", "as many numbers as its sides say");
+    if (!std::ranges::all_of(pixels.values, [](float value) { return std::isfinite(value); })) given.wrong("pixels", "finite");
+    auto out = std::make_shared<TextureImage>();
+    out->width = pixels.width;
+    out->height = pixels.height;
+    out->channels = pixels.channels;
+    out->floats = pixels.values;
+    out->encoding = {ImageEncoding::Kind::linear, 1};
+    return out;
   }
   ImageEncoding encoding_named(const std::string& name) const {
     if (name == "sRGB") return {};
@@ -295,6 +321,11 @@ struct ToModel {
 };
 
 }  // namespace
+
+Rgb color_map(double part) {
+  const glm::dvec3 color = viridis(part);
+  return {color.x, color.y, color.z};
+}
 
 caplet::Spectrum to_model(const Spectrum& spectrum) {
   if (const auto* value = std::get_if<double>(&spectrum)) return ConstantSpectrum{*value};

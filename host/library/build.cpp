@@ -74,6 +74,9 @@ struct ToStatement {
   }
   void operator()(const std::vector<double>& values) const { out.numbers = cut(values); }
   void operator()(const std::vector<std::string>& values) const { out.strings = cut(values); }
+  void operator()(const std::shared_ptr<const Pixels>&) const {
+    throw InputError(fmt::format("'{}' is an image, which textures alone have", out.name));
+  }
 };
 
 /// Texts have none of these.

@@ -9,7 +9,10 @@
 
 #include "base/spelling.h"
 #include "film/develop.h"
+#include "film/preview.h"
 #include "library/detail/inside.h"
+#include "post/overlay.h"
+#include "post/overlay_options.h"
 
 namespace caplet::v0 {
 
@@ -33,9 +36,7 @@ Film::~Film() = default;
 
 const Film::Data& Film::developed() const {
   std::call_once(data_->once, [&] {
-    caplet::Scene settings;
-    settings.film = data_->settings;
-    LayeredImage image = develop(data_->film, settings, data_->film.layout().layers);
+    LayeredImage image = develop(data_->film, data_->sight->scene, data_->film.layout().layers);
     image.metadata = data_->notes;
     data_->image = std::move(image);
   });
@@ -58,14 +59,14 @@ std::vector<SampleRange> Film::samples() const {
 void Film::add(const Film& other) {
   caplet::Film sum = data_->film;
   sum.add(other.data_->film);
-  *this = Inside::film(std::move(sum), data_->settings, data_->notes, data_->render_seconds + other.data_->render_seconds);
+  *this = Inside::film(std::move(sum), data_->sight, data_->notes, data_->render_seconds + other.data_->render_seconds);
 }
 
 void Film::save(const std::filesystem::path& file) const { data_->film.save(file); }
 
 Film Film::load(const std::filesystem::path& file, const Scene& scene) {
   const caplet::Scene& model = *Inside::model(scene);
-  return Inside::film(caplet::Film::load(file), model.film, {{"caplet.scene", model.source}}, 0);
+  return Inside::film(caplet::Film::load(file), std::make_shared<const post::Sight>(model), {{"caplet.scene", model.source}}, 0);
 }
 
 std::vector<std::string> Film::channels() const {
@@ -93,10 +94,24 @@ void Film::write_exr(const std::filesystem::path& file) const {
   caplet::write_exr(file, image, compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
 }
 
-void Film::write_preview(const std::filesystem::path& file) const {
+void Film::write_preview(const std::filesystem::path& file, const OverlayOptions& drawn) const {
   check_preview_format(file, "preview");
   check_preview_size(file, width(), height(), "preview");
-  caplet::write_preview(file, developed().image);
+  post::Overlays asked;
+  for (const auto& [name, value] : drawn) post::set_overlay(asked, name, value, name);
+  post::check(asked, *data_->sight, "");
+  if (!data_->film.layout().layers.has_all(asked.layers()))
+    throw InputError("the film does not have the layers that outlines and the depth cue are drawn from (depth, object)");
+  const LayeredImage& image = developed().image;
+  Shown picture = shown(image);
+  if (asked.any()) post::draw(picture, image, *data_->sight, asked);
+  caplet::write_preview(file, picture);
+}
+
+std::vector<Overlay> overlays() {
+  std::vector<Overlay> out;
+  for (const post::OverlayRow& row : post::overlay_rows()) out.push_back({row.name, row.values, row.help});
+  return out;
 }
 
 }  // namespace caplet::v0

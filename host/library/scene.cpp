@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <numbers>
 
 #include "base/spelling.h"
+#include "import/color_map.h"
 #include "library/detail/appearance.h"
 #include "library/detail/inside.h"
 #include "library/detail/places.h"
@@ -114,6 +118,22 @@ void Scene::set_max_depth(int events) {
 
 std::uint32_t Scene::seed() const { return data_->model.sampler.seed; }
 void Scene::set_seed(std::uint32_t seed) { changed().model.sampler.seed = seed; }
+
+std::string Scene::unit() const { return data_->model.unit; }
+
+void Scene::set_unit(const std::string& unit) {
+  Data& data = changed();
+  data.model.unit = unit;
+  data.as_a_whole_in_view();
+}
+
+void Scene::set_color_bar(const std::string& title, const std::string& unit, double low, double high) {
+  if (!(low <= high) || !std::isfinite(low) || !std::isfinite(high))
+    throw InputError("the ends of a colour bar are two numbers, the first not above the second");
+  Data& data = changed();
+  data.model.legend = viridis_legend(title, unit, low, high);
+  data.as_a_whole_in_view();
+}
 
 std::vector<std::string> Scene::shapes() const {
   std::vector<std::string> out;
@@ -238,8 +258,11 @@ void Scene::set_emission(std::uint32_t shape, const Spectrum& radiance, double s
 }
 
 void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up) {
-  const auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
+  // pbrt's LookAt shows a right-handed world as its mirror image: here only where the camera that is there does so already.
+  const bool is_mirrored = !data_->open_camera && glm::determinant(glm::dmat3(data_->model.camera.world_from_camera)) > 0;
+  auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
   if (!world_from_camera) throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");
+  if (!is_mirrored) (*world_from_camera)[0] *= -1;
   ViewEdit view = view_of(data_->model);
   view.camera.world_from_camera = *world_from_camera;
   apply_edit(changed().model, view);

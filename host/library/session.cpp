@@ -41,14 +41,15 @@ std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t sample
   return done;
 }
 
-Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene) const {
+Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene) {
+  if (!sight_) sight_ = std::make_shared<const post::Sight>(scene);
   caplet::Film film = session.film();
   RenderResult result;
   result.samples_per_pixel = static_cast<int>(film.samples(0));
   result.render_seconds = seconds;
   result.interrupted = interrupted;
   result.devices = session.work();
-  return Inside::film(std::move(film), scene.film, report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
+  return Inside::film(std::move(film), sight_, report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
 }
 
 struct Session::Data {

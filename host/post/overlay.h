@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "film/image.h"
 #include "film/layers.h"
@@ -26,9 +27,10 @@ struct Overlays {
 };
 
 /// Throws InputError naming the option of what the scene cannot have drawn on it.
-void check(const Overlays& overlays, const Scene& scene);
+/// `flags`: what stands before the names, "--" of the program's.
+void check(const Overlays& overlays, const Sight& sight, const std::string& flags);
 
-/// Draws them. `layers`: a picture of the same window with the channels of Overlays::layers().
-void draw(Shown& picture, const LayeredImage& layers, const Scene& scene, const Overlays& overlays);
+/// Draws them, once they are checked. `layers`: a picture of the same window with the channels of Overlays::layers().
+void draw(Shown& picture, const LayeredImage& layers, const Sight& sight, const Overlays& overlays);
 
 }  // namespace caplet::post

@@ -54,6 +54,14 @@ double round_length(double most) {
 
 }  // namespace
 
+Sight::Sight(const Scene& of) : bounds(bounds_of(of)) {
+  scene.camera = of.camera;
+  scene.film = of.film;
+  scene.world_from_file = of.world_from_file;
+  scene.unit = of.unit;
+  scene.legend = of.legend;
+}
+
 ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
   ScaleBar out;
   if (text.empty()) return out;
@@ -66,8 +74,8 @@ ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
   return out;
 }
 
-BarOnPicture bar_of(const ScaleBar& asked, const Scene& scene, const std::string& flag) {
-  const Bounds bounds = bounds_of(scene);
+BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag) {
+  const auto& [scene, bounds] = sight;
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
   const double footprint = pixel_footprint(scene, middle);
   if (!(footprint > 0)) throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");

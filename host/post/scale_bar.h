@@ -11,6 +11,13 @@
 
 namespace caplet::post {
 
+/// What overlays are of: a scene without what it consists of, and the box around its shapes.
+struct Sight {
+  Sight(const Scene& of);
+  Scene scene;  // its camera, film, unit, axes and legend alone
+  Bounds bounds;
+};
+
 struct ScaleBar {
   double length = 0;  // 0: a round one
   std::string unit;   // as people write it; empty: the scene's
@@ -29,6 +36,6 @@ struct BarOnPicture {
 /// The bar on a picture of the scene: what is asked for, or the longest of 1, 2 and 5 times a power of ten that is at most a
 /// quarter of the film's width. Throws InputError naming `flag` when the scene's unit is not of length's or the bar is wider than
 /// the film.
-BarOnPicture bar_of(const ScaleBar& asked, const Scene& scene, const std::string& flag);
+BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag);
 
 }  // namespace caplet::post

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,16 @@ CAPLET_BEGIN
 struct SampleRange {
   std::uint32_t first = 0, count = 0;
 };
+
+/// What may be drawn on a preview.
+struct Overlay {
+  std::string name, values, help;  // values: what may be said of it, as people read it; empty of a switch
+};
+CAPLET_API std::vector<Overlay> overlays();
+
+/// Values of overlays by name, as the program's `render` takes them as --NAME; an empty value is the usual one:
+/// {{"scale-bar", "50 um"}, {"outline", ""}}.
+using OverlayOptions = std::map<std::string, std::string>;
 
 /// The same samples make the same film, to the bit, in whatever order and by however many devices of one kind and runs they came.
 class CAPLET_API Film {
@@ -59,8 +70,9 @@ class CAPLET_API Film {
 
   /// All channels as OpenEXR. The file is replaced as a whole, or is as it was. Throws RunError.
   void write_exr(const std::filesystem::path& file) const;
-  /// Tone-mapped, 8 bits a channel, in the format of the extension. Throws InputError when that is unknown, and RunError.
-  void write_preview(const std::filesystem::path& file) const;
+  /// Tone-mapped, 8 bits a channel, in the format of the extension; with what is drawn on it. Throws InputError when that is
+  /// unknown, or an overlay is, has a wrong value or needs a layer that the film does not have; and RunError.
+  void write_preview(const std::filesystem::path& file, const OverlayOptions& drawn = {}) const;
 
  private:
   friend struct Inside;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -20,6 +21,9 @@ CAPLET_BEGIN
 struct Rgb {
   double r = 0, g = 0, b = 0;
 };
+
+/// The colours that tell numbers (viridis): perceptually even from dark blue at 0 to yellow at 1; beyond, those of the ends.
+CAPLET_API Rgb color_map(double part);
 
 /// The same at all wavelengths, a colour, or a name that pbrt scenes may use: "metal-Au-eta", "glass-BK7", "stdillum-D65".
 using Spectrum = std::variant<double, Rgb, std::string>;
@@ -49,11 +53,18 @@ struct Blackbody {
   double kelvin = 6500;
 };
 
+/// An image of a texture, row by row from the top: `channels` numbers a pixel, 1 of grey, 3 of linear sRGB, 4 with alpha, which
+/// is not multiplied in.
+struct Pixels {
+  int width = 0, height = 0, channels = 3;
+  std::vector<float> values;
+};
+
 /// What a parameter may be: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, the
 /// numbers of two materials; of shapes, lights and media also a black body, many numbers (points one behind the other), or many
-/// names.
+/// names; of textures an image.
 using Parameter = std::variant<double, Rgb, std::string, bool, TextureNumber, std::array<double, 3>, std::array<std::uint32_t, 2>,
-                               Blackbody, std::vector<double>, std::vector<std::string>>;
+                               Blackbody, std::vector<double>, std::vector<std::string>, std::shared_ptr<const Pixels>>;
 using Parameters = std::map<std::string, Parameter>;
 
 /// Any material by the name that scene files have for it: "coateddiffuse", "hair", "principled". Parameters are those that
@@ -65,7 +76,8 @@ struct NamedMaterial {
 };
 
 /// The same of a texture, of floats or of spectra. An imagemap has "filename" and "encoding" ("sRGB", "linear" or "gamma 2.2"),
-/// a mapping "mapping" and its numbers. world_from_texture: three rows of four numbers, of textures that go by points of space.
+/// or "pixels" in place of both; a scene with such cannot be written as text. A mapping "mapping" and its numbers.
+/// world_from_texture: three rows of four numbers, of textures that go by points of space.
 struct NamedTexture {
   std::string type;
   bool is_float = false;

@@ -62,6 +62,13 @@ class CAPLET_API Scene {
   std::uint32_t seed() const;
   void set_seed(std::uint32_t seed);
 
+  /// Of lengths, as people write it: "um"; empty where it is not known. Scale bars tell it.
+  std::string unit() const;
+  void set_unit(const std::string& unit);
+  /// What its colours tell, of a scene that is coloured by color_map: `low` and `high` are the values at 0 and 1. A colour bar
+  /// shows it. Throws InputError for what is not finite and where low is above high.
+  void set_color_bar(const std::string& title, const std::string& unit, double low, double high);
+
   // Edits: what it consists of stays, what that is changes. They throw InputError, and then change nothing, for numbers that
   // there are none of and for values that cannot be rendered. A Session that shows the scene follows them in place.
   /// Names by the shapes' numbers: first those of the world, then those of each object definition. Empty where the file gives
@@ -88,7 +95,8 @@ class CAPLET_API Scene {
   void set_light(std::uint32_t light, const Spectrum& color, double scale);
   /// Of a shape that emits.
   void set_emission(std::uint32_t shape, const Spectrum& radiance, double scale);
-  /// The camera stays where it is put: it is not framed anew any more.
+  /// The camera stays where it is put: it is not framed anew any more. The picture of a right-handed world is no mirror image,
+  /// unless that of the camera before was, as of LookAt in pbrt's text.
   void look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up);
   double fov() const;  // degrees, of the picture's shorter side
   void set_fov(double degrees);

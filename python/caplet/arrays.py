@@ -5,7 +5,7 @@ import numpy as np
 
 from .errors import InputError
 
-_MOST = 2**31 - 1  # of anything, in one array
+MOST = 2**31 - 1  # of anything, in one array
 
 
 def floats(value, name):
@@ -26,8 +26,8 @@ def floats(value, name):
 
 
 def _small(array, name):
-    if array.shape and array.shape[0] > _MOST:
-        raise InputError(f"{name}: {array.shape[0]} rows; at most {_MOST}")
+    if array.shape and array.shape[0] > MOST:
+        raise InputError(f"{name}: {array.shape[0]} rows; at most {MOST}")
     return array
 
 
@@ -71,6 +71,35 @@ def numbers(value, name):
     if array.size and (array.min() < 0 or array.max() > 2**32 - 1):
         raise InputError(f"{name}: numbers from 0 to 2^32 - 1 are needed")
     return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def size(value, name="size"):
+    """(width, height), two whole numbers."""
+    array = floats(value, name)
+    if array.shape != (2,) or not np.isfinite(array).all() or (array != np.floor(array)).any() or abs(array).max() > MOST:
+        raise InputError(f"{name}: a width and a height, whole numbers of pixels, are needed, not {value!r}")
+    return int(array[0]), int(array[1])
+
+
+def pixels(value, name):
+    """(height, width, channels) of 32-bit floats: of images of bytes, which are a screen's, the linear values; alpha is linear."""
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError) as problem:
+        raise InputError(f"{name}: not an image ({problem})") from None
+    if array.ndim == 2:
+        array = array[:, :, np.newaxis]
+    if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or not array.size or max(array.shape) > 2**15:
+        raise InputError(f"{name}: shape (height, width), (height, width, 3) or 4, of at most 32768 a side, is needed, not {array.shape}")
+    if array.dtype == np.uint8:
+        screen = np.arange(256) / 255
+        linear = np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)
+        out = linear[array]
+        if array.shape[2] == 4:
+            out[:, :, 3] = array[:, :, 3] / 255
+        array = out
+    with np.errstate(over="ignore"):  # what is infinite then is refused
+        return np.ascontiguousarray(floats(array, name), dtype=np.float32)
 
 
 def transform(value, name="transform"):

@@ -1,12 +1,47 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """What a render gives: a picture with its layers as arrays."""
+import inspect
+import numbers
 import os
 import tempfile
 
 import numpy as np
 
+from . import _caplet
 from .errors import InputError
+
+
+_OVERLAYS = {name: (values, help) for name, values, help in _caplet.overlays()}  # the program's own, by their names
+
+
+def _drawn(overlays):
+    """What the library takes: {name: text}, of the usual value an empty one."""
+    out = {}
+    for keyword, value in overlays.items():
+        name = keyword.replace("_", "-")
+        if name not in _OVERLAYS:
+            raise TypeError(f"there is no overlay {keyword!r}; there are {', '.join(one.replace('-', '_') for one in _OVERLAYS)}")
+        if value is None or (isinstance(value, (bool, np.bool_)) and not value):
+            continue
+        if isinstance(value, (bool, np.bool_)):
+            out[name] = ""
+        elif isinstance(value, numbers.Real):
+            out[name] = repr(float(value))
+        elif isinstance(value, str) and value:
+            out[name] = value
+        else:
+            raise InputError(f"{keyword}: True, a number or a text is needed, not {value!r}")
+    return out
+
+
+def _describe(method, first):
+    """Gives a method that takes overlays their names and words."""
+    given = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in first]
+    method.__signature__ = inspect.Signature(given + [
+        inspect.Parameter(name.replace("-", "_"), inspect.Parameter.KEYWORD_ONLY, default=None) for name in _OVERLAYS])
+    said = [f"{name.replace('-', '_')}: {help}" for name, (_, help) in _OVERLAYS.items()]
+    method.__doc__ = inspect.cleandoc(method.__doc__) + "\n\n" + "\n".join(said)
 
 
 class Image:
@@ -29,6 +64,8 @@ class Image:
 
     def __getitem__(self, name):
         """One channel by its name, (height, width)."""
+        if not isinstance(name, str):
+            raise InputError(f"a channel's name is needed, not {name!r}")
         if name not in self._cache:
             self._cache[name] = self._film.ids(name) if name.endswith(".id") else self._film.values(name)
         return self._cache[name]
@@ -95,13 +132,17 @@ class Image:
         """Which they are: [(first, count)]."""
         return self._film.samples()
 
-    def save(self, path):
-        """`.exr`: all layers. `.png` and others: tone-mapped, 8 bits a channel."""
-        path = os.fspath(path)
-        if path.lower().endswith(".exr"):
-            self._film.write_exr(path)
+    def save(self, path, **overlays):
+        """`.exr`: all layers. `.png` and others: tone-mapped, 8 bits a channel, with what is drawn on it (docs/pictures.md).
+
+        Each of these is True for its usual value, or that; None and False are none. The picture itself stays as it is."""
+        path, drawn = os.fspath(path), _drawn(overlays)
+        if not path.lower().endswith(".exr"):
+            self._film.write_preview(path, drawn)
+        elif drawn:
+            raise InputError(f"{', '.join(drawn)}: drawn on tone-mapped pictures alone, not on .exr")
         else:
-            self._film.write_preview(path)
+            self._film.write_exr(path)
 
     def save_film(self, path):
         """The exact sums as an EXR file, which load_film takes, and Session.resume goes on with."""
@@ -115,15 +156,21 @@ class Image:
         film.add(other._film)
         return Image(film)
 
-    def png(self):
-        """The bytes of a PNG, tone-mapped."""
+    def png(self, **overlays):
+        """The bytes of a PNG, tone-mapped, with what is drawn on it as of `save`."""
+        drawn = _drawn(overlays)
+        if drawn:
+            return self._png_of(drawn)
         if self._png is None:
-            with tempfile.TemporaryDirectory() as folder:
-                file = os.path.join(folder, "image.png")
-                self._film.write_preview(file)
-                with open(file, "rb") as held:
-                    self._png = held.read()
+            self._png = self._png_of({})
         return self._png
+
+    def _png_of(self, drawn):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "image.png")
+            self._film.write_preview(file, drawn)
+            with open(file, "rb") as held:
+                return held.read()
 
     def _repr_png_(self):
         try:
@@ -135,7 +182,13 @@ class Image:
         return f"<caplet.Image {self.size[0]} x {self.size[1]}, {self.spp} samples a pixel>"
 
 
+_describe(Image.save, ("self", "path"))
+_describe(Image.png, ("self",))
+
+
 def load_film(path, scene):
     """A film that save_film wrote, of this scene."""
-    from ._caplet import Film
-    return Image(Film.load(os.fspath(path), scene._native))
+    native = getattr(scene, "_native", None)
+    if not isinstance(native, _caplet.Scene):
+        raise InputError(f"scene: a caplet.Scene is needed, not {type(scene).__name__}")
+    return Image(_caplet.Film.load(os.fspath(path), native))

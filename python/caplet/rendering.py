@@ -86,7 +86,7 @@ class Session:
         native = _scene(scene)._native.copy()
         self._size = size
         if size is not None:
-            native.set_size(*(int(one) for one in size))
+            native.set_size(*arrays.size(size))
         self._native = _caplet.Session(native, _devices(device))
         self._cancelled = False
 
@@ -136,11 +136,13 @@ class Session:
         """The scene as it now is; the picture begins anew. Of the same scene with edits only what differs is sent."""
         native = _scene(scene)._native.copy()
         if self._size is not None:
-            native.set_size(*(int(one) for one in self._size))
+            native.set_size(*arrays.size(self._size))
         self._native.update(native)
 
     def resume(self, image):
         """Goes on with the samples of an image of this scene and view."""
+        if not isinstance(image, Image):
+            raise InputError(f"image: a caplet.Image is needed, not {type(image).__name__}")
         self._native.resume(image._film)
 
 
@@ -160,7 +162,7 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     if seed is not None:
         native.seed = _count(seed + 1, "seed", 1 << 32) - 1
     if size is not None:
-        native.set_size(*(int(one) for one in size))
+        native.set_size(*arrays.size(size))
     native.widen_to_least()
     session = Session.__new__(Session)
     session._native, session._cancelled, session._size = _caplet.Session(native, _devices(device)), False, None

@@ -216,7 +216,7 @@ class Scene:
 
     @size.setter
     def size(self, to):
-        self._native.set_size(*(int(one) for one in to))
+        self._native.set_size(*arrays.size(to))
         self._changed()
 
     def crop(self, x0, y0, x1, y1):
@@ -250,6 +250,23 @@ class Scene:
     @seed.setter
     def seed(self, to):
         self._native.seed = int(to)
+
+    @property
+    def unit(self):
+        """Of lengths, as people write it: "um"; empty where it is not known. Scale bars tell it."""
+        return self._native.unit
+
+    @unit.setter
+    def unit(self, to):
+        if not isinstance(to, str):
+            raise InputError(f"unit: a text is needed, not {to!r}")
+        self._native.unit = to
+        self._changed()
+
+    def set_color_bar(self, title, low, high, unit=""):
+        """What colours of caplet.color_map tell, from `low` to `high`: Image.save(path, color_bar=True) shows it."""
+        self._native.set_color_bar(str(title), str(unit), float(low), float(high))
+        self._changed()
 
     def film(self, type="rgb", **parameters):
         """The film's settings, as scene files name them (docs/formats/pbrt.md): iso=, whitebalance=, ..."""
@@ -285,7 +302,10 @@ class Scene:
         eye, target = getattr(camera, "eye", None), getattr(camera, "target", None)
         if camera.transform is None and (eye is None) != (target is None):
             raise InputError("camera: eye and target go together")
-        place = arrays.IDENTITY if camera.transform is None else camera.transform
+        if camera.transform is None:  # with an eye: what look_at shows unmirrored
+            place = arrays.IDENTITY if eye is None else np.diag([-1.0, 1, 1, 1])
+        else:
+            place = camera.transform
         made = self._native.copy()
         made.set_camera(camera.type, self._parameters(camera.parameters), arrays.transform(place))
         if camera.transform is None and eye is not None:
@@ -294,7 +314,8 @@ class Scene:
         self._changed()
 
     def look_at(self, eye, target, up=(0, 1, 0)):
-        """Puts the camera at `eye`, looking at `target`; scene units."""
+        """Puts the camera at `eye`, looking at `target`; scene units. A right-handed world is not mirrored, unless the camera of a file
+        has it so."""
         self._native.look_at(_point(eye, "eye"), _point(target, "target"), _point(up, "up"))
         self._changed()
 
@@ -316,6 +337,8 @@ class Scene:
     def _value(self, name, value):
         if isinstance(value, Texture):
             return "texture", self._texture(value)
+        if name == "pixels":
+            return "pixels", arrays.pixels(value, name)
         if isinstance(value, Blackbody):
             return "blackbody", value.kelvin
         if isinstance(value, (bool, np.bool_)):
@@ -372,6 +395,8 @@ class Scene:
 
     def set_material(self, which, material):
         """Another material in the place of one, by number or name; its shapes have it at once."""
+        if not isinstance(material, Material):
+            raise InputError(f"material: one of caplet.materials is needed, not {type(material).__name__}")
         self._native.set_material(self._material(which), material.type, self._parameters(material.parameters))
         self._changed()
 
@@ -496,6 +521,8 @@ class Scene:
         if count < 1:
             raise InputError(f"{type}: there are none")
         held = {}
+        if not (each is None or isinstance(each, dict)):
+            raise InputError(f"each: arrays by the parameters' names are needed, not {type(each).__name__}")
         for key, value in (each or {}).items():
             array = arrays.floats(value, key)
             if array.ndim < 1 or array.shape[0] != count:

@@ -33,7 +33,7 @@ void bind_render(nb::module_& m);
 void bind_trace(nb::module_& m);
 
 /// bool, numbers, text, arrays of 64-bit floats, lists of texts, and tuples of a word and numbers: ("texture", 3),
-/// ("materials", 0, 1), ("blackbody", 5000.0), ("rgb", r, g, b).
+/// ("materials", 0, 1), ("blackbody", 5000.0), ("rgb", r, g, b), ("pixels", array).
 caplet::Parameters parameters_of(const nb::dict& given);
 
 /// Rows of three 64-bit floats, four each.

@@ -6,6 +6,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <typeinfo>
+
 #include "binding.h"
 
 namespace caplet_python {
@@ -33,6 +35,8 @@ void bind_errors(nb::module_& m) {
           raise("InputError", error.messages());
         } catch (const caplet::RunError& error) {
           raise("RunError", {error.what()});
+        } catch (const std::bad_cast&) {  // of nb::cast: a text with half a surrogate, a number that has no place
+          PyErr_SetString(PyExc_TypeError, "an argument is of a type, or has a value, that is not taken here");
         }
       },
       nullptr);

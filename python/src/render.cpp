@@ -6,14 +6,17 @@
 #include <caplet/film.h>
 #include <caplet/session.h>
 #include <caplet/verify.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "session.h"
 
@@ -139,10 +142,15 @@ void bind_render(nb::module_& m) {
              const nb::gil_scoped_release released;
              film.write_exr(file);
            })
-      .def("write_preview", [](const Film& film, const std::string& file) {
+      .def("write_preview", [](const Film& film, const std::string& file, const caplet::OverlayOptions& drawn) {
         const nb::gil_scoped_release released;
-        film.write_preview(file);
+        film.write_preview(file, drawn);
       });
+  m.def("overlays", [] {
+    std::vector<std::tuple<std::string, std::string, std::string>> out;
+    for (const caplet::Overlay& one : caplet::overlays()) out.emplace_back(one.name, one.values, one.help);
+    return out;
+  });
 
   nb::class_<HeldSession>(m, "Session")
       .def("__init__",

@@ -12,6 +12,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "binding.h"
@@ -19,6 +20,29 @@
 namespace caplet_python {
 
 namespace {
+
+/// (height, width, channels).
+std::shared_ptr<const caplet::Pixels> pixels_of(const Array& array) {
+  if (array.ndim() != 3 || array.dtype() != nb::dtype<float>()) throw nb::type_error("an image of 32-bit floats");
+  auto out = std::make_shared<caplet::Pixels>();
+  const std::size_t tall = array.shape(0), wide = array.shape(1), channels = array.shape(2);
+  if (tall > std::size_t{1} << 20 || wide > std::size_t{1} << 20 || channels > 4)
+    throw nb::value_error("an image of another shape");
+  out->height = static_cast<int>(tall);
+  out->width = static_cast<int>(wide);
+  out->channels = static_cast<int>(channels);
+  out->values.resize(tall * wide * channels);
+  const auto* data = static_cast<const float*>(array.data());
+  const auto at = [&](std::size_t y, std::size_t x, std::size_t c) {
+    return data[static_cast<std::int64_t>(y) * array.stride(0) + static_cast<std::int64_t>(x) * array.stride(1) +
+                static_cast<std::int64_t>(c) * array.stride(2)];
+  };
+  std::size_t i = 0;
+  for (std::size_t y = 0; y < tall; ++y)
+    for (std::size_t x = 0; x < wide; ++x)
+      for (std::size_t c = 0; c < channels; ++c) out->values[i++] = at(y, x, c);
+  return out;
+}
 
 caplet::Parameter parameter_of(nb::handle value) {
   if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value);
@@ -32,6 +56,7 @@ caplet::Parameter parameter_of(nb::handle value) {
     if (word == "blackbody") return caplet::Blackbody{nb::cast<double>(tuple[1])};
     if (word == "materials")
       return std::array<std::uint32_t, 2>{nb::cast<std::uint32_t>(tuple[1]), nb::cast<std::uint32_t>(tuple[2])};
+    if (word == "pixels") return pixels_of(nb::cast<Array>(tuple[1]));
     if (word == "rgb") return caplet::Rgb{nb::cast<double>(tuple[1]), nb::cast<double>(tuple[2]), nb::cast<double>(tuple[3])};
   }
   if (nb::ndarray_check(value)) {
@@ -43,7 +68,8 @@ caplet::Parameter parameter_of(nb::handle value) {
     if (numbers.size() == 3) return std::array<double, 3>{numbers[0], numbers[1], numbers[2]};
     return numbers;
   }
-  throw nb::type_error("a parameter is a number, a text, a switch, an array, a list of texts or a tuple of a word and numbers");
+  throw nb::type_error(
+      "a parameter is a number, a text, a switch, an array, a list of texts or a tuple of a word and what it is of");
 }
 
 /// The same of values for many shapes, which stay in their array.
@@ -172,6 +198,10 @@ void bind_scene(nb::module_& m) {
   m.def("texture_types", &caplet::texture_types);
   m.def("material_parameters", &caplet::material_parameters);
   m.def("texture_parameters", &caplet::texture_parameters);
+  m.def("color_map", [](double part) {
+    const caplet::Rgb color = caplet::color_map(part);
+    return nb::make_tuple(color.r, color.g, color.b);
+  });
   m.def("formats", [] {
     std::vector<std::pair<std::string, std::vector<std::string>>> out;
     for (const caplet::SceneFormat& format : caplet::scene_formats()) out.emplace_back(format.name, format.extensions);
@@ -229,6 +259,8 @@ void bind_scene(nb::module_& m) {
       .def("camera", [](const Scene& scene) { return transform_array(scene.camera()); })
       .def("set_camera", [](Scene& scene, const std::string& type, const nb::dict& given,
                             const Array& transform) { scene.set_camera(type, parameters_of(given), transform_of(transform)); })
+      .def_prop_rw("unit", &Scene::unit, &Scene::set_unit)
+      .def("set_color_bar", &Scene::set_color_bar)
       .def("set_camera_medium", &Scene::set_camera_medium, nb::arg("medium").none())
       .def("set_option", [](Scene& scene, const std::string& kind, const std::string& type,
                             const nb::dict& given) { scene.set_option(statement_named(kind), type, parameters_of(given)); })

@@ -301,6 +301,162 @@ def test_cells_of_meshio():
         caplet.from_meshio(meshio.Mesh(np.zeros((6, 3)), [("triangle6", np.arange(6)[None])]))
 
 
+# --- PyVista ---
+
+
+def vtk_hits(mesh, origins, directions, reach):
+    """The nearest crossing of each ray with a surface, by VTK: t, infinite where there is none."""
+    out = np.full(len(origins), np.inf)
+    for i, (at, way) in enumerate(zip(origins, directions)):
+        points, _ = mesh.ray_trace(at, at + reach * way)
+        if len(points):
+            out[i] = np.linalg.norm(points - at, axis=1).min()
+    return out
+
+
+def rays_at(bounds, rng, count):
+    """From a ball around a box towards points in it."""
+    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+    around = rng.standard_normal((count, 3))
+    origins = (low + high) / 2 + 2 * np.linalg.norm(high - low) * around / np.linalg.norm(around, axis=1, keepdims=True)
+    way = low + rng.random((count, 3)) * (high - low) - origins
+    return origins, way / np.linalg.norm(way, axis=1, keepdims=True)
+
+
+def wave(pyvista):
+    """A curve of 60 points whose radius grows from 0.1 to 0.4."""
+    t = np.linspace(0, 4, 60)
+    curve = pyvista.MultipleLines(np.stack([2 * t, np.sin(2 * t), np.cos(t)], axis=1))
+    curve.point_data["thick"] = np.linspace(0.1, 0.4, 60)
+    return curve
+
+
+def test_lines_of_pyvista_are_the_tubes_of_vtk(rng):
+    pyvista = pytest.importorskip("pyvista")
+    curve = wave(pyvista)
+    scene = caplet.from_pyvista(curve, radius="thick")
+    shape = scene["lines"]
+    assert scene.primitives == {"capsule": 59} and scene.info["lines"].tolist() == [0] * 59
+    assert np.allclose(shape.p0, curve.points[:-1]) and np.allclose(shape.p1, curve.points[1:])
+    assert np.allclose(shape.radius, np.stack([curve["thick"][:-1], curve["thick"][1:]], axis=1))
+    # VTK's tube is of 128 flat sides, mitred at the points: within r (1 - cos(pi / 128)) = 0.0003 r of round ones, and, where the
+    # curve turns by at most 0.15 from piece to piece, within r (1 / cos(0.075) - 1) = 0.003 r. Its ends are open.
+    tube = curve.tube(scalars="thick", absolute=True, n_sides=128)
+    origins, way = rays_at(curve.bounds, rng, 400)
+    t, hits = vtk_hits(tube, origins, way, 60), caplet.trace(scene, origins, way)
+    both = np.isfinite(t) & np.isfinite(hits["t"])
+    assert both.sum() > 60 and (np.isfinite(t) == np.isfinite(hits["t"])).mean() > 0.97
+    # Along a ray that grazes the error is many times that: nine of ten within 0.01.
+    assert (np.abs(t[both] - hits["t"][both]) < 0.01).mean() > 0.9
+    # The same radii in an array beside, of one for all, and of cells.
+    assert np.array_equal(caplet.from_pyvista(curve, radius=curve["thick"])["lines"].radius, shape.radius)
+    assert (caplet.from_pyvista(curve, radius=0.25)["lines"].radius == 0.25).all()
+    curve.cell_data["each"] = [0.125]
+    assert (caplet.from_pyvista(curve, radius="each")["lines"].radius == 0.125).all()
+    extent = np.linalg.norm(np.ptp(curve.points, axis=0))
+    assert np.allclose(caplet.from_pyvista(curve)["lines"].radius, extent / 300)
+
+
+def test_tubes_and_surfaces_of_pyvista_are_their_polygons(rng):
+    pyvista = pytest.importorskip("pyvista")
+    tube = wave(pyvista).tube(radius=0.2, n_sides=12)  # strips of triangles
+    assert tube.n_strips > 0 or tube.n_faces > 0
+    hexagons = pyvista.Plane(i_resolution=3, j_resolution=2).rotate_x(30) + pyvista.Disc(inner=0, outer=1, r_res=1, c_res=6).translate((0, 0, 2))
+    grid = pyvista.ImageData(dimensions=(4, 3, 5)).cast_to_unstructured_grid()
+    for mesh in (tube, hexagons, grid, pyvista.Sphere(), pyvista.ParametricEllipsoid(1, 2, 3)):
+        surface = mesh.extract_surface(algorithm="dataset_surface").triangulate()
+        scene = caplet.from_pyvista(mesh)
+        assert scene.primitives["triangle"] == surface.n_faces
+        assert np.allclose(scene.bounds, np.array(mesh.bounds).reshape(3, 2).T, atol=1e-6)
+        origins, way = rays_at(mesh.bounds, rng, 150)
+        t, hits = vtk_hits(surface, origins, way, 100), caplet.trace(scene, origins, way)
+        same = np.where(np.isfinite(t), np.abs(hits["t"] - np.where(np.isfinite(t), t, 0)) < 1e-4, np.isinf(hits["t"]))
+        assert same.mean() > 0.98 and np.isfinite(t).sum() > 15  # edges may differ
+
+
+def test_clouds_and_mixtures_of_pyvista():
+    pyvista = pytest.importorskip("pyvista")
+    cloud = pyvista.PolyData(np.eye(3) * 5)
+    cloud.point_data["size"] = [1.0, 2.0, 3.0]
+    cloud.point_data["paint"] = np.array([[188, 99, 0], [99, 188, 99], [99, 99, 188]], np.uint8)
+    scene = caplet.from_pyvista(cloud, radius="size", scalars="paint")
+    balls = scene["points"]
+    assert np.array_equal(balls.p0, np.eye(3) * 5) and balls.radius[:, 0].tolist() == [1, 2, 3] and scene.info["points"].tolist() == [0, 1, 2]
+    scene.look_at((20, 20, 20), (2, 2, 2), (0, 0, 1))
+    scene.fov = 25
+    image = caplet.render(scene, spp=16, size=(64, 64))
+    # sRGB's 188 is 0.503, and its 99 0.125 linear; as spectra they are within 0.02 (docs/textures.md), and inside nothing else is seen.
+    for ball, wanted in enumerate(((0.503, 0.125, 0), (0.125, 0.503, 0.125), (0.125, 0.125, 0.503))):
+        inside = (image.primitive_id == ball) & (image.alpha == 1)
+        assert inside.sum() > 10 and np.allclose(np.median(image.albedo[inside], axis=0), wanted, atol=0.03)
+    mixed = pyvista.PolyData(np.eye(4)[:, :3], lines=[2, 0, 1, 3, 1, 2, 3], faces=[3, 0, 1, 2], verts=[1, 3])
+    mixed.cell_data["of"] = [10.0, 20.0, 30.0, 40.0]  # vertices, lines, polygons
+    scene = caplet.from_pyvista(mixed, radius=[0.1, 0.2, 0.3, 0.4], scalars="of")
+    assert scene.primitives == {"capsule": 4, "triangle": 1} and scene.info["lines"].tolist() == [0, 1, 1]
+    assert scene["lines"].radius.tolist() == [[np.float32(a), np.float32(b)] for a, b in ((0.1, 0.2), (0.2, 0.3), (0.3, 0.4))]
+    assert scene["points"].p0.tolist() == [[0, 0, 0]] and scene["points"].radius[0, 0] == np.float32(0.4)
+    blocks = pyvista.MultiBlock({"one": cloud, "two": pyvista.MultiBlock({"three": wave(pyvista)})})
+    scene = caplet.from_pyvista(blocks, radius=0.1)
+    assert scene.shapes == ["one points", "two three lines"]
+
+
+def test_scalars_of_pyvista_have_the_map_of_matplotlib():
+    pyvista = pytest.importorskip("pyvista")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+
+    def linear(part):
+        screen = np.array(pyplot.get_cmap("viridis")(part)[:3])
+        return np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)
+    plane = pyvista.Plane(i_size=4, j_size=1, i_resolution=2, j_resolution=1)  # x from -2 to 2
+    plane.clear_data()
+    plane.point_data["x"] = plane.points[:, 0] * 10.0
+    plane.cell_data["side"] = [3.0, math.nan]
+
+    def colors(scene, parts):
+        scene.look_at((0, 0, 9), (0, 0, 0))
+        scene.fov = 8
+        image = caplet.render(scene, spp=64, size=(400, 100), seed=2)
+        # 8 degrees over 100 pixels at a distance of 9: x is at (pixel - 200) / 100 * 2 * 9 tan(4 deg).
+        at = [int(200 + 100 * x / (2 * 9 * math.tan(math.radians(4)))) for x in parts]
+        return image, [image.albedo[50, x] for x in at]
+    scene = caplet.from_pyvista(plane, scalars="x")
+    image, got = colors(scene, (-1.8, -1.0, 0.1, 1.0, 1.8))
+    for x, color in zip((-1.8, -1.0, 0.1, 1.0, 1.8), got):
+        # The program's map is matplotlib's at nine knots, lines between them: within 0.02 of it, as the picture's colours are.
+        assert np.allclose(color, linear((x + 2) / 4), atol=0.03), x
+    drawn = image.png(color_bar=True)
+    assert drawn != image.png() and drawn[:4] == b"\x89PNG"
+    # The range that is asked for, beyond which the ends stay.
+    _, got = colors(caplet.from_pyvista(plane, scalars=plane["x"], low=0, high=40), (-1.0, 1.0))
+    assert np.allclose(got[0], linear(0.0), atol=0.03) and np.allclose(got[1], linear(0.25), atol=0.03)
+    # Cells have one colour each, and what has no value is grey.
+    scene = caplet.from_pyvista(plane, scalars="side", low=2, high=4)
+    assert scene.shapes == ["faces", "faces without values"]
+    _, got = colors(scene, (-1.9, -0.1, 1.0))
+    assert np.allclose(got[0], linear(0.5), atol=0.03) and np.allclose(got[1], linear(0.5), atol=0.03) and np.allclose(got[2], 0.5, atol=0.01)
+    # Of vectors the length; of capsules the mean of both ends.
+    line = pyvista.Line((-2, 0, 0), (2, 0, 0), resolution=2)
+    line.clear_data()
+    line.point_data["way"] = [(0, 0, 0), (3, 4, 0), (0, 0, 10.0)]
+    _, got = colors(caplet.from_pyvista(line, radius=0.4, scalars="way"), (-1.0, 1.0))
+    assert np.allclose(got[0], linear(0.25), atol=0.03) and np.allclose(got[1], linear(0.75), atol=0.03)
+
+
+def test_what_pyvista_cannot_give():
+    pyvista = pytest.importorskip("pyvista")
+    curve = wave(pyvista)
+    plane = pyvista.Plane()
+    plane.point_data["paint"] = np.zeros((plane.n_points, 3), np.uint8)
+    for wrong, says in ((lambda: caplet.from_pyvista("curve"), "PyVista"), (lambda: caplet.from_pyvista(curve, radius="thin"), "no array 'thin'"),
+                        (lambda: caplet.from_pyvista(curve, radius=[1.0, 2.0]), "radius"), (lambda: caplet.from_pyvista(curve, scalars="x"), "no array 'x'"),
+                        (lambda: caplet.from_pyvista(curve, radius=-1), "radi"), (lambda: caplet.from_pyvista(pyvista.PolyData()), "no points"),
+                        (lambda: caplet.from_pyvista(curve, scalars="thick", color=(1, 0, 0)), "color"),
+                        (lambda: caplet.from_pyvista(curve, scalars="thick", low=3, high=2), "low"),
+                        (lambda: caplet.from_pyvista(plane, scalars="paint"), "colours are of lines")):
+        with pytest.raises(caplet.InputError, match=says):
+            wrong()
+
+
 def test_neurons_of_morphio():
     morphio = pytest.importorskip("morphio")
     path = os.path.join(os.environ["CAPLET_SCENES"], "neuron.swc")

@@ -129,17 +129,51 @@ def test_a_time_limit_ends_a_render(ball):
     assert 0 < done < 1 << 20 and time.monotonic() - start < 60
 
 
-def test_an_interrupt_leaves_a_usable_session(ball):
+@pytest.fixture
+def interrupted():
+    """Sends SIGINT after so many seconds. Where tests run in the background the shell has it ignored: here Python sees to it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timers = []
+
+    def after(seconds):
+        timers.append(threading.Timer(seconds, lambda: os.kill(os.getpid(), signal.SIGINT)))
+        timers[-1].start()
+    yield after
+    for timer in timers:
+        timer.cancel()
+        timer.join()
+    signal.signal(signal.SIGINT, before)
+
+
+def test_an_interrupt_leaves_a_usable_session(ball, interrupted):
     session = caplet.Session(ball, size=(320, 240))
     session.render(1)
-    timer = threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
+    interrupted(0.7)
+    start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        session.render(1 << 20)
-    timer.join()
+        session.render(1 << 20, time_limit=120)
+    assert time.monotonic() - start < 100  # it did not wait for the limit
     done = session.spp
     assert 1 <= done < 1 << 20 and np.isfinite(session.image().rgb).all()
     assert session.render(2) == 2 and session.spp == done + 2
+
+
+def test_an_interrupt_ends_a_render_and_questions(ball, interrupted):
+    interrupted(0.7)
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        caplet.render(ball, spp=1 << 20, size=(320, 240), time_limit=120)
+    assert time.monotonic() - start < 100
+    caplet.trace(ball, (0, 0, 5), (0, 0, -1))  # compiled
+    interrupted(0.3)
+    with pytest.raises(KeyboardInterrupt):
+        for _ in range(1000):
+            caplet.trace(ball, np.zeros((1 << 20, 3), np.float32), (0, 0, 1))
+    assert np.isfinite(caplet.trace(ball, (0, 0, 5), (0, 0, -1))["t"]).all()
+    interrupted(0.7)
+    with pytest.raises(KeyboardInterrupt):
+        caplet.verify(ball, rays=1 << 33)
+    assert caplet.render(ball, spp=1).spp == 1
 
 
 def test_other_threads_run_and_read_while_it_renders(ball):

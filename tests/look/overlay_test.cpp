@@ -106,7 +106,7 @@ TEST(ScaleBar, WrongOnesAreRefused) {
   EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("1 mm", ""), ball(), "--scale-bar"); }), HasSubstr("4000 pixels"));
   Overlays overlays;
   overlays.color_bar = true;
-  EXPECT_THAT(complaint([&] { check(overlays, ball()); }), HasSubstr("--color-bar"));
+  EXPECT_THAT(complaint([&] { check(overlays, ball(), "--"); }), HasSubstr("--color-bar"));
 }
 
 TEST(ScaleBar, IsDrawnAsLong) {

@@ -15,7 +15,7 @@
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"

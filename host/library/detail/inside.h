@@ -19,6 +19,7 @@
 #include "device/device.h"
 #include "film/film.h"
 #include "film/image.h"
+#include "post/scale_bar.h"
 #include "scene/edit.h"
 #include "scene/scene.h"
 
@@ -55,7 +56,7 @@ struct Device::Data {
 
 struct Film::Data {
   caplet::Film film;
-  FilmSettings settings;
+  std::shared_ptr<const post::Sight> sight;  // what it is a film of
   std::map<std::string, std::string> notes;  // for its pictures
   double render_seconds = 0;
   mutable std::once_flag once = {};  // when it is developed
@@ -75,9 +76,10 @@ struct Inside {
     return Device(std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
   }
   static const caplet::Device& device(const Device& device) { return device.data_->device; }
-  static Film film(caplet::Film film, const FilmSettings& settings, std::map<std::string, std::string> notes,
+  static Film film(caplet::Film film, std::shared_ptr<const post::Sight> sight, std::map<std::string, std::string> notes,
                    double render_seconds) {
-    return Film(std::shared_ptr<const Film::Data>(new Film::Data{std::move(film), settings, std::move(notes), render_seconds}));
+    return Film(
+        std::shared_ptr<const Film::Data>(new Film::Data{std::move(film), std::move(sight), std::move(notes), render_seconds}));
   }
   static const caplet::Film& film(const Film& film) { return film.data_->film; }
 };

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "caplet/film.h"
 #include "caplet/render.h"
+#include "post/scale_bar.h"
 #include "render/session.h"
 #include "scene/scene.h"
 
@@ -21,7 +23,10 @@ struct SessionRuns {
   /// Adds the next samples and returns how many were finished.
   std::uint32_t render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options);
   /// What there is of `scene` now.
-  Film film(caplet::Session& session, const caplet::Scene& scene) const;
+  Film film(caplet::Session& session, const caplet::Scene& scene);
+
+ private:
+  std::shared_ptr<const post::Sight> sight_;  // of the scene, once a film was asked for
 };
 
 }  // namespace caplet::v0

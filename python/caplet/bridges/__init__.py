@@ -7,7 +7,8 @@ from .lidar import lidar
 from .meshes import from_meshio, from_trimesh
 from .mujoco import from_mujoco, update_mujoco
 from .neurons import from_morphio
+from .pyvista import from_pyvista
 from .streamlines import from_nibabel
 
-__all__ = ["denoise", "from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_nibabel", "from_trimesh", "lidar", "to_xarray",
+__all__ = ["denoise", "from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_nibabel", "from_pyvista", "from_trimesh", "lidar", "to_xarray",
            "update_mujoco"]

@@ -3,7 +3,7 @@
 """Streamlines that nibabel has read."""
 import numpy as np
 
-from .. import materials
+from .. import arrays, materials
 from ..errors import InputError
 from ..scene import Scene
 
@@ -15,7 +15,14 @@ def from_nibabel(tractogram, radius=0.1, color="direction"):
     color: "direction" (red, green and blue are the axes), or a colour of all. scene.info["streamline"]: that of each capsule.
     """
     lines = getattr(tractogram, "streamlines", tractogram)
-    lines = [np.asarray(line, dtype=np.float32) for line in lines]
+    if isinstance(lines, np.ndarray) and lines.ndim != 3:
+        raise InputError(f"streamlines: a sequence of (n, 3) is needed, not an array of shape {lines.shape}")
+    if isinstance(lines, np.ndarray) and len(lines) > arrays.MOST:
+        raise InputError(f"streamlines: {len(lines)}; at most {arrays.MOST}")
+    try:
+        lines = [arrays.rows(line, "streamlines", 3).astype(np.float32) if len(line) else np.empty((0, 3), np.float32) for line in lines]
+    except NotImplementedError as problem:  # of buffers that Python does not take apart
+        raise InputError(f"streamlines: {problem}") from None
     held = [(i, line) for i, line in enumerate(lines) if len(line) > 1]
     if not held:
         raise InputError("there are no streamlines of two points or more")
