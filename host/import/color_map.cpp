@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "scene/texture_image.h"
 
@@ -30,6 +31,12 @@ glm::dvec3 viridis(double part) {
   const double f = at - static_cast<double>(i);
   const glm::dvec3 c = knots.at(i) * (1 - f) + knots.at(i + 1) * f;
   return {decoded_value({}, c.x), decoded_value({}, c.y), decoded_value({}, c.z)};
+}
+
+Legend viridis_legend(std::string title, std::string unit, double low, double high) {
+  Legend out{std::move(title), std::move(unit), low, high, {}};
+  for (int step = 0; step < map_steps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (map_steps - 1)));
+  return out;
 }
 
 }  // namespace caplet

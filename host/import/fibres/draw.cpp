@@ -8,21 +8,24 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "import/detail/color_map.h"
 #include "import/detail/fibres.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
+#include "import/detail/value_colors.h"
 #include "present/present.h"
 
 namespace caplet {
 
 namespace {
 
-enum class ColorBy { direction, fibre, file };
+enum class ColorBy { direction, fibre, file, scalar };
 constexpr int kSteps = 15;               // of a colour's component: so many materials there are at most, cubed
 constexpr float kThinPart = 1.0F / 700;  // of the extent: the radius of what has none, unless a length is usual
 constexpr double kMelanin = 0.5;         // light brown
@@ -36,6 +39,50 @@ float radius_asked(const ImportOptions& options, float usual) {
   if (error != NumberError::none) throw InputError({"--radius"}, describe(error, *text));
   if (!(value > 0)) throw InputError({"--radius"}, "'" + *text + "' is not positive");
   return value;
+}
+
+/// Whether colours tell scalars, and which.
+std::optional<FibreScalars> scalars_asked(const ImportOptions& options) {
+  const std::string by = options.text("color").value_or("");
+  if (by != "scalar" && !by.starts_with("scalar:")) {
+    if (options.text("range")) throw InputError({"--range"}, "goes with --color scalar");
+    return std::nullopt;
+  }
+  FibreScalars out;
+  if (by != "scalar") {
+    out.wanted = by.substr(std::string("scalar:").size());
+    if (out.wanted.empty()) throw InputError({"--color"}, "'scalar:' names none");
+  }
+  return out;
+}
+
+/// Materials by the scalars; their range goes to where the options say.
+ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const ImportOptions& options) {
+  if (scalars.name.empty()) {
+    constexpr std::size_t most = 20;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < std::min(most, scalars.names.size()); ++i) known.push_back(caplet::quoted(scalars.names[i]));
+    if (scalars.names.size() > most) known.push_back(fmt::format("and {} more", scalars.names.size() - most));
+    throw InputError({"--color"}, known.empty()
+                                      ? fmt::format("'{}': {} has no scalars", *options.text("color"), scene.source)
+                                      : fmt::format("{} is none of the scalars of {}: {}", caplet::quoted(scalars.wanted),
+                                                    scene.source, fmt::join(known, ", ")));
+  }
+  const ValueRange range = range_of(scalars.values);
+  if (!range.is_there)
+    throw InputError({"--color"}, fmt::format("{}: there is no value in {}", caplet::quoted(scalars.name), scene.source));
+  if (options.seen) {
+    *options.seen = range;
+    options.seen->what = scalars.name;
+  }
+  const auto ends = options.range("range").value_or(std::pair(range.low, range.high));
+  return {scene, scalars.name, ends.first, ends.second, map_steps};
+}
+
+/// Of a segment: the mean of its ends, of which one may have none.
+double mean_of(float a, float b) {
+  if (std::isnan(a)) return static_cast<double>(b);
+  return std::isnan(b) ? static_cast<double>(a) : 0.5 * (static_cast<double>(a) + static_cast<double>(b));
 }
 
 class Colors {
@@ -71,12 +118,15 @@ struct Usual {
   const char* unit = "";  // of the file's lengths
 };
 
-Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual) {
+Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual,
+               const FibreScalars* scalars = nullptr) {
   Scene scene;
   scene.source = path.string();
   if (fibres.points.empty()) throw InputError({scene.source, 0, 0}, "holds no fibres");
-  const auto by =
-      static_cast<ColorBy>(options.choice("color", {"direction", "fibre", "file"}, static_cast<std::size_t>(usual.color)));
+  const std::optional<FibreScalars> asked = scalars_asked(options);
+  const ColorBy by = asked ? ColorBy::scalar
+                           : static_cast<ColorBy>(options.choice("color", {"direction", "fibre", "file", "scalar"},
+                                                                 static_cast<std::size_t>(usual.color)));
   const bool as_hair = usual.hair && !options.text("color");
   if (options.text("color") && by == ColorBy::file && fibres.colors.empty())
     throw InputError({"--color"}, "the file has no colours");
@@ -98,6 +148,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
     scene.materials.push_back({hair, "hair", {scene.source, 0, 0}});
   }
   Colors colors(scene, by);
+  ValueColors of_scalar;
+  if (by == ColorBy::scalar) of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
   CapsulesShape capsules;
   bool tapered = false;
   std::size_t begin = 0;
@@ -121,6 +173,10 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
             break;
           case ColorBy::file:
             material = colors.of(glm::dvec3(fibres.colors[fibres.colors.size() == 1 ? 0 : i]));
+            break;
+          case ColorBy::scalar:
+            material = of_scalar.of(scalars->of_points ? mean_of(scalars->values[i], scalars->values[next])
+                                                       : static_cast<double>(scalars->values[f]));
             break;
         }
       }
@@ -155,18 +211,23 @@ Scene import_tressfx(const std::filesystem::path& path, const ImageReader&, cons
   return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, ColorBy::fibre, "y", true});
 }
 Scene import_trk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trk(read_file(path, {}), path.string()), path, options,
-                  {kStreamline, ColorBy::direction, "z", false, "mm"});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false, "mm"}, scalars ? &*scalars : nullptr);
 }
 Scene import_tck(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
                   {kStreamline, ColorBy::direction, "z", false, "mm"});
 }
 Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trx(path), path, options, {kStreamline, ColorBy::direction, "z", false});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_vtk(read_file(path, {}), path.string()), path, options, {0, ColorBy::direction, "z", false});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 
 }  // namespace caplet
