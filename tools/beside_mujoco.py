@@ -38,15 +38,21 @@ def model_of(path):
         xml.etree.ElementTree.SubElement(settings, "compiler", discardvisual="false", fusestatic="false", balanceinertia="true",
                                          boundmass="0.01", boundinertia="0.01")
         return mujoco.MjModel.from_xml_string(xml.etree.ElementTree.tostring(tree, encoding="unicode"))
-    spec = mujoco.MjSpec.from_file(str(path))
-    spec.compiler.fusestatic = False
-    spec.compiler.discardvisual = False
-    for actuator in list(spec.actuators):  # some do not compile without MuJoCo finding out their range
-        spec.delete(actuator)
-    for key in spec.keys:
-        key.ctrl = []
-        key.act = []
-    return spec.compile()
+    def spec():
+        out = mujoco.MjSpec.from_file(str(path))
+        out.compiler.fusestatic = False
+        out.compiler.discardvisual = False
+        return out
+    try:
+        return spec().compile()
+    except ValueError:  # some do not compile without MuJoCo finding out the range of their actuators
+        without = spec()
+        for actuator in list(without.actuators):
+            without.delete(actuator)
+        for key in without.keys:
+            key.ctrl = []
+            key.act = []
+        return without.compile()
 
 
 def solid_of(model, data, geom):

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 
 #include "import/import.h"
 #include "support/data.h"
@@ -104,9 +105,46 @@ TEST(Hair, SegmentsThicknessAndColours) {
   const auto color = [&](std::size_t i) {
     return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(colored.materials.at(painted.materials.at(i)).model).reflectance).rgb;
   };
-  for (std::size_t i = 0; i < 3; ++i)  // a segment has its first point's, within half a step of a fifteenth
-    EXPECT_LT(glm::length(color(i) - glm::dvec3(1, 0.5, 0.25 * static_cast<double>(i < 2 ? i : 3))), std::sqrt(3.0) / 30) << i;
+  for (std::size_t i = 0; i < 3; ++i)  // a segment has its first point's, within half a step of 1/255
+    EXPECT_LT(glm::length(color(i) - glm::dvec3(1, 0.5, 0.25 * static_cast<double>(i < 2 ? i : 3))), std::sqrt(3.0) / 509) << i;
   EXPECT_EQ(std::get<CapsulesShape>(colored.shapes.at(0).geometry).radius0[1], 2.0F);
+}
+
+/// How far a component of a capsule's colour is from the file's at most, of so many capsules with random colours, or with those
+/// of a line from black to white; and the number of materials.
+std::pair<double, std::size_t> worst_color(std::uint32_t count, bool is_line) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> draw(0, 1);
+  Writer arrays;
+  std::vector<glm::vec3> colors;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    arrays.put(static_cast<float>(i)).put(0.0F).put(0.0F);
+    colors.emplace_back(draw(random), draw(random), draw(random));
+    if (is_line) colors.back() = glm::vec3(static_cast<float>(i) / static_cast<float>(count));
+  }
+  for (const glm::vec3& c : colors) arrays.put(c.x).put(c.y).put(c.z);
+  std::string file = hair_file(1, count, 18, arrays);
+  const std::uint32_t segments = count - 1;
+  std::memcpy(file.data() + 16, &segments, sizeof segments);
+  const Scene scene = scene_of("p.hair", file, {{{"color", "file"}}});
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  double worst = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const glm::dvec3 shown =
+        std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials.at(capsules.materials.at(i)).model).reflectance).rgb;
+    for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(shown[k] - static_cast<double>(colors[i][k])));
+  }
+  return {worst, scene.materials.size()};
+}
+
+TEST(Hair, ColoursAreAsFineAsTheirNumberAllows) {
+  // Half a step of 1/255, and of the coarser steps besides.
+  EXPECT_LT(worst_color(4000, false).first, 1 / 509.0);
+  EXPECT_LT(worst_color(60000, true).first, 1 / 509.0);
+  const auto [worst, materials] = worst_color(60000, false);
+  EXPECT_LT(worst, 1 / 30.0 + 1 / 509.0);
+  EXPECT_LE(materials, 4096u);
+  EXPECT_GT(materials, 3000u);
 }
 
 TEST(Hair, DefaultsOfTheHeader) {
