@@ -94,6 +94,26 @@ TEST(MjcfLooks, BuiltInTexturesAreMujocos) {
   EXPECT_NEAR(top.z, 1, 1e-12);
 }
 
+// mujoco 4.0's tex_data of cubes, by the faces that directions from the middle meet (as it draws them): columns by the angle from
+// z in 22.5 degrees, rows from above by turns from x, backwards.
+TEST(MjcfLooks, FacesOfCubesAreMujocos) {
+  const auto image_of = [](const std::string& builtin) {
+    const Scene scene = scene_of_text("<asset><texture name='c' type='cube' builtin='" + builtin +
+                                      "' width='4' height='4' rgb1='1 0 0' rgb2='0 0 1'/><material name='c' texture='c'/></asset>"
+                                      "<worldbody><geom size='1' material='c'/></worldbody>");
+    return std::get<ImagemapTexture>(scene.textures.at(0).model).image;
+  };
+  const auto board = image_of("checker");
+  ASSERT_EQ(board->width, 8);
+  EXPECT_EQ(texel(*board, 13, 0, 0), 255);  // front: to the right and up
+  EXPECT_EQ(texel(*board, 0, 0, 0), 0);     // front: to the right and down
+  EXPECT_EQ(texel(*board, 15, 3, 0), 255);  // right: to the left (z above 0) and up
+  EXPECT_EQ(texel(*board, 15, 4, 0), 0);    // right: to the right and up
+  const auto plain = image_of("flat");
+  EXPECT_EQ(texel(*plain, 4, 4, 0), 0);  // -y is down
+  EXPECT_EQ(texel(*plain, 12, 4, 0), 255);
+}
+
 // Where mujoco 4.0 (drawn by OSMesa) shows the columns and rows of an image of 256 x 256 whose colours are their numbers: the
 // fraction of columns from the left is a x + b y + c, that of rows from the top likewise, of planes and boxes; of balls, repeat
 // times the turns around z from x, and repeat times the angle from z in half turns. Both but for whole numbers.

@@ -69,9 +69,12 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   out.middle = origin + out.middle / out.amount;
   // Of a simplex of n corners (the origin among those of a tetrahedron) the mean of x y is (sum of x_i y_i + sum x_i sum y_i) /
   // (n (n + 1)).
+  // How much there is is counted anew from there: of volumes that are all positive it is another number.
+  out.amount = 0;
   each_triangle(parts, m, [&](Corners c) {
     for (dvec3& p : c) p -= out.middle;
-    const double amount = amount_of(c, mass) / (corners * (corners + 1));
+    const double whole = amount_of(c, mass), amount = whole / (corners * (corners + 1));
+    out.amount += whole;
     const dvec3 sum = c[0] + c[1] + c[2];
     out.second += amount * glm::outerProduct(sum, sum);
     for (const dvec3& p : c) out.second += amount * glm::outerProduct(p, p);

@@ -107,6 +107,14 @@ Pixels made(const Recipe& recipe, int width, int height) {
   return painted(width, height, [&](int, int) { return bytes_of(recipe.rgb1); });
 }
 
+/// MuJoCo's boards go on over the edges of a cube, and its flat ones have the second colour below.
+Recipe of_face(Recipe recipe, std::size_t face) {
+  constexpr std::size_t down = 3, front = 4;
+  if ((recipe.builtin == checker && face >= front) || (recipe.builtin == flat && face == down))
+    std::swap(recipe.rgb1, recipe.rgb2);
+  return recipe;
+}
+
 Pixels read(const Element& of, const ImageReader& images, const std::string& name) {
   const std::filesystem::path path = of.model().file(of, name, of.model().compiler().textures);
   TextureImage image;
@@ -203,7 +211,7 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
           return between(recipe, std::asin(y / reach) * 2 * std::numbers::inv_pi);
         });
       else
-        to = made(recipe, size, size);
+        to = made(of_face(recipe, face), size, size);
       put_marks(to, recipe, numbers);
     }
     return out;
