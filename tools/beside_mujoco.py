@@ -6,8 +6,8 @@
     tools/beside_mujoco.py [--build build/release] [--rays N] [--key NAME] FILE.xml|FILE.urdf...
 
 Of each file it compares every geom of MuJoCo with the shape of the same name (or number) that the importer made: its type, its
-sizes, where its corners, axis ends or vertices lie in the world. With --rays N, as many random rays are asked of `caplet pick` and of
-mujoco.mj_ray, and their distances compared. Needs the packages mujoco and numpy (and scipy for meshes), and the targets list_geoms and
+sizes, where its corners, axis ends or vertices lie in the world (whichever end or corner it is: fitted solids have axes of either sign). With --rays N, as many random rays are asked of `caplet pick` and of
+mujoco.mj_ray, and their distances compared. Needs the packages mujoco, numpy and scipy, and the targets list_geoms and
 caplet.
 """
 import argparse
@@ -38,15 +38,21 @@ def model_of(path):
         xml.etree.ElementTree.SubElement(settings, "compiler", discardvisual="false", fusestatic="false", balanceinertia="true",
                                          boundmass="0.01", boundinertia="0.01")
         return mujoco.MjModel.from_xml_string(xml.etree.ElementTree.tostring(tree, encoding="unicode"))
-    spec = mujoco.MjSpec.from_file(str(path))
-    spec.compiler.fusestatic = False
-    spec.compiler.discardvisual = False
-    for actuator in list(spec.actuators):  # some do not compile without MuJoCo finding out their range
-        spec.delete(actuator)
-    for key in spec.keys:
-        key.ctrl = []
-        key.act = []
-    return spec.compile()
+    def spec():
+        out = mujoco.MjSpec.from_file(str(path))
+        out.compiler.fusestatic = False
+        out.compiler.discardvisual = False
+        return out
+    try:
+        return spec().compile()
+    except ValueError:  # some do not compile without MuJoCo finding out the range of their actuators
+        without = spec()
+        for actuator in list(without.actuators):
+            without.delete(actuator)
+        for key in without.keys:
+            key.ctrl = []
+            key.act = []
+        return without.compile()
 
 
 def solid_of(model, data, geom):
@@ -101,12 +107,12 @@ def difference(kind, size, pose, shapes, model, data, geom):
         other = at(np.concatenate([np.zeros((1, 3)), np.diag(axes), -np.diag(axes)]))
         if kind == GEOM.mjGEOM_SPHERE:  # its turn is of no matter
             return max(np.abs(own[0] - other[0]).max(), abs(shape["size"][0] - size[0])), False
-        return np.abs(own - other).max(), False
+        return apart(own, other), False
     if kind in (GEOM.mjGEOM_CAPSULE, GEOM.mjGEOM_CYLINDER):
         own, other = of_shape(shape, [[0, 0, -shape["size"][1]], [0, 0, shape["size"][1]]]), at([[0, 0, -size[1]], [0, 0, size[1]]])
-        return max(np.abs(own - other).max(), abs(shape["size"][0] - size[0])), kind == GEOM.mjGEOM_CAPSULE
+        return max(apart(own, other), abs(shape["size"][0] - size[0])), kind == GEOM.mjGEOM_CAPSULE
     if kind == GEOM.mjGEOM_BOX:
-        return np.abs(of_shape(shape, CORNERS * shape["size"]) - at(CORNERS * size)).max(), False
+        return apart(of_shape(shape, CORNERS * shape["size"]), at(CORNERS * size)), False
     if kind == GEOM.mjGEOM_PLANE:
         local = (of_shape(shape, np.reshape(shape["points"], (-1, 3))) - pose[:, 3]) @ pose[:, :3]
         worst = np.abs(local[:, 2]).max() * (1 if min(size[:2]) > 0 else 1e-3)  # of an endless one: over its reach

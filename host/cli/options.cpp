@@ -144,7 +144,8 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
     command
         .add_option_function<std::string>(
             "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
-            row.help + (row.is_look ? "" : " (" + formats_of_it + ")"))
+            row.help + (row.is_look ? "" : " (" + formats_of_it + ")") +
+                (row.name == "least-width" ? "; unless asked " + usual_least_width() : ""))
         ->type_name(row.values)
         ->group(row.is_look ? "The picture" : "Files of other fields");
   }
@@ -166,10 +167,32 @@ Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& 
 std::string scene_names(const std::vector<std::string>& scenes) { return fmt::format("{}", fmt::join(scenes, " ")); }
 
 std::string scene_extensions() {
-  std::string out;
+  std::vector<std::string> all;
   for (const Format& format : formats())
-    for (const std::string& extension : format.extensions) out += (out.empty() ? "" : " ") + extension;
+    for (const std::string& extension : format.extensions)
+      if (std::ranges::find(all, extension) == all.end()) all.push_back(extension);
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
+std::string usual_samples() {
+  const SamplerSettings usual;
+  std::string out = std::to_string(usual.samples_per_pixel);
+  for (const Format& format : formats())
+    if (format.samples_per_pixel != usual.samples_per_pixel)
+      out += fmt::format(", {} of {}", format.samples_per_pixel, format.name);
   return out;
+}
+
+std::string usual_least_width() {
+  std::string out = fmt::format("{}", FilmSettings{}.least_width);
+  for (const Format& format : formats())
+    if (format.least_width != FilmSettings{}.least_width) out += fmt::format(", {} of {}", format.least_width, format.name);
+  return out;
+}
+
+std::string usual_size() {
+  const FilmSettings usual;
+  return fmt::format("{}x{}", usual.width, usual.height);
 }
 
 }  // namespace caplet::cli

@@ -49,6 +49,12 @@ void add_import_options(CLI::App& command, ImportOptions& options);
 /// The extensions of all scene formats, for help: ".pbrt, .swc, ...".
 std::string scene_extensions();
 
+/// What pictures have where neither the scene nor the user says it, for help: samples a pixel of all formats ("16, 64 of swc"),
+/// least widths of capsules, and the size.
+std::string usual_samples();
+std::string usual_least_width();
+std::string usual_size();
+
 /// Adds the argument SCENE: a file, or several that make one scene.
 CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes);
 /// import_scenes (import/import.h).

@@ -592,8 +592,13 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->type_name("R");
   command->add_flag("--skip-existing", o->skip_existing, "Leave out frames whose files are there");
   command->add_option("--preview", o->preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
-  command->add_option("--spp", o->samples_per_pixel, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->type_name("N");
-  command->add_option("--size", o->size, "Picture size in pixels; an automatic camera frames anew")->type_name("WxH");
+  command->add_option("--spp", o->samples_per_pixel, "Samples per pixel; unless asked the scene's, else " + usual_samples())
+      ->check(CLI::Range(1, 1 << 24))
+      ->type_name("N");
+  command
+      ->add_option("--size", o->size,
+                   "Picture size in pixels; an automatic camera frames anew; unless asked the scene's, else " + usual_size())
+      ->type_name("WxH");
   command->add_option("--crop", o->crop, "Render only these pixels (from the top left; x1, y1 excluded)")
       ->type_name("x0,y0,x1,y1");
   command

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
@@ -32,6 +33,23 @@ constexpr std::pair<const char*, const char*> not_read[] = {
      "SONATA and other HDF5 files are not read: write the morphologies as SWC (morphio's Morphology.write), one file a cell"},
     {".asc", "Neurolucida files are not read: write the morphology as SWC (morphio's Morphology.write)"},
 };
+
+/// The name of the root element of an XML file, as far as its beginning tells; empty: it does not.
+std::string root_element(const fs::path& path) {
+  std::string text(1 << 16, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    if (text.compare(at, 4, "<!--") == 0)
+      at = text.find("-->", at);
+    else if (text.compare(at, 2, "<?") == 0 || text.compare(at, 2, "<!") == 0)
+      at = text.find('>', at);
+    else
+      return text.substr(at + 1, text.find_first_of(" \t\r\n/>", at) - at - 1);
+  }
+  return {};
+}
 
 void check_readable(const fs::path& path) {
   std::error_code error;
@@ -188,8 +206,11 @@ const Format& format_of(const fs::path& path) {
   std::string known;
   for (const Format& format : formats())
     for (const std::string& extension : format.extensions) {
-      if (name.size() > extension.size() && name.ends_with(extension)) return format;
-      known += (known.empty() ? "" : ", ") + extension;
+      if (name.size() > extension.size() && name.ends_with(extension) &&
+          (extension != ".xml" || is_its_root(format, root_element(path))))
+        return format;
+      if ((", " + known + ", ").find(", " + extension + ", ") == std::string::npos)
+        known += (known.empty() ? "" : ", ") + extension;
     }
   for (const auto& [extension, what] : not_read)
     if (name.ends_with(extension)) throw InputError({path.string()}, what);

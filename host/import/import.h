@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,9 +34,15 @@ struct Format {
   std::vector<std::string> options;     // names of those in import_options.def that it knows
   /// Throws InputError.
   Imported (*import)(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options);
+  // Of pictures of files that say nothing of it.
+  int samples_per_pixel = SamplerSettings{}.samples_per_pixel;
+  double least_width = FilmSettings{}.least_width;
 };
 
 const std::vector<Format>& formats();
+
+/// Whether an XML file with this root element may be the format's, of those that share an ending.
+bool is_its_root(const Format& format, std::string_view root);
 
 /// Imports by extension. The scene is validated; a file that says nothing of camera, light or material has good ones.
 /// Throws InputError for a missing, unreadable or wrong file, an unknown extension, or an option that says nothing to its format.
@@ -54,7 +61,7 @@ Imported read_scene(const std::filesystem::path& path, const ImageReader& images
 /// Gives a scene the camera and the light that its file does not bring (present/present.h).
 Scene presented(Imported file);
 
-/// The format of a file, by its name. Throws InputError for an unknown extension.
+/// The format of a file, by its name, and of .xml by its root element. Throws InputError for an unknown extension.
 const Format& format_of(const std::filesystem::path& path);
 
 }  // namespace caplet

@@ -34,7 +34,8 @@ void drop_unless_finite(std::vector<Vector>& values, const std::string& file, co
   values.clear();
 }
 
-TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const ply::Header& header) {
+TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const ply::Header& header, const ply::Colors& given,
+                          std::vector<glm::vec3>* colors) {
   const std::uint64_t vertices = header.elements[header.vertex].count, faces = header.elements[header.face].count;
   if (!scene || scene->mNumMeshes != 1 || scene->mMeshes[0]->mNumVertices != vertices || scene->mMeshes[0]->mNumFaces != faces)
     throw InputError({file}, "the PLY file could not be read (its mesh is not what its header promises)");
@@ -54,8 +55,13 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
   for (std::uint64_t i = 0; i < faces; ++i) {
     const aiFace& face = from.mFaces[i];
     if (face.mNumIndices < 3) ++dropped;
-    for (unsigned k = 2; k < face.mNumIndices; ++k)
+    for (unsigned k = 2; k < face.mNumIndices; ++k) {
       mesh.triangles.push_back({face.mIndices[0], face.mIndices[k - 1], face.mIndices[k]});
+      for (const std::uint32_t vertex : mesh.triangles.back()) {
+        if (!given.of_vertices.empty()) colors->push_back(given.of_vertices[vertex]);
+        if (!given.of_faces.empty()) colors->push_back(given.of_faces[i]);
+      }
+    }
   }
   if (dropped) log::warn("{}: {} of {} faces have fewer than three corners and are left out", file, dropped, faces);
   if (mesh.triangles.empty()) throw InputError({file}, "the PLY file has no face with three corners");
@@ -64,23 +70,24 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
 
 }  // namespace
 
-TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes) {
+TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes, std::vector<glm::vec3>* colors) {
   const ply::Header header = ply::parse_header(file, bytes);
-  const std::string plain = ply::rewrite(file, bytes, header);
+  ply::Colors given;
+  const std::string plain = ply::rewrite(file, bytes, header, colors ? &given : nullptr);
   Assimp::Importer importer;
-  return mesh_of(file, importer.ReadFileFromMemory(plain.data(), plain.size(), 0, "ply"), header);
+  return mesh_of(file, importer.ReadFileFromMemory(plain.data(), plain.size(), 0, "ply"), header, given, colors);
 }
 
 #else
 
-TriangleMeshShape parse_ply(const std::string& file, const std::string&) {
+TriangleMeshShape parse_ply(const std::string& file, const std::string&, std::vector<glm::vec3>*) {
   throw InputError({file}, "this build cannot read PLY meshes (CAPLET_WITH_PLY is off)");
 }
 
 #endif
 
-TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where) {
-  return parse_ply(path.string(), read_file(path, where));
+TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where, std::vector<glm::vec3>* colors) {
+  return parse_ply(path.string(), read_file(path, where), colors);
 }
 
 }  // namespace caplet

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "import/detail/mesh_file.h"
 #include "import/detail/ply.h"
 
 namespace caplet::ply {
@@ -136,18 +137,46 @@ std::string_view plain_name(std::string_view name) {
   return {};
 }
 
+/// Which component of a colour a property is: 0 to 2; -1: none.
+int color_component(const Property& property) {
+  constexpr std::string_view names[3][4] = {
+      {"red", "r", "diffuse_red", "Red"}, {"green", "g", "diffuse_green", "Green"}, {"blue", "b", "diffuse_blue", "Blue"}};
+  if (property.is_list) return -1;
+  for (int k = 0; k < 3; ++k)
+    for (const std::string_view name : names[k])
+      if (property.name == name) return k;
+  return -1;
+}
+
+bool has_color(const Element& element) {
+  unsigned there = 0;
+  for (const Property& property : element.properties)
+    if (const int k = color_component(property); k >= 0) there |= 1U << static_cast<unsigned>(k);
+  return there == 7;
+}
+
+/// What is white: the greatest whole number of few bits; 1 of floats.
+double white_of(Type type) { return is_float(type) ? 1 : size_of(type) == 2 ? 65535 : 255; }
+
 class Walk {
  public:
-  Walk(const std::string& file, std::string_view bytes, const Header& header) : header_(header), values_(file, bytes, header) {}
+  Walk(const std::string& file, std::string_view bytes, const Header& header, Colors* colors)
+      : header_(header), values_(file, bytes, header), colors_(colors) {}
 
   void run() {
-    for (std::size_t e = 0; e < header_.elements.size(); ++e)
-      for (std::uint64_t i = 0; i < header_.elements[e].count; ++i)
+    const bool of_vertices = colors_ && has_color(header_.elements[header_.vertex]);
+    const bool of_faces = colors_ && !of_vertices && has_color(header_.elements[header_.face]);
+    for (std::size_t e = 0; e < header_.elements.size(); ++e) {
+      with_color_ = (e == header_.vertex && of_vertices) || (e == header_.face && of_faces);
+      for (std::uint64_t i = 0; i < header_.elements[e].count; ++i) {
         if (e == header_.vertex)
           vertex(header_.elements[e]);
         else
           for (std::size_t p = 0; p < header_.elements[e].properties.size(); ++p)
             property(header_.elements[e].properties[p], e == header_.face && p == header_.indices);
+        if (with_color_) (e == header_.vertex ? colors_->of_vertices : colors_->of_faces).push_back(color_);
+      }
+    }
   }
 
   std::string rewritten() const {
@@ -190,6 +219,11 @@ class Walk {
   }
 
   void property(const Property& p, bool is_indices) {
+    if (const int k = with_color_ ? color_component(p) : -1; k >= 0) {
+      const double part = values_.number(p.type) / white_of(p.type);
+      color_[k] = part >= 0 ? linear_of_srgb(static_cast<float>(std::min(part, 1.0))) : 0.0F;
+      return;
+    }
     if (!p.is_list) {
       if (!values_.skip(p.type, 1)) values_.number(p.type);
       return;
@@ -213,12 +247,15 @@ class Walk {
   const Header& header_;
   Values values_;
   std::string vertices_, faces_;
+  Colors* colors_;
+  bool with_color_ = false;
+  glm::vec3 color_{0};
 };
 
 }  // namespace
 
-std::string rewrite(const std::string& file, std::string_view bytes, const Header& header) {
-  Walk walk(file, bytes, header);
+std::string rewrite(const std::string& file, std::string_view bytes, const Header& header, Colors* colors) {
+  Walk walk(file, bytes, header, colors);
   walk.run();
   return walk.rewritten();
 }

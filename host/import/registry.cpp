@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
+#include <algorithm>
+#include <utility>
+
 #include "import/detail/importers.h"
 #include "import/import.h"
 
@@ -12,10 +15,36 @@ Imported imported(const std::filesystem::path& path, const ImageReader& images, 
   return function(path, images, options);
 }
 
+void set_picture(std::vector<Format>& rows, const char* name, int samples, double least_width) {
+  for (Format& format : rows)
+    if (format.name == name) {
+      format.samples_per_pixel = samples;
+      format.least_width = least_width;
+    }
+}
+
+/// The root elements that tell formats of one ending apart.
+const std::vector<std::pair<std::string, std::string>>& xml_roots() {
+  static const std::vector<std::pair<std::string, std::string>> rows = {
+#define IMPORTER(...)
+#define FULL_IMPORTER(...)
+#define XML_ROOT(name, root) {name, root},
+#include "import/importers.def"
+#undef IMPORTER
+#undef FULL_IMPORTER
+  };
+  return rows;
+}
+
 }  // namespace
 
+bool is_its_root(const Format& format, std::string_view root) {
+  return std::ranges::none_of(xml_roots(), [&](const auto& row) { return row.first == format.name && row.second != root; });
+}
+
 const std::vector<Format>& formats() {
-  static const std::vector<Format> rows = {
+  static const std::vector<Format> all = [] {
+    std::vector<Format> rows = {
 #define OPTIONS(...) \
   { __VA_ARGS__ }
 #define IMPORTER(function, name, options, ...) {name, {__VA_ARGS__}, options, &imported<function>},
@@ -24,8 +53,24 @@ const std::vector<Format>& formats() {
 #undef IMPORTER
 #undef FULL_IMPORTER
 #undef OPTIONS
-  };
-  return rows;
+    };
+#define IMPORTER(...)
+#define FULL_IMPORTER(...)
+#define PICTURE(name, samples, least_width) set_picture(rows, name, samples, least_width);
+#include "import/importers.def"
+#undef IMPORTER
+#undef FULL_IMPORTER
+    return rows;
+  }();
+  return all;
+}
+
+void set_usual_picture(Scene& scene, const std::string& name) {
+  for (const Format& format : formats())
+    if (format.name == name) {
+      scene.sampler.samples_per_pixel = format.samples_per_pixel;
+      scene.film.least_width = format.least_width;
+    }
 }
 
 }  // namespace caplet

@@ -362,8 +362,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
   }
   scene.has_no_up = true;
   // Axons are thinner than pixels.
-  scene.film.least_width = 1.5;
-  scene.sampler.samples_per_pixel = 64;
+  set_usual_picture(scene, "swc");
   scene.unit = "\u00b5m";
   return scene;
 }

@@ -198,17 +198,13 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
     what_.clear();
     values_ = read_values(file, samples, path, options, what_);
   }
-  ValueRange range;
-  for (const double value : values_)
-    if (!std::isnan(value)) range.extend(value);
+  const ValueRange range = range_of(values_);
   if (!range.is_there) throw InputError({"--color"}, fmt::format("'{}': there is no value for {}", by, path.filename().string()));
-  const auto asked = options.range("range");
-  low_ = asked ? asked->first : range.low;
-  high_ = asked ? asked->second : range.high;
-  steps_ = map_steps;
-  if (by == "order" && high_ - low_ < kMostOrders && std::floor(low_) == low_ && std::floor(high_) == high_)
-    steps_ = static_cast<int>(high_ - low_) + 1;
-  index_.assign(static_cast<std::size_t>(steps_), -1);
+  const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
+  int steps = map_steps;
+  if (by == "order" && high - low < kMostOrders && std::floor(low) == low && std::floor(high) == high)
+    steps = static_cast<int>(high - low) + 1;
+  by_value_ = ValueColors(scene, what_, low, high, steps);
   if (options.seen) {
     *options.seen = range;
     options.seen->what = by == "depth" ? "way from the soma or root, in the file's unit" : by == "order" ? "branch order" : what_;
@@ -221,7 +217,7 @@ std::uint32_t SwcColors::add(const std::string& name, const glm::dvec3& color, i
 }
 
 std::uint32_t SwcColors::of(const SwcSample& sample) {
-  if (by_ == By::value) return of_value(sample);
+  if (by_ == By::value) return by_value_.of(values_[static_cast<std::size_t>(&sample - samples_.data())], sample.line);
   if (by_ == By::type) return of_type(sample);
   if (of_file_ < 0) of_file_ = add(file_name_, palette_color(file_), sample.line);
   return static_cast<std::uint32_t>(of_file_);
@@ -239,23 +235,6 @@ std::uint32_t SwcColors::of_type(const SwcSample& sample) {
   }
   last_type_ = sample.type;
   return last_index_;
-}
-
-std::uint32_t SwcColors::of_value(const SwcSample& sample) {
-  const double value = values_[static_cast<std::size_t>(&sample - samples_.data())];
-  if (std::isnan(value)) {
-    if (without_value_ < 0) without_value_ = add(what_ + " unknown", palette_of_type(0).reflectance, sample.line);
-    return static_cast<std::uint32_t>(without_value_);
-  }
-  const double part = high_ > low_ ? std::clamp((value - low_) / (high_ - low_), 0.0, 1.0) : 0.5;
-  const double last = std::max(steps_ - 1, 1);
-  const auto step = static_cast<int>(std::min(part * last + 0.5, static_cast<double>(steps_ - 1)));
-  std::int64_t& index = index_[static_cast<std::size_t>(step)];
-  if (index < 0) {
-    const double at = steps_ > 1 ? step / last : 0.5;
-    index = add(fmt::format("{} {:.6g}", what_, low_ + (high_ - low_) * at), viridis(at), sample.line);
-  }
-  return static_cast<std::uint32_t>(index);
 }
 
 }  // namespace caplet

@@ -46,6 +46,23 @@ TEST_F(Options, SeedMakesOtherSamples) {
   EXPECT_NE(one.find("R")->floats, two.find("R")->floats);
 }
 
+// What the help says of samples and sizes is what pictures of such files have.
+TEST_F(Options, HelpSaysWhatPicturesUsuallyHave) {
+  const std::string help = run({"render", "--help"}).out;
+  std::string words;  // lines are broken anywhere between them
+  for (const char c : help)
+    if (c != '\n' && c != ' ') words += c;
+  EXPECT_THAT(words, HasSubstr("else16,64ofswc"));
+  EXPECT_THAT(words, HasSubstr("else1280x720"));
+  EXPECT_THAT(words, HasSubstr("unlessasked0,1.5ofswc"));
+  test::write_file(folder_ / "n.swc", "1 1 0 0 0 1 -1\n2 3 0 5 0 0.5 1\n");
+  test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(json({"info", "n.swc", "--json"}).at("samples_per_pixel"), 64);
+  const nlohmann::json mesh = json({"info", "m.obj", "--json"});
+  EXPECT_EQ(mesh.at("samples_per_pixel"), 16);
+  EXPECT_EQ(mesh.at("image").at("width"), 1280);
+}
+
 // Without scattering no light comes from a surface that does not emit; the sky is seen all the same.
 TEST_F(Options, MaxDepthLimitsScattering) {
   const auto center = [](const LayeredImage& image) { return image.find("R")->floats[8 * 24 + 12]; };

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 
 #include "import/import.h"
 #include "support/data.h"
@@ -104,9 +105,46 @@ TEST(Hair, SegmentsThicknessAndColours) {
   const auto color = [&](std::size_t i) {
     return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(colored.materials.at(painted.materials.at(i)).model).reflectance).rgb;
   };
-  for (std::size_t i = 0; i < 3; ++i)  // a segment has its first point's, within half a step of a fifteenth
-    EXPECT_LT(glm::length(color(i) - glm::dvec3(1, 0.5, 0.25 * static_cast<double>(i < 2 ? i : 3))), std::sqrt(3.0) / 30) << i;
+  for (std::size_t i = 0; i < 3; ++i)  // a segment has its first point's, within half a step of 1/255
+    EXPECT_LT(glm::length(color(i) - glm::dvec3(1, 0.5, 0.25 * static_cast<double>(i < 2 ? i : 3))), std::sqrt(3.0) / 509) << i;
   EXPECT_EQ(std::get<CapsulesShape>(colored.shapes.at(0).geometry).radius0[1], 2.0F);
+}
+
+/// How far a component of a capsule's colour is from the file's at most, of so many capsules with random colours, or with those
+/// of a line from black to white; and the number of materials.
+std::pair<double, std::size_t> worst_color(std::uint32_t count, bool is_line) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> draw(0, 1);
+  Writer arrays;
+  std::vector<glm::vec3> colors;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    arrays.put(static_cast<float>(i)).put(0.0F).put(0.0F);
+    colors.emplace_back(draw(random), draw(random), draw(random));
+    if (is_line) colors.back() = glm::vec3(static_cast<float>(i) / static_cast<float>(count));
+  }
+  for (const glm::vec3& c : colors) arrays.put(c.x).put(c.y).put(c.z);
+  std::string file = hair_file(1, count, 18, arrays);
+  const std::uint32_t segments = count - 1;
+  std::memcpy(file.data() + 16, &segments, sizeof segments);
+  const Scene scene = scene_of("p.hair", file, {{{"color", "file"}}});
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  double worst = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const glm::dvec3 shown =
+        std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials.at(capsules.materials.at(i)).model).reflectance).rgb;
+    for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(shown[k] - static_cast<double>(colors[i][k])));
+  }
+  return {worst, scene.materials.size()};
+}
+
+TEST(Hair, ColoursAreAsFineAsTheirNumberAllows) {
+  // Half a step of 1/255, and of the coarser steps besides.
+  EXPECT_LT(worst_color(4000, false).first, 1 / 509.0);
+  EXPECT_LT(worst_color(60000, true).first, 1 / 509.0);
+  const auto [worst, materials] = worst_color(60000, false);
+  EXPECT_LT(worst, 1 / 30.0 + 1 / 509.0);
+  EXPECT_LE(materials, 4096u);
+  EXPECT_GT(materials, 3000u);
 }
 
 TEST(Hair, DefaultsOfTheHeader) {
@@ -222,6 +260,168 @@ TEST(Fibres, ColoursTellDirections) {
   EXPECT_EQ(glm::dvec3(scene.shapes[0].world_from_object * glm::dvec4(0, 0, 1, 0)), glm::dvec3(0, 1, 0));
 }
 
+// --- Scalars ---
+
+/// What tests/fibres/files/make.py gave to nibabel, trx-python and VTK; what the file calls its three columns.
+struct Written {
+  const char* file;
+  std::string columns;
+};
+const Written written[] = {
+    {"scalars.trk", "columns"}, {"scalars.trx", "columns"}, {"scalars.vtk", "three columns"}, {"old.vtk", "three columns"}};
+
+std::filesystem::path file_of(const Written& one) { return test::source_folder() / "tests/fibres/files" / one.file; }
+
+FibreScalars scalars_of(const Written& one, const std::string& wanted) {
+  FibreScalars out;
+  out.wanted = wanted;
+  const std::filesystem::path path = file_of(one);
+  std::ifstream stream(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const Fibres fibres = path.extension() == ".trx"   ? read_trx(path, &out)
+                        : path.extension() == ".trk" ? read_trk(bytes, one.file, &out)
+                                                     : read_vtk(bytes, one.file, &out);
+  EXPECT_EQ(fibres.ends, (std::vector<std::uint64_t>{3, 5})) << one.file;
+  EXPECT_EQ(fibres.points.at(4), glm::vec3(0, 3, 5)) << one.file;
+  return out;
+}
+
+TEST(Scalars, OfFilesOfOtherPrograms) {
+  for (const Written& one : written) {
+    const FibreScalars fa = scalars_of(one, "fa");
+    EXPECT_TRUE(fa.of_points) << one.file;
+    EXPECT_EQ(fa.values, (std::vector<float>{0.1F, 0.2F, 0.3F, 0.4F, 0.5F})) << one.file;
+    const FibreScalars column = scalars_of(one, one.columns + "[1]");
+    EXPECT_EQ(column.values, (std::vector<float>{1, 4, 7, 10, 13})) << one.file;
+    const FibreScalars weight = scalars_of(one, "weight");
+    EXPECT_FALSE(weight.of_points) << one.file;
+    EXPECT_EQ(weight.values, (std::vector<float>{5, -2})) << one.file;  // the cell before the lines is none of them
+    const FibreScalars none = scalars_of(one, "FA");
+    EXPECT_EQ(none.name, "");
+    std::vector<std::string> names = none.names;
+    std::ranges::sort(names);
+    std::vector<std::string> expected{one.columns + "[0]", one.columns + "[1]", one.columns + "[2]", "fa", "weight"};
+    std::ranges::sort(expected);
+    EXPECT_EQ(names, expected) << one.file;
+  }
+  EXPECT_EQ(scalars_of(written[0], "").name, "columns[0]");
+  EXPECT_EQ(scalars_of(written[1], "").name, "columns[0]");
+  EXPECT_EQ(scalars_of(written[2], "").name, "weight");  // VTK writes those of cells first
+}
+
+/// Linear sRGB of the first and last colours of matplotlib's viridis, (68, 1, 84) and (253, 231, 37) of 255.
+glm::dvec3 decoded(glm::dvec3 srgb) {
+  for (int k = 0; k < 3; ++k) srgb[k] = srgb[k] <= 0.04045 ? srgb[k] / 12.92 : std::pow((srgb[k] + 0.055) / 1.055, 2.4);
+  return srgb;
+}
+
+TEST(Scalars, ColoursAndLegend) {
+  const glm::dvec3 lowest = decoded(glm::dvec3(68, 1, 84) / 255.0), highest = decoded(glm::dvec3(253, 231, 37) / 255.0);
+  for (const Written& one : written) {
+    const auto scene_by = [&](std::map<std::string, std::string> options) {
+      return import_scene(file_of(one), test::NoImages(), ImportOptions(std::move(options)));
+    };
+    const auto color = [](const Scene& scene, std::size_t i) {
+      const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+      return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials.at(capsules.materials.at(i)).model).reflectance).rgb;
+    };
+    const Scene by_weight = scene_by({{"color", "scalar:weight"}});
+    EXPECT_LT(glm::length(color(by_weight, 0) - highest), 0.005);  // half a step of 255, through the curve's steepest part
+    EXPECT_EQ(color(by_weight, 0), color(by_weight, 1));
+    EXPECT_LT(glm::length(color(by_weight, 2) - lowest), 0.005);
+    ASSERT_TRUE(by_weight.legend);
+    EXPECT_EQ(by_weight.legend->title, "weight");
+    EXPECT_EQ(by_weight.legend->low, -2);
+    EXPECT_EQ(by_weight.legend->high, 5);
+    // A segment has the mean of its ends: 0.15, 0.25 and 0.45 of 0.15 to 0.45.
+    const Scene by_fa = scene_by({{"color", "scalar:fa"}, {"range", "0.15,0.45"}});
+    EXPECT_LT(glm::length(color(by_fa, 0) - lowest), 0.005);
+    EXPECT_LT(glm::length(color(by_fa, 2) - highest), 0.005);
+    const auto& capsules = std::get<CapsulesShape>(by_fa.shapes.at(0).geometry);
+    EXPECT_EQ(by_fa.materials.at(capsules.materials.at(1)).name, "fa 0.25");  // step 21 of 63
+    const auto said = [&](std::map<std::string, std::string> options) {
+      return complaint([&] { scene_by(std::move(options)); });
+    };
+    EXPECT_THAT(said({{"color", "scalar:FA"}}), AllOf(HasSubstr("--color"), HasSubstr("'FA' is none"), HasSubstr("'weight'")));
+    EXPECT_THAT(said({{"color", "scalar:"}}), HasSubstr("--color"));
+    EXPECT_THAT(said({{"range", "0,1"}}), AllOf(HasSubstr("--range"), HasSubstr("--color scalar")));
+    EXPECT_THAT(said({{"color", "scalars"}}), HasSubstr("direction, fibre, file, scalar"));
+  }
+}
+
+TEST(Scalars, WithoutValues) {
+  // One end of a segment has none: the other's. Both: grey, and not of the range.
+  const std::string head =
+      "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\nPOINTS 5 float\n0 0 0 1 0 0 2 0 0 3 0 0 4 0 0\n"
+      "LINES 1 6\n5 0 1 2 3 4\nPOINT_DATA 5\nSCALARS t float\n";
+  const Scene scene = scene_of("n.vtk", head + "1 nan nan 3 inf\n", {{{"color", "scalar"}}});
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  const auto name = [&](std::size_t i) { return scene.materials.at(capsules.materials.at(i)).name; };
+  EXPECT_EQ(name(0), "t 1");
+  EXPECT_EQ(name(1), "t unknown");
+  EXPECT_EQ(name(2), "t 3");
+  EXPECT_EQ(name(3), "t 3");  // beyond the range: its end
+  EXPECT_EQ(scene.legend->high, 3);
+  EXPECT_THAT(complaint([&] {
+                scene_of("n.vtk", head + "nan nan nan nan nan\n", {{{"color", "scalar"}}});
+              }),
+              HasSubstr("there is no value"));
+  EXPECT_THAT(complaint([&] {
+                scene_of("n.hair", hair_file(1, 2, 2, Writer().put(0.0F).put(0.0F).put(0.0F).put(1.0F).put(0.0F).put(0.0F)),
+                         {{{"color", "scalar"}}});
+              }),
+              AllOf(HasSubstr("--color"), HasSubstr("no scalars")));
+}
+
+TEST(BadScalars, AreRefused) {
+  const std::string head =
+      "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\nLINES 1 3\n2 0 1\n";
+  const auto said = [&](const std::string& rest, const std::string& wanted = "") {
+    FibreScalars scalars;
+    scalars.wanted = wanted;
+    return complaint([&] { read_vtk(head + rest, "x.vtk", &scalars); });
+  };
+  EXPECT_EQ(said("POINT_DATA 2\nSCALARS a float\nLOOKUP_TABLE default\n1 2\n"), "");
+  EXPECT_THAT(said("POINT_DATA 3\n"), HasSubstr("there are 2"));
+  EXPECT_THAT(said("CELL_DATA 2\n"), HasSubstr("there are 1"));
+  EXPECT_THAT(said("POINT_DATA 2\nSCALARS a float\nLOOKUP_TABLE default\n1 x\n"), AllOf(HasSubstr("x.vtk:12"), HasSubstr("'x'")));
+  EXPECT_THAT(said("POINT_DATA 2\nSCALARS a float\n1\n"), HasSubstr("ends early"));
+  EXPECT_THAT(said("POINT_DATA 2\nSCALARS a colour\n1\n"), HasSubstr("'colour' is no type"));
+  EXPECT_THAT(said("POINT_DATA 2\nFIELD f 1\na 1 3 float\n1 2 3\n"), HasSubstr("has 3 rows; there are 2 points"));
+  EXPECT_THAT(said("POINT_DATA 2\nFIELD f 1\na 99999999 99999999999999 float\n1 2 3\n", "b"), HasSubstr("x.vtk"));
+  EXPECT_THAT(said("POINT_DATA 2\nPICTURES f 1\n"), HasSubstr("'PICTURES'"));
+  EXPECT_EQ(complaint([&] { read_vtk(head + "POINT_DATA 2\nPICTURES f 1\n", "x.vtk"); }), "");  // nothing is asked of it
+  const auto offsets = [](const std::string& rest) {
+    return complaint([&] {
+      read_vtk("# vtk DataFile Version 5.1\nlines\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\nLINES 2 2\n" + rest,
+               "x.vtk");
+    });
+  };
+  EXPECT_EQ(offsets("OFFSETS vtktypeint64\n0 2\nCONNECTIVITY vtktypeint64\n0 1\n"), "");
+  EXPECT_THAT(offsets("OFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1\n"), HasSubstr("from 0 to 3 of 2"));
+  EXPECT_THAT(offsets("OFFSETS vtktypeint64\n0 2\n0 1\n"), HasSubstr("CONNECTIVITY"));
+  const auto trx = [](const std::string& name, const std::string& values) {
+    const std::string header = "{\"NB_VERTICES\": 2, \"NB_STREAMLINES\": 1}", points(24, '\0');
+    const std::string bytes = test::zip_of(
+        {{"header.json", header}, {"positions.3.float32", points}, {"offsets.uint32", std::string(4, '\0')}, {name, values}},
+        true);
+    FibreScalars scalars;
+    return complaint([&] { read_trx(test::write_file("s.trx", bytes), &scalars); });
+  };
+  EXPECT_EQ(trx("dpv/a.uint8", "ab"), "");
+  EXPECT_THAT(trx("dpv/a.uint8", "abc"), HasSubstr("2 values of 1 bytes"));
+  EXPECT_THAT(trx("dpv/a.bit", "a"), HasSubstr("'bit' is no type"));
+  EXPECT_THAT(trx("dps/a.99999.uint8", "a"), HasSubstr("99999 columns"));
+  // The last track's properties are cut off.
+  const std::string trk = trk_file({1, 2, 3}, "RAS", {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1}, false);
+  EXPECT_THAT(complaint([&] { read_trk(std::string_view(trk).substr(0, trk.size() - 4), "x.trk"); }), HasSubstr("announced"));
+  FibreScalars unnamed;
+  unnamed.wanted = "property 2";
+  read_trk(trk, "x.trk", &unnamed);
+  EXPECT_EQ(unnamed.names, (std::vector<std::string>{"scalar 1", "property 1", "property 2"}));
+  EXPECT_EQ(unnamed.values, (std::vector<float>{1, 1}));
+}
+
 // Numbers of points and tracks, and the extent, by nibabel 5.
 TEST(SharedFibres, AreThoseOfNibabel) {
   CAPLET_NEEDS_DATA();
@@ -231,11 +431,12 @@ TEST(SharedFibres, AreThoseOfNibabel) {
     std::size_t tracks, points;
     glm::vec3 low, high;
   };
+  const auto plain_trk = [](std::string_view bytes, const std::string& path) { return read_trk(bytes, path); };
   const Case cases[] = {
-      {"standard.trk", read_trk, 120, 360, {-0.5F, -1.5F, -1}, {3.5F, 13.5F, 13}},
+      {"standard.trk", plain_trk, 120, 360, {-0.5F, -1.5F, -1}, {3.5F, 13.5F, 13}},
       {"standard.tck", read_tck, 120, 360, {-0.5F, -1.5F, -1}, {3.5F, 13.5F, 13}},
       {"simple.tck", read_tck, 3, 8, {0, 1, 2}, {12, 13, 14}},
-      {"tracks300.trk", read_trk, 300, 14576, {64.02451F, 78.36036F, 61.47268F}, {115.55523F, 121.12667F, 91.91046F}}};
+      {"tracks300.trk", plain_trk, 300, 14576, {64.02451F, 78.36036F, 61.47268F}, {115.55523F, 121.12667F, 91.91046F}}};
   for (const Case& c : cases) {
     std::ifstream stream(test::data_folder() / "fibres/streamlines" / c.file, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

@@ -4,15 +4,18 @@
 // The fuzz target of an importer.
 #pragma once
 
+#include <algorithm>
+
 #include "import/import.h"
 #include "target.h"
 
 namespace caplet::test {
 
 /// The target of an importer of importers.def: it refuses a file with its places, or its scene, with camera and light, is one
-/// that validation has nothing to say about.
+/// that validation has nothing to say about. `has_points`: capsules may end in one.
 template <class Importer>
-int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {}) {
+int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, const ImportOptions& options = {},
+                  bool has_points = false) {
   const MemoryFile file(data, size);
   return run_target([&] {
     const Scene scene = presented(import(file.path(), OnePixel(), options));
@@ -22,8 +25,10 @@ int fuzz_importer(Importer import, const std::uint8_t* data, std::size_t size, c
     check_scene(scene);
     for (const Shape& shape : scene.shapes)
       if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-        for (const float radius : capsules->radius0) require(radius > 0);
-        for (const float radius : capsules->radius1) require(radius > 0);
+        for (std::size_t i = 0; i < capsules->radius0.size(); ++i) {
+          const float radius0 = capsules->radius0[i], radius1 = capsules->radius1.empty() ? radius0 : capsules->radius1[i];
+          require(has_points ? std::max(radius0, radius1) > 0 : std::min(radius0, radius1) > 0);
+        }
       }
   });
 }

@@ -81,14 +81,89 @@ TEST(MjcfLooks, BuiltInTexturesAreMujocos) {
   EXPECT_EQ(texel(*spot.image, 0, 1, 0), 0);
   const auto& around = std::get<ImagemapTexture>(texture(2).model);
   ASSERT_EQ(around.mapping.kind, TextureMapping::Kind::spherical);
-  // From the top (the least angle from z) to the bottom, red to blue.
-  EXPECT_GT(texel(*around.image, 0, 0, 0), 250);
-  EXPECT_LT(texel(*around.image, 0, around.image->width - 1, 0), 5);
+  // From y to -y, red to blue, as mujoco 4.0 draws it: a quarter of a turn from x (rows are from below), in the middle of angles
+  // from z.
+  const int rows = around.image->height, middle = around.image->width / 2;
+  EXPECT_GT(texel(*around.image, 3 * rows / 4, middle, 0), 250);
+  EXPECT_LT(texel(*around.image, rows / 4, middle, 0), 5);
+  EXPECT_NEAR(texel(*around.image, 0, 0, 0), 127, 3);
   // The capsule's middle, and its surface over its radius and half length.
   const glm::dvec4 p = around.mapping.texture_from_world * glm::dvec4(6, 6, 7, 1),
                    top = around.mapping.texture_from_world * glm::dvec4(5, 6, 10, 1);
   EXPECT_NEAR(p.x, 1, 1e-12);
   EXPECT_NEAR(top.z, 1, 1e-12);
+}
+
+// mujoco 4.0's tex_data of cubes, by the faces that directions from the middle meet (as it draws them): columns by the angle from
+// z in 22.5 degrees, rows from above by turns from x, backwards.
+TEST(MjcfLooks, FacesOfCubesAreMujocos) {
+  const auto image_of = [](const std::string& builtin) {
+    const Scene scene = scene_of_text("<asset><texture name='c' type='cube' builtin='" + builtin +
+                                      "' width='4' height='4' rgb1='1 0 0' rgb2='0 0 1'/><material name='c' texture='c'/></asset>"
+                                      "<worldbody><geom size='1' material='c'/></worldbody>");
+    return std::get<ImagemapTexture>(scene.textures.at(0).model).image;
+  };
+  const auto board = image_of("checker");
+  ASSERT_EQ(board->width, 8);
+  EXPECT_EQ(texel(*board, 13, 0, 0), 255);  // front: to the right and up
+  EXPECT_EQ(texel(*board, 0, 0, 0), 0);     // front: to the right and down
+  EXPECT_EQ(texel(*board, 15, 3, 0), 255);  // right: to the left (z above 0) and up
+  EXPECT_EQ(texel(*board, 15, 4, 0), 0);    // right: to the right and up
+  const auto plain = image_of("flat");
+  EXPECT_EQ(texel(*plain, 4, 4, 0), 0);  // -y is down
+  EXPECT_EQ(texel(*plain, 12, 4, 0), 255);
+}
+
+// Where mujoco 4.0 (drawn by OSMesa) shows the columns and rows of an image of 256 x 256 whose colours are their numbers: the
+// fraction of columns from the left is a x + b y + c, that of rows from the top likewise, of planes and boxes; of balls, repeat
+// times the turns around z from x, and repeat times the angle from z in half turns. Both but for whole numbers.
+TEST(MjcfLooks, TexturesLieAsMujocos) {
+  struct Lies {
+    const char *geom, *material;
+    double a, c, e, f;  // columns a x + c, rows e y + f
+  };
+  const Lies flat[] = {{"type='plane' size='2 1 .1'", "texrepeat='1 1'", 0.25, 0.5, -0.5, 0.5},
+                       {"type='plane' size='2 1 .1'", "texrepeat='2 3'", 0.5, 0, -1.5, 0.5},
+                       {"type='plane' size='2 1 .1'", "texrepeat='1 1' texuniform='true'", 0.5, 0, -0.5, 0.5},
+                       {"type='plane' size='2 1 .1'", "texrepeat='2 3' texuniform='true'", 1, 0, -1.5, 0.5},
+                       {"type='plane' size='0 0 1'", "texrepeat='2 3' texuniform='true'", 1, 0.5, -1.5, 0.5},
+                       {"type='box' size='2 1 .5'", "texrepeat='2 3'", 0.5, 0, -1.5, 0.5},
+                       {"type='box' size='2 1 .5'", "texrepeat='2 3' texuniform='true'", 1, 0, -1.5, 0.5},
+                       {"type='box' size='2.5 1.5 .5'", "texrepeat='1 1' texuniform='true'", 0.5, 0.25, -0.5, 0.75}};
+  const auto mapping_of = [](const std::string& geom, const std::string& material) {
+    const Scene scene = scene_of_text(
+        "<asset><texture name='c' type='2d' builtin='checker' width='4' height='4'/><material name='c' texture='c' " + material +
+        "/></asset><worldbody><geom " + geom + " material='c'/></worldbody>");
+    const Material& of = scene.materials.at(scene.shapes.at(0).material);
+    return std::get<ImagemapTexture>(scene.textures.at(*texture_of(of, "base_color")).model).mapping;
+  };
+  const auto same = [](double a, double b) { return std::abs(a - b - std::round(a - b)) < 1e-9; };
+  for (const Lies& one : flat) {
+    const TextureMapping mapping = mapping_of(one.geom, one.material);
+    for (const auto& [x, y] : {std::pair(0.3, -0.2), std::pair(-1.1, 0.7)}) {
+      const glm::dvec3 p(mapping.texture_from_world * glm::dvec4(x, y, 0, 1));
+      EXPECT_TRUE(same(glm::dot(mapping.v1, p) + mapping.udelta, one.a * x + one.c)) << one.geom << one.material;
+      EXPECT_TRUE(same(1 - glm::dot(mapping.v2, p) - mapping.vdelta, one.e * y + one.f)) << one.geom << one.material;
+    }
+  }
+  // Of our u = turns around z from x, v = 1 - the angle from z in half turns.
+  for (const auto& [geom, material, columns, rows] :
+       {std::tuple("size='1.5'", "texrepeat='3 2'", 3.0, 2.0),
+        std::tuple("size='1.5'", "texrepeat='1 1' texuniform='true'", 1.5, 1.5),
+        std::tuple("type='ellipsoid' size='2 1 .5'", "texrepeat='1 3' texuniform='true'", 2.0, 3.0)}) {
+    const TextureMapping mapping = mapping_of(geom, material);
+    ASSERT_EQ(mapping.kind, TextureMapping::Kind::uv) << geom;
+    for (const auto& [turns, angle] : {std::pair(0.1, 0.25), std::pair(0.85, 0.9)}) {
+      EXPECT_TRUE(same(mapping.uscale * turns + mapping.udelta, columns * turns)) << geom;
+      EXPECT_TRUE(same(1 - mapping.vscale * (1 - angle) - mapping.vdelta, rows * angle)) << geom;
+    }
+  }
+  // Of the side of a capsule of radius 1 and half length 1.5, rows from its top, over 3 of the pi + 3 of its profile.
+  const TextureMapping side = mapping_of("type='capsule' size='1 1.5'", "texrepeat='3 2'");
+  for (const double z : {-1.5, 0.2, 1.5}) {
+    const double along = (std::acos(-1.0) / 2 + 1.5 + z) / (std::acos(-1.0) + 3);
+    EXPECT_TRUE(same(1 - side.vscale * along - side.vdelta, 2 * (0.5 - z / 3))) << z;
+  }
 }
 
 TEST(MjcfLooks, TheFilesLightsReplaceTheStudio) {

@@ -310,6 +310,96 @@ TEST(Mjcf, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_THAT(said("<worldbody>" + closed + "</worldbody>"), HasSubstr("nested"));
 }
 
+/// An L of height 1/2, as a mesh in the file.
+std::string prism(const std::string& mesh, const std::string& compiler, const std::string& geoms) {
+  return "<compiler " + compiler + "/><asset><mesh name='m' " + mesh +
+         " vertex='0 0 0 3 0 0 3 1 0 1 1 0 1 2 0 0 2 0 0 0 .5 3 0 .5 3 1 .5 1 1 .5 1 2 .5 0 2 .5' "
+         "face='0 2 1 0 3 2 0 4 3 0 5 4 6 7 8 6 8 9 6 9 10 6 10 11 0 1 7 0 7 6 1 2 8 1 8 7 2 3 9 2 9 8 3 4 10 3 10 9 4 5 11 4 11 "
+         "10 5 0 6 "
+         "5 6 11'/></asset><worldbody>" +
+         geoms + "</worldbody>";
+}
+
+// Sizes and places by mujoco 4.0.0 (geom_size, geom_xpos, and the longest axis, the last column of geom_xmat), to its nine
+// digits.
+TEST(Mjcf, SolidsAreFittedToMeshes) {
+  const std::string geoms =
+      "<geom type='sphere' mesh='m'/><geom type='capsule' mesh='m'/><geom type='cylinder' mesh='m'/><geom type='ellipsoid' "
+      "mesh='m'/><geom type='box' mesh='m'/>";
+  struct Fitted {
+    std::string mesh, compiler;
+    double sphere, radius, capsule, cylinder;
+    glm::dvec3 box, place, longest;
+  };
+  const Fitted all[] = {{"",
+                         "",
+                         0.86637113,
+                         0.52185792,
+                         1.29446859,
+                         1.55539755,
+                         {0.24805275, 0.7956631, 1.55539755},
+                         {1.24215432, 0.77436291, 0.25},
+                         {0.9447, -0.328, 0}},
+                        {"inertia='exact'",
+                         "",
+                         0.87390275,
+                         0.52028471,
+                         1.32099648,
+                         1.58113883,
+                         {0.25, 0.79056942, 1.58113883},
+                         {1.25, 0.75, 0.25},
+                         {0.9487, -0.3162, 0}},
+                        {"inertia='shell'",
+                         "",
+                         1.00299304,
+                         0.65082651,
+                         1.38191285,
+                         1.7073261,
+                         {0.373394, 0.92825902, 1.7073261},
+                         {1.26923077, 0.76923077, 0.25},
+                         {0.9477, -0.3193, 0}},
+                        {"",
+                         "fitaabb='true'",
+                         1.74503071,
+                         1.10868223,
+                         0.63634848,
+                         1.74503071,
+                         {0.25, 1.10868223, 1.74503071},
+                         {1.39239666, 0.69012122, 0.25},
+                         {0.9447, -0.328, 0}}};
+  for (const Fitted& one : all) {
+    const Scene scene = scene_of_text(prism(one.mesh, one.compiler, geoms));
+    ASSERT_EQ(scene.shapes.size(), 5U);
+    constexpr double digits = 1e-8;
+    EXPECT_NEAR(std::get<SphereShape>(scene.shapes[0].geometry).radius, one.sphere, digits);
+    const auto capsule = std::get<CapsulesShape>(scene.shapes[1].geometry);
+    EXPECT_NEAR(static_cast<double>(capsule.radius0[0]), one.radius, 1e-7);  // a float
+    EXPECT_NEAR(static_cast<double>(capsule.p1[0].z), one.capsule, 2e-7);
+    EXPECT_NEAR(std::get<CylinderShape>(scene.shapes[2].geometry).p1.z, one.cylinder, digits);
+    expect_near(std::get<BoxShape>(scene.shapes[4].geometry).p1, one.box, digits);
+    for (const Shape& shape : scene.shapes) {
+      expect_near(at(shape), one.place, digits);
+      EXPECT_NEAR(std::abs(glm::dot(glm::normalize(way(shape, {0, 0, 1})), one.longest)), 1, 1e-4);  // of either sign
+    }
+    EXPECT_NEAR(glm::length(way(scene.shapes[3], {1, 0, 0})), one.box.x, digits);
+  }
+  // Scaled, moved and turned.
+  const Scene scene =
+      scene_of_text(prism("scale='1 2 1' refpos='1 0 0'", "",
+                          "<body pos='.5 0 0'><geom type='capsule' mesh='m' fitscale='.5' pos='1 2 3' euler='0 0 90'/></body>"));
+  const auto capsule = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  EXPECT_NEAR(static_cast<double>(capsule.radius0[0]), 0.37160654, 1e-7);
+  EXPECT_NEAR(static_cast<double>(capsule.p1[0].z), 0.81346982, 1e-7);
+  expect_near(at(scene.shapes[0]), {-0.04374337, 2.24270944, 3.25}, 1e-8);
+  // What is named and left out.
+  for (const char* left_out : {"<geom type='box' mesh='m'/>", "<composite type='cable'/>", "<flexcomp name='f' type='grid'/>"}) {
+    const Scene rest = scene_of_text(prism("inertia='convex'", "", std::string("<geom size='1'/>") + left_out));
+    EXPECT_EQ(rest.shapes.size(), 1U) << left_out;
+  }
+  EXPECT_THAT(complaint([&] { scene_of_text(prism("", "", "<geom type='box' mesh='m' fitscale='0'/>")); }),
+              HasSubstr("fitscale"));
+}
+
 TEST(Mjcf, SharedFilesHaveTheirGeoms) {
   CAPLET_NEEDS_DATA();
   // mujoco 4.0's ngeom: 100 and 22 humanoids of 19 geoms, on a floor. The arm's muscles wrap around geoms and are left out.

@@ -63,6 +63,8 @@ class File {
   template <class Vector>
   std::vector<Vector> vectors(std::size_t accessor);
   std::vector<std::uint32_t> indices(std::size_t accessor);
+  /// Of three components, or four, the last of which is left out.
+  std::vector<glm::vec3> colors(std::size_t accessor);
   /// The bytes of a buffer view.
   std::string_view view(std::size_t index);
   /// The bytes of "data:...;base64,...", or none where it is no such address.

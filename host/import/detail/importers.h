@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "import/import.h"
 #include "import/import_options.h"
@@ -20,5 +21,8 @@ namespace caplet {
 #include "import/importers.def"
 #undef IMPORTER
 #undef FULL_IMPORTER
+
+/// Samples and least width of the format's row.
+void set_usual_picture(Scene& scene, const std::string& name);
 
 }  // namespace caplet

@@ -10,6 +10,7 @@
 #include <glm/mat4x4.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,13 +64,39 @@ class MeshImages {
 /// Adds the material that shapes without one have; its index.
 std::uint32_t add_plain_material(Scene& scene);
 
+/// sRGB, from 0 to 1, as linear.
+float linear_of_srgb(float value);
+
+/// Numbers of a file as a linear colour: sRGB from 0 to 1, or to 255 where the file has any (`most`) above 1.
+glm::vec3 decoded_color(const glm::vec3& numbers, float most);
+
+/// Makes an image of the corners' linear colours, three a triangle, and gives the mesh the texture coordinates (and each triangle
+/// the vertices of its own) at which it interpolates them.
+ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<glm::vec3>& colors);
+
+/// Gives a mesh a material of its own: its former one's colour times those of the corners, linear, three a triangle. False, and
+/// nothing done, where the material has a texture, or no colour that one could be.
+bool color_corners(Scene& scene, Shape& shape, std::vector<glm::vec3> colors);
+
 /// A mesh's shape, with its material.
 Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
 
-/// The meshes of files in memory, or of an OBJ file without its materials, in the file's coordinates. Throw InputError.
+/// The meshes of files in memory, or of an OBJ file without its materials, in the file's coordinates; `colors`: where those of
+/// corners go, linear, three a triangle. Throw InputError.
 TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file);
-TriangleMeshShape parse_off(std::string_view bytes, const std::string& file);
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file, std::vector<glm::vec3>* colors = nullptr);
 std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation& where);
+
+/// What an MTL file says of a material: linear colours, numbers by their names there, files of maps from its folder.
+struct MtlValues {
+  std::string name;
+  int line = 0;
+  glm::dvec3 kd{0.6}, ks{0}, ke{0};
+  double ns = 0, ni = 1.5, d = 1;
+  int illum = -1;
+  std::optional<double> metallic, roughness;
+  std::string map_kd, map_d, map_pm, map_pr;
+};
 
 /// What shapes of a material of an MTL file have.
 struct MtlMaterial {
@@ -80,5 +107,8 @@ struct MtlMaterial {
 /// The materials of an MTL file by name, added to the scene. Throws InputError.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, const SourceLocation& named_at, Scene& scene,
                                             MeshImages& images);
+/// The material of such values, added to the scene; maps are sought in `folder`. Throws InputError at `where`.
+MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where, const std::filesystem::path& folder, Scene& scene,
+                     MeshImages& images);
 
 }  // namespace caplet

@@ -33,7 +33,7 @@ struct Class {
 };
 
 struct Compiler {
-  bool degrees = true, strips_paths = false;
+  bool degrees = true, strips_paths = false, fits_extents = false;
   std::string euler = "xyz";
   std::filesystem::path meshes, textures;  // folders
 };
@@ -153,6 +153,8 @@ class Assets {
   /// Sets what a geom has of a mesh or height field.
   void mesh(const Model& model, const std::string& name, RobotGeom& geom);
   void height_field(const Model& model, const std::string& name, RobotGeom& geom);
+  /// How a solid is fitted to a mesh whose inertia is meant so; none: to its hull, which is not read.
+  static std::optional<MeshFit> fit(const Model& model, const std::string& name, const SourceLocation& user);
   /// The material that a mesh names; empty: none.
   static std::string mesh_material(const Model& model, const std::string& name, const SourceLocation& user);
   /// The first texture of type skybox; none: null.
@@ -179,9 +181,10 @@ struct Cube {
 /// Built-in and read textures. Throws InputError.
 Pixels flat_texture(const Element& of, const ImageReader& images);
 Cube cube_texture(const Element& of, const ImageReader& images);
-/// Latitude-longitude, z up, of twice as many columns as rows.
+/// The sky, whose face up is at z: latitude-longitude, z up, of twice as many columns as rows.
 Pixels around(const Cube& cube, int height);
-/// As a texture of spherical mapping has it: columns by the angle from z, rows from below by that around z; `width` columns.
+/// Of a geom, whose face up is at y and whose front at z, as a texture of spherical mapping has it: columns by the angle from z,
+/// rows from below by that around z; `width` columns.
 Pixels by_angles(const Cube& cube, int width);
 std::shared_ptr<const TextureImage> texture_image(const Pixels& pixels);
 

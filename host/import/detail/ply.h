@@ -18,10 +18,12 @@ namespace caplet {
 
 /// Vertices keep their order and are neither merged nor split; faces keep order and winding. Normals or texture coordinates that
 /// are not finite at all vertices are left out, with a warning. `where` is the statement that names the file. Throws InputError
-/// when the file is missing, broken, or does not hold what its header says.
-TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where);
+/// when the file is missing, broken, or does not hold what its header says. `colors`: where linear colours of corners go, three a
+/// triangle, of a file that has them of vertices or else of faces.
+TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where,
+                           std::vector<glm::vec3>* colors = nullptr);
 /// The same from bytes; `file` is the name for messages.
-TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes);
+TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes, std::vector<glm::vec3>* colors = nullptr);
 
 namespace ply {
 
@@ -55,10 +57,15 @@ bool is_index_list(const Property& property);
 /// Reads and checks the header, the counts against the file's size. Throws InputError.
 Header parse_header(const std::string& file, std::string_view bytes);
 
+/// Linear colours, one a vertex or one a face; empty: none.
+struct Colors {
+  std::vector<glm::vec3> of_vertices, of_faces;
+};
+
 /// The mesh as a little-endian PLY of the plainest form: vertices before faces, x y z nx ny nz u v as far as given, then one list
 /// of 32-bit indices a face, nothing else. Throws InputError unless every value of the body is there and readable, positions are
 /// finite and indices in range.
-std::string rewrite(const std::string& file, std::string_view bytes, const Header& header);
+std::string rewrite(const std::string& file, std::string_view bytes, const Header& header, Colors* colors = nullptr);
 
 }  // namespace ply
 

@@ -31,6 +31,14 @@ enum class GeomKind { sphere, capsule, cylinder, box, mesh, plane, ellipsoid };
 
 using MeshParts = std::vector<TriangleMeshShape>;
 
+/// How a solid is fitted to a mesh: to the box of its inertia, or to its extent along that one's axes.
+struct MeshFit {
+  /// What counts: volumes from the middle of the faces, all positive or with signs, or the surface.
+  enum class Mass { legacy, exact, shell } mass = Mass::legacy;
+  bool by_extent = false;
+  double scale = 1;
+};
+
 struct RobotGeom {
   GeomKind kind = GeomKind::sphere;
   glm::dvec3 size{0};  // half lengths; radius and half length; of a plane half lengths, 0: endless
@@ -44,6 +52,7 @@ struct RobotGeom {
   bool needs_mesh = false;                 // a mesh that cannot be had is an error
   std::shared_ptr<const MeshParts> parts;  // replaces `mesh`
   glm::dmat4 geom_from_mesh{1};
+  std::optional<MeshFit> fit;  // of a solid: it takes size and place from the mesh
   SourceLocation where;
 };
 
@@ -110,6 +119,9 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// Throws InputError with the file's places.
 Robot read_urdf(const std::filesystem::path& path, const Pose& pose);
 Robot read_mjcf(const std::filesystem::path& path, const Pose& pose, const ImageReader& images);
+
+/// Gives a geom that is fitted its size and place; false where the mesh holds nothing.
+bool fit(RobotGeom& geom, const MeshParts& parts);
 
 /// ".stl" of a.STL.
 std::string lower_case_ending(const std::filesystem::path& path);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "import/detail/swc_sample.h"
+#include "import/detail/value_colors.h"
 #include "import/import_options.h"
 #include "scene/scene.h"
 
@@ -40,7 +41,6 @@ class SwcColors {
  private:
   enum class By { type, file, value };
   std::uint32_t of_type(const SwcSample& sample);
-  std::uint32_t of_value(const SwcSample& sample);
   std::uint32_t add(const std::string& name, const glm::dvec3& color, int line);
 
   Scene& scene_;
@@ -49,10 +49,8 @@ class SwcColors {
   std::string what_, file_name_;
   std::size_t file_ = 0;
   std::vector<double> values_;
-  double low_ = 0, high_ = 0;
-  int steps_ = 0;
-  std::vector<std::int64_t> index_;  // of each step: a material, or -1
-  std::int64_t without_value_ = -1, of_file_ = -1;
+  ValueColors by_value_;
+  std::int64_t of_file_ = -1;
   std::map<int, std::uint32_t> types_;
   int last_type_ = -1;
   std::uint32_t last_index_ = 0;

@@ -8,22 +8,27 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "import/detail/color_map.h"
 #include "import/detail/fibres.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
+#include "import/detail/value_colors.h"
 #include "present/present.h"
 
 namespace caplet {
 
 namespace {
 
-enum class ColorBy { direction, fibre, file };
-constexpr int kSteps = 15;               // of a colour's component: so many materials there are at most, cubed
+enum class ColorBy { direction, fibre, file, scalar };
+// Steps of a colour's component: the first with which there are at most so many materials. Of the last there never are more.
+constexpr int kSteps[] = {255, 85, 51, 17, 15};
+constexpr std::size_t kMostColors = 16 * 16 * 16;
 constexpr float kThinPart = 1.0F / 700;  // of the extent: the radius of what has none, unless a length is usual
 constexpr double kMelanin = 0.5;         // light brown
 constexpr float kStreamline = 0.2F;      // millimetres
@@ -38,29 +43,101 @@ float radius_asked(const ImportOptions& options, float usual) {
   return value;
 }
 
+/// Whether colours tell scalars, and which.
+std::optional<FibreScalars> scalars_asked(const ImportOptions& options) {
+  const std::string by = options.text("color").value_or("");
+  if (by != "scalar" && !by.starts_with("scalar:")) {
+    if (options.text("range")) throw InputError({"--range"}, "goes with --color scalar");
+    return std::nullopt;
+  }
+  FibreScalars out;
+  if (by != "scalar") {
+    out.wanted = by.substr(std::string("scalar:").size());
+    if (out.wanted.empty()) throw InputError({"--color"}, "'scalar:' names none");
+  }
+  return out;
+}
+
+/// Materials by the scalars; their range goes to where the options say.
+ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const ImportOptions& options) {
+  if (scalars.name.empty()) {
+    constexpr std::size_t most = 20;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < std::min(most, scalars.names.size()); ++i) known.push_back(caplet::quoted(scalars.names[i]));
+    if (scalars.names.size() > most) known.push_back(fmt::format("and {} more", scalars.names.size() - most));
+    throw InputError({"--color"}, known.empty()
+                                      ? fmt::format("'{}': {} has no scalars", *options.text("color"), scene.source)
+                                      : fmt::format("{} is none of the scalars of {}: {}", caplet::quoted(scalars.wanted),
+                                                    scene.source, fmt::join(known, ", ")));
+  }
+  const ValueRange range = range_of(scalars.values);
+  if (!range.is_there)
+    throw InputError({"--color"}, fmt::format("{}: there is no value in {}", caplet::quoted(scalars.name), scene.source));
+  if (options.seen) {
+    *options.seen = range;
+    options.seen->what = scalars.name;
+  }
+  const auto ends = options.range("range").value_or(std::pair(range.low, range.high));
+  return {scene, scalars.name, ends.first, ends.second, map_steps};
+}
+
+/// Of a segment: the mean of its ends, of which one may have none.
+double mean_of(float a, float b) {
+  if (std::isnan(a)) return static_cast<double>(b);
+  return std::isnan(b) ? static_cast<double>(a) : 0.5 * (static_cast<double>(a) + static_cast<double>(b));
+}
+
+/// The materials of the capsules' colours, one after the other.
 class Colors {
  public:
   Colors(Scene& scene, ColorBy by) : scene_(scene), by_(by) {}
-  std::uint32_t of(const glm::dvec3& color) {
-    const glm::ivec3 step(glm::clamp(color, 0.0, 1.0) * static_cast<double>(kSteps) + 0.5);
-    const auto [entry, fresh] = index_.try_emplace((step.x * (kSteps + 1) + step.y) * (kSteps + 1) + step.z,
-                                                   narrow<std::uint32_t>(scene_.materials.size()));
-    if (fresh) {
-      const glm::dvec3 shown = glm::dvec3(step) / static_cast<double>(kSteps);
-      const std::string name = by_ == ColorBy::direction
-                                   ? fmt::format("direction {:.2g} {:.2g} {:.2g}", shown.x, shown.y, shown.z)
-                                   : fmt::format("color {:.2g} {:.2g} {:.2g}", shown.x, shown.y, shown.z);
-      // Full colours reflect nothing of two thirds of the light: 0.85 and 0.05.
-      const glm::dvec3 reflectance = by_ == ColorBy::direction ? 0.05 + 0.8 * shown : shown;
-      scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
+  void add(const glm::dvec3& color) {
+    const glm::uvec3 step(glm::clamp(color, 0.0, 1.0) * static_cast<double>(kSteps[0]) + 0.5);
+    keys_.push_back((step.x << 16U) + (step.y << 8U) + step.z);
+  }
+
+  std::vector<std::uint32_t> materials() {
+    std::vector<std::uint32_t> distinct = keys_;
+    std::ranges::sort(distinct);
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    const auto* steps = kSteps;
+    std::vector<std::uint32_t> cells;
+    for (;; ++steps) {
+      cells.clear();
+      for (const std::uint32_t key : distinct) cells.push_back(cell_of(key, *steps));
+      std::ranges::sort(cells);
+      cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+      if (cells.size() <= kMostColors) break;
     }
-    return entry->second;
+    std::vector<std::uint32_t> out;
+    std::map<std::uint32_t, std::uint32_t> index;
+    for (const std::uint32_t key : keys_) {
+      const std::uint32_t cell = cell_of(key, *steps);
+      const auto [entry, fresh] = index.try_emplace(cell, narrow<std::uint32_t>(scene_.materials.size()));
+      if (fresh) add_material(glm::dvec3(cell >> 16U, cell >> 8U & 255U, cell & 255U) / static_cast<double>(*steps));
+      out.push_back(entry->second);
+    }
+    return out;
   }
 
  private:
+  static std::uint32_t cell_of(std::uint32_t key, int steps) {
+    const auto one = [&](unsigned shift) {
+      return ((key >> shift & 255U) * static_cast<std::uint32_t>(steps) + 127U) / 255U << shift;
+    };
+    return one(16) + one(8) + one(0);
+  }
+  void add_material(const glm::dvec3& shown) {
+    const std::string name =
+        fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == ColorBy::direction ? "direction" : "color", shown.x, shown.y, shown.z);
+    // Full colours reflect nothing of two thirds of the light: 0.85 and 0.05.
+    const glm::dvec3 reflectance = by_ == ColorBy::direction ? 0.05 + 0.8 * shown : shown;
+    scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
+  }
+
   Scene& scene_;
   ColorBy by_;
-  std::map<int, std::uint32_t> index_;
+  std::vector<std::uint32_t> keys_;  // a colour in steps of 1/255
 };
 
 struct Usual {
@@ -71,12 +148,15 @@ struct Usual {
   const char* unit = "";  // of the file's lengths
 };
 
-Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual) {
+Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual,
+               const FibreScalars* scalars = nullptr) {
   Scene scene;
   scene.source = path.string();
   if (fibres.points.empty()) throw InputError({scene.source, 0, 0}, "holds no fibres");
-  const auto by =
-      static_cast<ColorBy>(options.choice("color", {"direction", "fibre", "file"}, static_cast<std::size_t>(usual.color)));
+  const std::optional<FibreScalars> asked = scalars_asked(options);
+  const ColorBy by = asked ? ColorBy::scalar
+                           : static_cast<ColorBy>(options.choice("color", {"direction", "fibre", "file", "scalar"},
+                                                                 static_cast<std::size_t>(usual.color)));
   const bool as_hair = usual.hair && !options.text("color");
   if (options.text("color") && by == ColorBy::file && fibres.colors.empty())
     throw InputError({"--color"}, "the file has no colours");
@@ -98,6 +178,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
     scene.materials.push_back({hair, "hair", {scene.source, 0, 0}});
   }
   Colors colors(scene, by);
+  ValueColors of_scalar;
+  if (by == ColorBy::scalar) of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
   CapsulesShape capsules;
   bool tapered = false;
   std::size_t begin = 0;
@@ -108,19 +190,22 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
       const std::size_t next = i + 1 < end ? i + 1 : i;
       if (next == i && end - begin > 1) break;
       const glm::vec3 p0 = fibres.points[i], p1 = fibres.points[next];
-      std::uint32_t material = 0;
       if (!as_hair) {
         const glm::dvec3 d(p1 - p0);
         const double length = glm::length(d);
         switch (by) {
           case ColorBy::direction:
-            material = colors.of(length > 0 ? glm::abs(d) / length : glm::dvec3(0.5));
+            colors.add(length > 0 ? glm::abs(d) / length : glm::dvec3(0.5));
             break;
           case ColorBy::fibre:
-            material = colors.of(palette_color(f));
+            colors.add(palette_color(f));
             break;
           case ColorBy::file:
-            material = colors.of(glm::dvec3(fibres.colors[fibres.colors.size() == 1 ? 0 : i]));
+            colors.add(glm::dvec3(fibres.colors[fibres.colors.size() == 1 ? 0 : i]));
+            break;
+          case ColorBy::scalar:
+            capsules.materials.push_back(of_scalar.of(scalars->of_points ? mean_of(scalars->values[i], scalars->values[next])
+                                                                         : static_cast<double>(scalars->values[f])));
             break;
         }
       }
@@ -128,13 +213,12 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
       capsules.p1.push_back(p1);
       capsules.radius0.push_back(radius_at(i));
       capsules.radius1.push_back(radius_at(next));
-      capsules.materials.push_back(material);
       tapered |= capsules.radius0.back() != capsules.radius1.back();
     }
     begin = end;
   }
   if (!tapered) capsules.radius1 = {};
-  if (as_hair) capsules.materials = {};
+  if (!as_hair && by != ColorBy::scalar) capsules.materials = colors.materials();
   Shape shape;
   shape.geometry = std::move(capsules);
   shape.name = path.stem().string();
@@ -155,18 +239,23 @@ Scene import_tressfx(const std::filesystem::path& path, const ImageReader&, cons
   return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, ColorBy::fibre, "y", true});
 }
 Scene import_trk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trk(read_file(path, {}), path.string()), path, options,
-                  {kStreamline, ColorBy::direction, "z", false, "mm"});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false, "mm"}, scalars ? &*scalars : nullptr);
 }
 Scene import_tck(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
                   {kStreamline, ColorBy::direction, "z", false, "mm"});
 }
 Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_trx(path), path, options, {kStreamline, ColorBy::direction, "z", false});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_vtk(read_file(path, {}), path.string()), path, options, {0, ColorBy::direction, "z", false});
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 
 }  // namespace caplet

@@ -173,9 +173,56 @@ glm::dmat4 ras_from_trk(const Bytes& bytes, std::string_view text) {
   return ras_from_voxel * voxel_from_point;
 }
 
+/// One of TrackVis' ten names of 20 bytes, as nibabel writes them: a NUL after the name, and a number where there are several
+/// columns.
+struct TrkArray {
+  std::string name;
+  std::size_t columns = 0;  // 0: no name
+};
+
+TrkArray trk_array(std::string_view field) {
+  TrkArray out;
+  const std::size_t end = std::min(field.find('\0'), field.size());
+  out.name = field.substr(0, end);
+  if (out.name.empty()) return out;
+  out.columns = 1;
+  std::string_view rest = field.substr(std::min(end + 1, field.size()));
+  rest = rest.substr(0, rest.find('\0'));
+  std::size_t columns = 0;
+  if (parse_number(rest, columns) && columns > 0 && columns < 32768) out.columns = columns;
+  return out;
+}
+
+/// Which of the `count` columns whose names stand at `at` is wanted; -1: none. What has no name is called `otherwise` and a
+/// number.
+int trk_column(std::string_view text, std::size_t at, int count, const char* otherwise, bool of_points, FibreScalars& scalars) {
+  int begin = 0, found = -1;
+  for (std::size_t i = 0; i < 10 && begin < count; ++i) {
+    const TrkArray array = trk_array(text.substr(at + 20 * i, 20));
+    if (array.columns == 0) continue;
+    const std::size_t columns = std::min(array.columns, static_cast<std::size_t>(count - begin));
+    if (const int one = scalars.take(array.name, columns, of_points); one >= 0) found = begin + one;
+    begin += static_cast<int>(columns);
+  }
+  for (; begin < count; ++begin)
+    if (scalars.take(fmt::format("{} {}", otherwise, begin + 1), 1, of_points) == 0) found = begin;
+  return found;
+}
+
 }  // namespace
 
-Fibres read_trk(std::string_view text, const std::string& path) {
+int FibreScalars::take(const std::string& array, std::size_t components, bool are_of_points) {
+  for (std::size_t i = 0; i < components && name.empty(); ++i) {
+    names.push_back(components == 1 ? array : fmt::format("{}[{}]", array, i));
+    if (!wanted.empty() && names.back() != wanted) continue;
+    name = names.back();
+    of_points = are_of_points;
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* scalars_wanted) {
   Bytes bytes(text, path);
   constexpr std::size_t header = 1000;
   if (!text.starts_with("TRACK")) throw InputError({path, 0, 0}, "is no TrackVis file: it does not begin with 'TRACK'");
@@ -185,14 +232,23 @@ Fibres read_trk(std::string_view text, const std::string& path) {
   if (scalars < 0 || properties < 0) bytes.fail(36, "a number of scalars is negative");
   const glm::dmat4 ras = ras_from_trk(bytes, text);
   const std::size_t stride = 4 * (3 + static_cast<std::size_t>(scalars));
+  int scalar = -1, property = -1;
+  if (scalars_wanted) {
+    scalar = trk_column(text, 38, scalars, "scalar", true, *scalars_wanted);
+    property = trk_column(text, 240, properties, "property", false, *scalars_wanted);
+  }
   Fibres out;
   for (std::size_t at = header; bytes.left(at) > 0;) {
     const auto count = bytes.at<std::int32_t>(at);
     if (count < 0) bytes.fail(at, fmt::format("a track of {} points", count));
     bytes.need(at + 4, static_cast<std::uint64_t>(count), stride);
     at += 4;
-    for (std::int32_t i = 0; i < count; ++i, at += stride)
+    for (std::int32_t i = 0; i < count; ++i, at += stride) {
       out.points.emplace_back(glm::dvec3(ras * glm::dvec4(glm::dvec3(bytes.point(at)), 1)));
+      if (scalar >= 0) scalars_wanted->values.push_back(bytes.at<float>(at + 12 + 4 * static_cast<std::size_t>(scalar)));
+    }
+    bytes.need(at, static_cast<std::uint64_t>(properties), 4);
+    if (property >= 0) scalars_wanted->values.push_back(bytes.at<float>(at + 4 * static_cast<std::size_t>(property)));
     at += 4 * static_cast<std::size_t>(properties);
     out.ends.push_back(out.points.size());
   }

@@ -37,13 +37,17 @@ class TrxReader {
  public:
   explicit TrxReader(const std::filesystem::path& path) : zip_(path) {}
 
-  Fibres read() {
+  Fibres read(FibreScalars* scalars) {
     const auto header = zip_.find("header.json");
     if (!header) fail("is no TRX file: the archive has no header.json");
     const std::uint64_t points = header_count(*header, "NB_VERTICES"), tracks = header_count(*header, "NB_STREAMLINES");
     Fibres out;
     positions(points, out);
     offsets(points, tracks, out);
+    if (scalars) {
+      data("dpv/", points, true, *scalars);
+      data("dps/", tracks, false, *scalars);
+    }
     return out;
   }
 
@@ -135,6 +139,62 @@ class TrxReader {
       fail(fmt::format("{}: the last streamline ends at point {} of {}", name, out.ends.back(), points));
   }
 
+  /// Takes what is wanted of the arrays "FOLDER/NAME.TYPE" and "FOLDER/NAME.COLUMNS.TYPE", of `count` rows each.
+  void data(const std::string& folder, std::uint64_t count, bool of_points, FibreScalars& scalars) {
+    for (const std::string& file : zip_.names()) {
+      if (!file.starts_with(folder) || file.ends_with('/')) continue;
+      std::string name = file.substr(folder.size());
+      const std::size_t dot = name.rfind('.');
+      if (dot == std::string::npos || dot == 0) continue;
+      const std::string type = name.substr(dot + 1);
+      name.resize(dot);
+      std::size_t columns = 1;
+      const std::size_t before = name.rfind('.');
+      if (before != std::string::npos && before > 0 && parse_number(std::string_view(name).substr(before + 1), columns)) {
+        if (columns == 0 || columns > 10000) fail(fmt::format("{}: {} columns", file, columns));
+        name.resize(before);
+      } else {
+        columns = 1;
+      }
+      const int column = scalars.take(name, columns, of_points);
+      if (column < 0) continue;
+      values(file, type, count, columns, static_cast<std::size_t>(column), scalars.values);
+      return;
+    }
+  }
+
+  void values(const std::string& file, const std::string& type, std::uint64_t count, std::size_t columns, std::size_t column,
+              std::vector<float>& out) {
+    using Read = float (*)(const std::string&, std::size_t);
+    struct Type {
+      const char* name;
+      std::size_t size;
+      Read read;
+    };
+    static constexpr Type types[] = {
+        {"float16", 2, [](const std::string& raw, std::size_t i) { return from_half(at<std::uint16_t>(raw, i)); }},
+        {"float32", 4, as_float<float>},
+        {"float64", 8, as_float<double>},
+        {"int8", 1, as_float<std::int8_t>},
+        {"uint8", 1, as_float<std::uint8_t>},
+        {"int16", 2, as_float<std::int16_t>},
+        {"uint16", 2, as_float<std::uint16_t>},
+        {"int32", 4, as_float<std::int32_t>},
+        {"uint32", 4, as_float<std::uint32_t>},
+        {"int64", 8, as_float<std::int64_t>},
+        {"uint64", 8, as_float<std::uint64_t>}};
+    const Type* found = nullptr;
+    for (const Type& one : types)
+      if (type == one.name) found = &one;
+    if (!found) fail(file + ": " + caplet::quoted(type) + " is no type of numbers that is read");
+    const std::string raw = bytes(file, count * columns, found->size);
+    for (std::uint64_t i = 0; i < count; ++i) out.push_back(found->read(raw, i * columns + column));
+  }
+  template <class Number>
+  static float as_float(const std::string& raw, std::size_t i) {
+    return static_cast<float>(at<Number>(raw, i));
+  }
+
   ZipFile zip_;
   nlohmann::json header_;
   bool parsed_ = false;
@@ -142,6 +202,6 @@ class TrxReader {
 
 }  // namespace
 
-Fibres read_trx(const std::filesystem::path& path) { return TrxReader(path).read(); }
+Fibres read_trx(const std::filesystem::path& path, FibreScalars* scalars) { return TrxReader(path).read(scalars); }
 
 }  // namespace caplet

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/error.h"
 #include "import/detail/fibres.h"
@@ -20,7 +22,8 @@ namespace {
 
 class VtkReader {
  public:
-  VtkReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+  VtkReader(std::string_view text, const std::string& path, FibreScalars* scalars)
+      : text_(text), path_(path), scalars_(scalars) {}
 
   Fibres read() {
     if (!line().starts_with("# vtk DataFile")) fail("is no legacy VTK file");
@@ -35,17 +38,21 @@ class VtkReader {
         points();
       else if (section == "LINES")
         lines();
-      else if (section == "POINT_DATA" || section == "CELL_DATA")
-        break;  // numbers of points and lines are not drawn
       else if (section == "VERTICES" || section == "POLYGONS" || section == "TRIANGLE_STRIPS")
-        cells([](const std::vector<std::int64_t>&) {});
+        cells([this, &section](const std::vector<std::int64_t>&) { ++(section == "VERTICES" ? before_lines_ : after_lines_); });
+      else if (section == "FIELD")
+        field(nullptr);
       else if (section == "METADATA")
-        while (!text_.empty() && !trimmed(line()).empty()) {
-        }
-      else
+        metadata();
+      else if (section != "POINT_DATA" && section != "CELL_DATA")
         fail(quoted(section) + " is no section that is read");
+      else if (out_.ends.empty() || !scalars_)
+        break;
+      else if (attributes(section == "POINT_DATA"))
+        break;
     }
     if (out_.ends.empty()) fail("holds no lines");
+    if (scalars_) place_values();
     return std::move(out_);
   }
 
@@ -115,11 +122,25 @@ class VtkReader {
     }
   }
 
+  /// The next section, without taking it.
+  bool next_is(std::string_view name) {
+    return skip() && text_.starts_with(name) && (text_.size() == name.size() || is_space(text_[name.size()]));
+  }
+  void metadata() {
+    while (!text_.empty() && !trimmed(line()).empty()) {
+    }
+  }
+
   /// Calls work with the indices of each cell.
   template <class Work>
   void cells(const Work& work) {
     const std::int64_t count = whole(), size = whole();
     skip_blanks();
+    const std::string_view rest = text_;
+    const int passed = passed_;
+    if (next_is("OFFSETS")) return cells_by_offsets(count, size, work);
+    text_ = rest;
+    passed_ = passed;
     begin_data();
     std::int64_t used = 0;
     std::vector<std::int64_t> indices;
@@ -132,6 +153,191 @@ class VtkReader {
       work(indices);
     }
   }
+  /// Of versions from 5: where each cell begins among the points' indices, and where the last one ends.
+  template <class Work>
+  void cells_by_offsets(std::int64_t count, std::int64_t size, const Work& work) {
+    word();
+    const std::vector<std::int64_t> offsets = whole_numbers(count);
+    if (word() != "CONNECTIVITY") fail("expected CONNECTIVITY");
+    const std::vector<std::int64_t> connectivity = whole_numbers(size);
+    std::vector<std::int64_t> indices;
+    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+      if (offsets[i] < 0 || offsets[i] > offsets[i + 1] || offsets[i + 1] > size)
+        fail(fmt::format("cell {} is from {} to {} of {} indices", i, offsets[i], offsets[i + 1], size));
+      indices.assign(connectivity.begin() + offsets[i], connectivity.begin() + offsets[i + 1]);
+      work(indices);
+    }
+  }
+  std::vector<std::int64_t> whole_numbers(std::int64_t count) {
+    const Type type = type_of(word());
+    begin_data();
+    std::vector<std::int64_t> out;
+    for (std::int64_t i = 0; i < count; ++i)
+      out.push_back(!binary_ ? whole() : type.size == 8 ? raw<std::int64_t>() : raw<std::int32_t>());
+    return out;
+  }
+
+  // --- Numbers of points and cells ---
+
+  struct Type {
+    std::string_view name;
+    std::size_t size;  // bytes; 0: bits
+    float (*read)(VtkReader&);
+  };
+  template <class Number>
+  static float as_float(VtkReader& reader) {
+    return static_cast<float>(reader.raw<Number>());
+  }
+  Type type_of(std::string_view name) const {
+    static constexpr Type types[] = {{"float", 4, as_float<float>},
+                                     {"double", 8, as_float<double>},
+                                     {"char", 1, as_float<std::int8_t>},
+                                     {"signed_char", 1, as_float<std::int8_t>},
+                                     {"unsigned_char", 1, as_float<std::uint8_t>},
+                                     {"short", 2, as_float<std::int16_t>},
+                                     {"unsigned_short", 2, as_float<std::uint16_t>},
+                                     {"int", 4, as_float<std::int32_t>},
+                                     {"unsigned_int", 4, as_float<std::uint32_t>},
+                                     {"vtkIdType", 4, as_float<std::int32_t>},
+                                     {"long", 8, as_float<std::int64_t>},
+                                     {"unsigned_long", 8, as_float<std::uint64_t>},
+                                     {"vtktypeint64", 8, as_float<std::int64_t>},
+                                     {"vtktypeuint64", 8, as_float<std::uint64_t>},
+                                     {"bit", 0, nullptr}};
+    for (const Type& type : types)
+      if (type.name == name) return type;
+    fail(quoted(name) + " is no type of numbers that is read");
+  }
+
+  /// Names are written with %20 for a blank, and so on.
+  static std::string plain(std::string_view name) {
+    std::string out;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      unsigned code = 0;
+      const bool coded = name[i] == '%' && i + 2 < name.size() &&
+                         std::from_chars(name.data() + i + 1, name.data() + i + 3, code, 16).ptr == name.data() + i + 3;
+      out += coded && code >= 0x20 ? static_cast<char>(code) : name[i];
+      if (coded && code >= 0x20) i += 2;
+    }
+    return out;
+  }
+
+  /// `count` rows of `components` numbers, of which one goes to the values; -1: none does.
+  void numbers(std::int64_t count, std::int64_t components, std::string_view type_name, int taken) {
+    const Type type = type_of(type_name);
+    begin_data();
+    if (components < 1 || components > 10000) fail(fmt::format("{} components", components));
+    if (count > std::numeric_limits<std::int64_t>::max() / components) fail(fmt::format("{} rows are announced", count));
+    if (binary_ && (taken < 0 || type.size == 0)) {
+      const auto all = static_cast<std::uint64_t>(count * components);
+      const std::uint64_t size = type.size == 0 ? all / 8 + (all % 8 != 0 ? 1 : 0) : all;
+      if (size > text_.size() / std::max<std::size_t>(type.size, 1)) fail("the file ends before what it announces");
+      if (taken >= 0)
+        for (std::uint64_t i = static_cast<std::uint64_t>(taken); i < all; i += static_cast<std::uint64_t>(components))
+          scalars_->values.push_back((static_cast<unsigned char>(text_[i / 8]) >> (7 - i % 8) & 1) != 0 ? 1.0F : 0.0F);
+      text_.remove_prefix(size * std::max<std::size_t>(type.size, 1));
+      return;
+    }
+    for (std::int64_t i = 0; i < count; ++i)
+      for (std::int64_t k = 0; k < components; ++k) {
+        const float value = binary_ ? type.read(*this) : any_number();
+        if (k == taken) scalars_->values.push_back(value);
+      }
+  }
+  float any_number() {
+    const std::string_view text = word();
+    double value = 0;
+    if (!parse_number(text.starts_with('+') ? text.substr(1) : text, value)) fail(quoted(text) + " is not a number");
+    return static_cast<float>(value);
+  }
+
+  int take(std::string_view name, std::int64_t components, bool of_points) {
+    return components < 1
+               ? -1
+               : scalars_->take(plain(name), static_cast<std::size_t>(std::min<std::int64_t>(components, 10000)), of_points);
+  }
+
+  /// "NAME COUNT", and as many arrays, of which one may be taken where it is of points or cells.
+  void field(const bool* of_points) {
+    word();
+    const std::int64_t arrays = whole();
+    for (std::int64_t i = 0; i < arrays; ++i) {
+      const std::string_view name = word();
+      const std::int64_t components = whole(), rows = whole();
+      const std::string_view type = word();
+      if (type == "string" || type == "utf8_string" || type == "variant") fail(quoted(type) + " fields are not read");
+      const int taken = of_points ? take(name, components, *of_points) : -1;
+      if (taken >= 0 && rows != rows_)
+        fail(fmt::format("{} has {} rows; there are {} {}", quoted(name), rows, rows_, *of_points ? "points" : "cells"));
+      numbers(rows, components, type, taken);
+      if (taken >= 0) return;
+      if (next_is("METADATA")) metadata();
+    }
+  }
+
+  /// Those of points or of cells, to the end of them; whether what was wanted is among them.
+  bool attributes(bool of_points) {
+    rows_ = whole();
+    const std::size_t there = of_points ? points_.size() : before_lines_ + out_.ends.size() + after_lines_;
+    if (rows_ != static_cast<std::int64_t>(there))
+      fail(fmt::format("numbers of {} {}: there are {}", rows_, of_points ? "points" : "cells", there));
+    while (skip() && !next_is("POINT_DATA") && !next_is("CELL_DATA")) {
+      const std::string_view what = word();
+      if (what == "METADATA") {
+        metadata();
+        continue;
+      }
+      if (what == "FIELD") {
+        field(&of_points);
+      } else {
+        const std::string_view name = word();
+        if (what == "SCALARS") {
+          const std::string_view type = word();
+          skip_blanks();
+          std::int64_t components = 1;
+          if (!text_.empty() && text_.front() >= '0' && text_.front() <= '9') components = whole();
+          const int taken = take(name, components, of_points);
+          if (next_is("LOOKUP_TABLE")) {
+            word();
+            word();
+          } else if (binary_) {
+            fail("expected LOOKUP_TABLE");
+          }
+          numbers(rows_, components, type, taken);
+        } else if (what == "COLOR_SCALARS") {
+          numbers(rows_, whole(), binary_ ? "unsigned_char" : "float", -1);
+        } else if (what == "LOOKUP_TABLE") {
+          numbers(whole(), 4, binary_ ? "unsigned_char" : "float", -1);
+        } else if (what == "TEXTURE_COORDINATES") {
+          const std::int64_t dimension = whole();
+          numbers(rows_, dimension, word(), -1);
+        } else {
+          const bool is_vector = what == "VECTORS" || what == "NORMALS";
+          const std::int64_t components = is_vector ? 3 : what == "TENSORS" ? 9 : what == "TENSORS6" ? 6 : 1;
+          if (components == 1 && what != "GLOBAL_IDS" && what != "PEDIGREE_IDS" && what != "EDGE_FLAGS")
+            fail(quoted(what) + " is no section that is read");
+          const std::string_view type = word();
+          numbers(rows_, components, type, is_vector ? take(name, components, of_points) : -1);
+        }
+      }
+      if (!scalars_->name.empty()) return true;
+    }
+    return false;
+  }
+
+  /// The values of the file's points become those of the fibres' points, and those of cells those of its lines.
+  void place_values() {
+    if (scalars_->name.empty()) return;
+    std::vector<float> out;
+    if (scalars_->of_points) {
+      for (const std::int64_t index : indices_) out.push_back(scalars_->values[static_cast<std::size_t>(index)]);
+    } else {
+      const auto begin = scalars_->values.begin() + static_cast<std::ptrdiff_t>(before_lines_);
+      out.assign(begin, begin + std::ssize(out_.ends));
+    }
+    scalars_->values = std::move(out);
+  }
+
   void skip_blanks() {
     while (!text_.empty() && is_blank(text_.front())) text_.remove_prefix(1);
   }
@@ -141,6 +347,7 @@ class VtkReader {
       for (const std::int64_t index : indices) {
         if (index < 0 || index >= std::ssize(points_)) fail(fmt::format("point {}: there are {}", index, points_.size()));
         out_.points.push_back(points_[static_cast<std::size_t>(index)]);
+        if (scalars_) indices_.push_back(index);
       }
       out_.ends.push_back(out_.points.size());
     });
@@ -151,11 +358,17 @@ class VtkReader {
   int passed_ = 0, at_ = 0;  // lines that have ended, and the line of what was read last
   bool binary_ = false;
   std::vector<glm::vec3> points_;
+  FibreScalars* scalars_;
+  std::vector<std::int64_t> indices_;               // of the fibres' points among the file's
+  std::size_t before_lines_ = 0, after_lines_ = 0;  // cells; those of VERTICES come first
+  std::int64_t rows_ = 0;                           // of the numbers that are read
   Fibres out_;
 };
 
 }  // namespace
 
-Fibres read_vtk(std::string_view text, const std::string& path) { return VtkReader(text, path).read(); }
+Fibres read_vtk(std::string_view text, const std::string& path, FibreScalars* scalars) {
+  return VtkReader(text, path, scalars).read();
+}
 
 }  // namespace caplet

@@ -169,9 +169,26 @@ class GltfReader {
                                {scene_.source, 0, 0});
       shape.emission = look.emission;
       shape.alpha = look.alpha;
+      color(shape, primitive);
       out.push_back(std::move(shape));
     }
     return out;
+  }
+
+  /// COLOR_0 times the material's colour.
+  void color(Shape& shape, const Json& primitive) {
+    const auto accessor =
+        file_.index(file_.object(primitive, "attributes"), "COLOR_0", file_.list("accessors").size(), "accessor");
+    if (!accessor) return;
+    const auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
+    const std::vector<glm::vec3> given = file_.colors(*accessor);
+    if (given.size() != mesh.positions.size()) file_.fail("a mesh has another number of colours than of positions");
+    std::vector<glm::vec3> corners;
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t vertex : triangle) corners.push_back(given[vertex]);
+    if (!color_corners(scene_, shape, std::move(corners)))
+      Diagnostics().warning(shape.where,
+                            "the colours of the vertices of '" + shape.name + "' are left out: its material has textures");
   }
 
   TriangleMeshShape mesh_of(const Json& primitive) {

@@ -300,6 +300,20 @@ std::vector<Vector> File::vectors(std::size_t accessor) {
 template std::vector<glm::vec2> File::vectors<glm::vec2>(std::size_t accessor);
 template std::vector<glm::vec3> File::vectors<glm::vec3>(std::size_t accessor);
 
+std::vector<glm::vec3> File::colors(std::size_t accessor) {
+  const Elements from = elements(accessor);
+  if (from.components != 3 && from.components != 4) fail(fmt::format("accessor {} has another type than colours have", accessor));
+  std::vector<glm::vec3> out(from.count);
+  for (std::size_t i = 0; i < from.count; ++i)
+    for (glm::length_t k = 0; k < 3; ++k) {
+      const double value = from.at(i, static_cast<std::size_t>(k));
+      if (!(std::abs(value) <= static_cast<double>(largest_number)))
+        fail(fmt::format("element {} of accessor {} is not finite or out of range", i, accessor));
+      out[i][k] = static_cast<float>(value);
+    }
+  return out;
+}
+
 std::vector<std::uint32_t> File::indices(std::size_t accessor) {
   const Elements from = elements(accessor);
   if (from.components != 1 || from.type == 5126) fail(fmt::format("accessor {} has another type than indices have", accessor));

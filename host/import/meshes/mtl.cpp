@@ -13,16 +13,6 @@ namespace caplet {
 
 namespace {
 
-struct Entry {
-  std::string name;
-  int line = 0;
-  glm::dvec3 kd{0.6}, ks{0}, ke{0};
-  double ns = 0, ni = 1.5, d = 1;
-  int illum = -1;
-  std::optional<double> metallic, roughness;
-  std::string map_kd, map_d, map_pm, map_pr;
-};
-
 /// The file of a map: the last words, after options such as "-s 1 1 1".
 std::string map_of(const LineWords& words) {
   std::size_t i = 1;
@@ -39,7 +29,7 @@ std::string map_of(const LineWords& words) {
   return name;
 }
 
-void statement(const LineWords& words, Entry& e) {
+void statement(const LineWords& words, MtlValues& e) {
   const std::string_view what = words.word(0);
   const auto color = [&](glm::dvec3& out) {
     if (words.count() > 1 && (words.word(1) == "spectral" || words.word(1) == "xyz")) return;
@@ -65,18 +55,18 @@ void statement(const LineWords& words, Entry& e) {
   if (what == "map_Pr") e.map_pr = map_of(words);
 }
 
-void begin_entry(std::vector<Entry>& entries, std::string name, int line) {
-  Entry& entry = entries.emplace_back();
+void begin_entry(std::vector<MtlValues>& entries, std::string name, int line) {
+  MtlValues& entry = entries.emplace_back();
   entry.name = std::move(name);
   entry.line = line;
 }
 
 class Maker {
  public:
-  Maker(const std::filesystem::path& path, Scene& scene, MeshImages& images) : path_(path), scene_(scene), images_(images) {}
+  Maker(const std::filesystem::path& folder, Scene& scene, MeshImages& images)
+      : folder_(folder), scene_(scene), images_(images) {}
 
-  MtlMaterial make(const Entry& e) {
-    const SourceLocation where{path_.string(), e.line, 0};
+  MtlMaterial make(const MtlValues& e, const SourceLocation& where) {
     MtlMaterial out;
     Material material;
     material.name = e.name;
@@ -125,9 +115,9 @@ class Maker {
 
  private:
   std::uint32_t image(const std::string& name, bool is_float, const SourceLocation& where) {
-    return images_.texture(path_.parent_path() / name, is_float, !is_float, where);
+    return images_.texture(folder_ / name, is_float, !is_float, where);
   }
-  const std::filesystem::path& path_;
+  const std::filesystem::path& folder_;
   Scene& scene_;
   MeshImages& images_;
 };
@@ -145,7 +135,7 @@ std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, c
   const std::string name = path.string();
   std::string_view text = file->text();
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  std::vector<Entry> entries;
+  std::vector<MtlValues> entries;
   for (int line = 1; !text.empty(); ++line) {
     const LineWords words(take_line(text), name, line);
     if (words.count() == 0) continue;
@@ -154,10 +144,16 @@ std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, c
     else if (!entries.empty())
       statement(words, entries.back());
   }
-  Maker maker(path, scene, images);
+  const std::filesystem::path folder = path.parent_path();
+  Maker maker(folder, scene, images);
   std::map<std::string, MtlMaterial> out;
-  for (const Entry& entry : entries) out.insert_or_assign(entry.name, maker.make(entry));
+  for (const MtlValues& entry : entries) out.insert_or_assign(entry.name, maker.make(entry, {path.string(), entry.line, 0}));
   return out;
+}
+
+MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where, const std::filesystem::path& folder, Scene& scene,
+                     MeshImages& images) {
+  return Maker(folder, scene, images).make(values, where);
 }
 
 }  // namespace caplet

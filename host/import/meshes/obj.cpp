@@ -34,7 +34,8 @@ struct CornerHash {
 struct Part {
   TriangleMeshShape mesh;
   std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
-  bool all_uvs = true, all_normals = true;
+  std::vector<glm::vec3> colors;  // of the mesh's vertices, as the file's numbers
+  bool all_uvs = true, all_normals = true, all_colors = true;
   std::string name, material;
   int line = 0;
 };
@@ -95,7 +96,7 @@ class ObjReader {
     if (words.count() == 0) return;
     const std::string_view what = words.word(0);
     if (what == "v")
-      positions_.emplace_back(words.number(1), words.number(2), words.number(3));
+      vertex_statement(words);
     else if (what == "vt")
       uvs_.emplace_back(words.number(1), words.count() > 2 ? words.number(2) : 0);
     else if (what == "vn")
@@ -111,6 +112,16 @@ class ObjReader {
     else if (what == "p" || what == "l" || what == "curv" || what == "curv2" || what == "surf" || what == "cstype") {
       if (left_out_++ == 0) first_left_out_ = line_;
     }
+  }
+
+  /// Three numbers after the place are a colour; what has four is a weight alone.
+  void vertex_statement(const LineWords& words) {
+    positions_.emplace_back(words.number(1), words.number(2), words.number(3));
+    if (words.count() != 7 || !with_materials_) return;
+    const glm::vec3 color(words.number(4), words.number(5), words.number(6));
+    colors_.resize(positions_.size() - 1, glm::vec3(-1));
+    colors_.push_back(glm::max(color, glm::vec3(0)));
+    most_color_ = std::max({most_color_, color.x, color.y, color.z});
   }
 
   void start(std::string name, std::string material) {
@@ -164,6 +175,9 @@ class ObjReader {
       part.mesh.normals.push_back(c.normal >= 0 ? normals_[static_cast<std::size_t>(c.normal)] : glm::vec3(0));
       part.all_uvs &= c.uv >= 0;
       part.all_normals &= c.normal >= 0;
+      const auto at = static_cast<std::size_t>(c.position);
+      part.colors.push_back(at < colors_.size() ? colors_[at] : glm::vec3(-1));
+      part.all_colors &= part.colors.back().x >= 0;
     }
     return entry->second;
   }
@@ -216,9 +230,27 @@ class ObjReader {
         shape.alpha = material->second.alpha;
       }
       shape.world_from_object = world;
+      if (part->all_colors) color(*part, shape);
       scene_.shapes.push_back(std::move(shape));
     }
     if (scene_.shapes.empty()) throw InputError({scene_.source, 0, 0}, "holds no faces");
+  }
+
+  /// The vertices' colours times the material's; of what has no material they alone.
+  void color(const Part& part, Shape& shape) {
+    std::vector<glm::vec3> corners;
+    for (const auto& triangle : std::get<TriangleMeshShape>(shape.geometry).triangles)
+      for (const std::uint32_t vertex : triangle) corners.push_back(decoded_color(part.colors[vertex], most_color_));
+    if (part.material.empty() || !materials_.contains(part.material)) {
+      if (!white_) {
+        white_ = narrow<std::uint32_t>(scene_.materials.size());
+        scene_.materials.push_back({DiffuseMaterial{ConstantSpectrum{1}}, "", shape.where});
+      }
+      shape.material = *white_;
+    }
+    if (!color_corners(scene_, shape, std::move(corners)))
+      Diagnostics().warning(shape.where, "the colours of the vertices are left out: the material " +
+                                             caplet::quoted(part.material) + " has textures or no colour");
   }
 
   const std::filesystem::path& path_;
@@ -229,7 +261,9 @@ class ObjReader {
   int line_ = 0, first_left_out_ = 0;
   std::size_t left_out_ = 0;
   std::vector<std::string> kept_;
-  std::vector<glm::vec3> positions_, normals_;
+  std::vector<glm::vec3> positions_, normals_, colors_;  // the last: fewer where the rest have none; -1: none
+  float most_color_ = 0;
+  std::optional<std::uint32_t> white_;
   std::vector<glm::vec2> uvs_;
   std::string name_, material_;
   Part* current_ = nullptr;

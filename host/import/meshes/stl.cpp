@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <unordered_map>
 
 #include "base/check.h"
@@ -111,14 +112,18 @@ TriangleMeshShape parse_either_stl(std::string_view bytes, const std::string& fi
 /// Words of a file across its lines.
 class OffReader {
  public:
-  OffReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  OffReader(std::string_view text, const std::string& file, std::vector<glm::vec3>* colors)
+      : text_(text), file_(file), colors_(colors) {}
   TriangleMeshShape read() {
     std::string kind(word());
     if (!kind.ends_with("OFF")) fail("is no OFF file");
     kind.resize(kind.size() - 3);
     if (kind.find_first_of("4n") != std::string::npos) fail("points of other than three coordinates are not read");
-    // Colours are left out, normals and texture coordinates read over.
-    const std::size_t extra = (kind.find('N') != std::string::npos ? 3U : 0U) + (kind.find("ST") != std::string::npos ? 2U : 0U);
+    // Normals and texture coordinates are read over: those come before the colours, these after.
+    const std::size_t extra = kind.find('N') != std::string::npos ? 3U : 0U;
+    const bool has_colors = colors_ && kind.find('C') != std::string::npos;
+    std::vector<glm::vec3> of_vertices, of_triangles;
+    bool all_vertices = has_colors, all_faces = colors_ && !has_colors;  // all have a colour
     const std::int64_t vertices = whole(), faces = whole();
     whole();
     if (vertices < 0 || faces < 0) fail("a count is negative");
@@ -128,6 +133,11 @@ class OffReader {
       for (int axis = 0; axis < 3; ++axis) p[axis] = number();
       for (std::size_t k = 0; k < extra; ++k) number();
       mesh.positions.push_back(p);
+      if (has_colors) {
+        const std::optional<glm::vec3> own = color();
+        all_vertices &= own.has_value();
+        of_vertices.push_back(own.value_or(glm::vec3(0)));
+      }
       end_line();
     }
     for (std::int64_t i = 0; i < faces; ++i) {
@@ -142,8 +152,14 @@ class OffReader {
         if (k >= 2) mesh.triangles.push_back({first, before, at});
         before = at;
       }
+      if (all_faces) {
+        const std::optional<glm::vec3> own = color();
+        all_faces = own.has_value();
+        of_triangles.resize(mesh.triangles.size(), own.value_or(glm::vec3(0)));
+      }
       end_line();
     }
+    if (all_vertices || all_faces) add_colors(mesh, of_vertices, of_triangles);
     return mesh;
   }
 
@@ -168,6 +184,26 @@ class OffReader {
     while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
   }
   void end_line() { rest_ = {}; }
+  /// Three numbers of what is left of the line; none: it has fewer (a number alone is one of a table of colours).
+  std::optional<glm::vec3> color() {
+    const std::vector<std::string_view> words = words_of(rest_);
+    if (words.size() < 3) return std::nullopt;
+    glm::vec3 out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      float value = 0;
+      const NumberError error = parse_float(words[k], value);
+      if (error != NumberError::none) fail(describe(error, words[k]));
+      out[static_cast<glm::length_t>(k)] = value;
+      most_ = std::max(most_, value);
+    }
+    return out;
+  }
+  void add_colors(const TriangleMeshShape& mesh, const std::vector<glm::vec3>& of_vertices,
+                  const std::vector<glm::vec3>& of_triangles) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      for (const std::uint32_t vertex : mesh.triangles[i])
+        colors_->push_back(decoded_color(of_vertices.empty() ? of_triangles[i] : of_vertices[vertex], most_));
+  }
   float number() {
     const std::string_view text = word();
     float value = 0;
@@ -184,13 +220,22 @@ class OffReader {
   std::string_view text_, rest_;
   const std::string& file_;
   int line_ = 0;
+  std::vector<glm::vec3>* colors_;
+  float most_ = 0;  // of the colours' numbers
 };
 
-Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const ImportOptions& options, const char* usual_up) {
+Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const ImportOptions& options, const char* usual_up,
+               std::vector<glm::vec3> colors = {}) {
   Scene scene;
   scene.source = path.string();
   if (mesh.triangles.empty()) throw InputError({scene.source, 0, 0}, "holds no faces");
   Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene), {scene.source, 0, 0});
+  if (!colors.empty()) {
+    scene.materials[0] = {DiffuseMaterial{ConstantSpectrum{1}}, "", {scene.source, 0, 0}};
+    color_corners(scene, shape, std::move(colors));
+    scene.materials.erase(scene.materials.begin());
+    shape.material = 0;
+  }
   shape.world_from_object = world_from_file(options, usual_up);
   scene.world_from_file = glm::dmat3(shape.world_from_object);
   scene.shapes.push_back(std::move(shape));
@@ -200,16 +245,22 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
 }  // namespace
 
 TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) { return parse_either_stl(bytes, file); }
-TriangleMeshShape parse_off(std::string_view bytes, const std::string& file) { return OffReader(bytes, file).read(); }
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file, std::vector<glm::vec3>* colors) {
+  return OffReader(bytes, file, colors).read();
+}
 
 Scene import_stl(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(parse_stl(read_file(path, {}), path.string()), path, options, "z");
 }
 Scene import_off(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(OffReader(TextFile(path).text(), path.string()).read(), path, options, "y");
+  std::vector<glm::vec3> colors;
+  TriangleMeshShape mesh = parse_off(TextFile(path).text(), path.string(), &colors);
+  return scene_of(std::move(mesh), path, options, "y", std::move(colors));
 }
 Scene import_ply(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_ply(path, {}), path, options, "y");
+  std::vector<glm::vec3> colors;
+  TriangleMeshShape mesh = read_ply(path, {}, &colors);
+  return scene_of(std::move(mesh), path, options, "y", std::move(colors));
 }
 
 }  // namespace caplet

@@ -39,6 +39,7 @@ class Drawing {
 
   void add(const RobotGeom& geom) {
     if (!(rgba_of(geom).a > 0)) return;
+    if (geom.fit) return add_fitted(geom);
     switch (geom.kind) {
       case GeomKind::sphere:
         return add(geom, SphereShape{geom.size.x}, glm::dmat4(1));
@@ -144,8 +145,9 @@ class Drawing {
     if (geom.kind == GeomKind::capsule || geom.kind == GeomKind::cylinder) size = {size.x, size.x, size.y};
     if (geom.kind == GeomKind::sphere) size = glm::dvec3(size.x);
     if (geom.kind == GeomKind::mesh) size = glm::dvec3(1);
+    const glm::bvec3 is_endless(!(size.x > 0), !(size.y > 0), !(size.z > 0));
     for (int k = 0; k < 3; ++k)
-      if (!(size[k] > 0)) size[k] = 1;
+      if (is_endless[k]) size[k] = 1;
     if (of.texture->by_direction) {
       mapping.kind = TextureMapping::Kind::spherical;
       if (!of.texuniform) texture_from_geom = glm::scale(texture_from_geom, 1.0 / size);
@@ -153,12 +155,28 @@ class Drawing {
       mapping.uscale = of.texrepeat.x;
       mapping.vscale = of.texrepeat.y;
     } else {
-      // Across the geom, so many times; or so many times in two units of length.
-      mapping.kind = TextureMapping::Kind::planar;
-      for (int k = 0; k < 2; ++k) {
-        const double scale = 0.5 * of.texrepeat[k] / (of.texuniform ? 1 : size[k]);
-        (k == 0 ? mapping.v1 : mapping.v2) = glm::dvec3(k == 0 ? scale : 0, k == 1 ? scale : 0, 0);
-        (k == 0 ? mapping.udelta : mapping.vdelta) = 0.5;
+      // Uniform: so often in two units of length, from the geom's edge.
+      glm::dvec2 repeat = of.texrepeat;
+      for (int k = 0; k < 2; ++k)
+        if (of.texuniform && !is_endless[k]) repeat[k] *= size[k];
+      if (geom.kind == GeomKind::plane || geom.kind == GeomKind::box || geom.kind == GeomKind::mesh) {
+        // Across x and y.
+        mapping.kind = TextureMapping::Kind::planar;
+        mapping.v1 = {0.5 * repeat.x / size.x, 0, 0};
+        mapping.v2 = {0, 0.5 * repeat.y / size.y, 0};
+        mapping.udelta = is_endless.x ? 0.5 : 0.5 * repeat.x;
+        mapping.vdelta = is_endless.y ? 0.5 : 1 - 0.5 * repeat.y;
+      } else {
+        // Around z, and from the top down.
+        mapping.uscale = repeat.x;
+        mapping.vscale = repeat.y;
+        mapping.vdelta = 1 - repeat.y;
+        if (geom.kind == GeomKind::capsule) {
+          // v goes along the whole profile: once over the side.
+          const double cap = 0.5 * std::numbers::pi * geom.size.x, side = 2 * geom.size.y;
+          mapping.vscale = repeat.y * (2 * cap + side) / side;
+          mapping.vdelta = 1 - repeat.y * (1 + cap / side);
+        }
       }
     }
     if (mapping.kind != TextureMapping::Kind::uv)
@@ -207,6 +225,13 @@ class Drawing {
       if (glm::dvec3(rgba) != glm::dvec3(0)) shape.emission = emission;
     }
     scene_.shapes.push_back(std::move(shape));
+  }
+
+  void add_fitted(const RobotGeom& geom) {
+    RobotGeom fitted = geom;
+    if (!fit(fitted, geom.parts ? *geom.parts : *files_.read(geom.mesh, geom.where)))
+      return Diagnostics().warning(geom.where, "the geom is left out: the mesh that it is fitted to holds nothing");
+    add(fitted);
   }
 
   void add_mesh(const RobotGeom& geom) {

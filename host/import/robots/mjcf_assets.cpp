@@ -176,6 +176,18 @@ void Assets::mesh(const Model& model, const std::string& name, RobotGeom& geom) 
                         glm::translate(glm::dmat4(1), -reference);
 }
 
+std::optional<MeshFit> Assets::fit(const Model& model, const std::string& name, const SourceLocation& user) {
+  const Element of = model.asset("mesh", name, user);
+  MeshFit out;
+  out.by_extent = model.compiler().fits_extents;
+  enum : std::size_t { convex, exact, legacy, shell };
+  const std::size_t inertia = of.choice("inertia", {"convex", "exact", "legacy", "shell"}, legacy);
+  if (inertia == convex) return std::nullopt;
+  if (inertia == exact) out.mass = MeshFit::Mass::exact;
+  if (inertia == shell) out.mass = MeshFit::Mass::shell;
+  return out;
+}
+
 std::string Assets::mesh_material(const Model& model, const std::string& name, const SourceLocation& user) {
   return model.asset("mesh", name, user).text("material");
 }

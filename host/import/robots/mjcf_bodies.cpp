@@ -306,6 +306,23 @@ class Reader {
     return {(v[0] + v[3]) / 2, (v[1] + v[4]) / 2, (v[2] + v[5]) / 2};
   }
 
+  /// Of a solid that takes its size from a mesh; false where it is left out.
+  bool fit(const Element& element, const Model& model, const std::string& mesh, bool is_none, RobotGeom& geom) {
+    if (is_none) {
+      Diagnostics().warning(geom.where, "the geom is left out: of its type none is fitted to a mesh");
+      return false;
+    }
+    geom.fit = Assets::fit(model, mesh, geom.where);
+    if (!geom.fit) {
+      Diagnostics().warning(geom.where, "the geom is left out: solids that are fitted to the hull of a mesh are not read");
+      return false;
+    }
+    geom.fit->scale = element.number("fitscale", 1);
+    if (!(geom.fit->scale > 0)) element.fail("fitscale: a positive number is needed");
+    assets_.mesh(model, mesh, geom);
+    return true;
+  }
+
   void geom(pugi::xml_node node, const Scope& scope, const glm::dmat4& world) {
     check_attributes(*scope.model, node);
     const Element element = scope.model->element(node, "geom", scope.childclass);
@@ -338,14 +355,12 @@ class Reader {
       if (type == ellipsoid || type == box) geom.size = {size[0], size[0], geom.size.y};
       geom.world = world * placed(middle(element), from_z(along));
     }
+    const bool is_fitted = !mesh_name.empty() && type != mesh;
+    if (is_fitted && !fit(element, *scope.model, mesh_name, type == plane || type == hfield || type == sdf, geom)) return;
     const auto positive = [&](int count) {
       for (int k = 0; k < count; ++k)
-        if (!(geom.size[k] > 0)) element.fail(fmt::format("size: {} positive numbers are needed", count));
+        if (!is_fitted && !(geom.size[k] > 0)) element.fail(fmt::format("size: {} positive numbers are needed", count));
     };
-    if (!mesh_name.empty() && type != mesh) {
-      Diagnostics().warning(geom.where, "the geom is left out: solids that are fitted to meshes are not read");
-      return;
-    }
     switch (type) {
       case plane:
         geom.kind = GeomKind::plane;

@@ -136,6 +136,7 @@ void Model::read_compiler(pugi::xml_node node) {
   if (element.has("angle")) compiler_.degrees = element.choice("angle", {"radian", "degree"}, 1) == 1;
   if (element.text("coordinate", "local") != "local") fail(node, "coordinate: only 'local' is read, as MuJoCo has it");
   if (element.has("strippath")) compiler_.strips_paths = element.yes("strippath", false);
+  if (element.has("fitaabb")) compiler_.fits_extents = element.yes("fitaabb", false);
   if (element.has("eulerseq")) {
     compiler_.euler = element.text("eulerseq");
     if (compiler_.euler.size() != 3 || compiler_.euler.find_first_not_of("xyzXYZ") != std::string::npos)

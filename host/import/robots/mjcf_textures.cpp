@@ -107,6 +107,14 @@ Pixels made(const Recipe& recipe, int width, int height) {
   return painted(width, height, [&](int, int) { return bytes_of(recipe.rgb1); });
 }
 
+/// MuJoCo's boards go on over the edges of a cube, and its flat ones have the second colour below.
+Recipe of_face(Recipe recipe, std::size_t face) {
+  constexpr std::size_t down = 3, front = 4;
+  if ((recipe.builtin == checker && face >= front) || (recipe.builtin == flat && face == down))
+    std::swap(recipe.rgb1, recipe.rgb2);
+  return recipe;
+}
+
 Pixels read(const Element& of, const ImageReader& images, const std::string& name) {
   const std::filesystem::path path = of.model().file(of, name, of.model().compiler().textures);
   TextureImage image;
@@ -132,10 +140,13 @@ Pixels read(const Element& of, const ImageReader& images, const std::string& nam
   });
 }
 
-/// In the direction at `theta` from z and `phi` around it from x.
-Rgb seen(const Cube& cube, double theta, double phi) {
-  // OpenGL's cube maps: x to the right, y up, z to the front, of which x, z and -y are the model's.
-  const glm::dvec3 d(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi));
+/// The direction at `theta` from z and `phi` around it from x.
+glm::dvec3 direction(double theta, double phi) {
+  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+/// By OpenGL's cube maps: x to the right, y up, z to the front.
+Rgb seen(const Cube& cube, const glm::dvec3& d) {
   const glm::dvec3 a = glm::abs(d);
   std::size_t face = 0;
   double s = 0, t = 0, most = 0;  // to the right and down
@@ -200,7 +211,7 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
           return between(recipe, std::asin(y / reach) * 2 * std::numbers::inv_pi);
         });
       else
-        to = made(recipe, size, size);
+        to = made(of_face(recipe, face), size, size);
       put_marks(to, recipe, numbers);
     }
     return out;
@@ -242,14 +253,15 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
 Pixels around(const Cube& cube, int height) {
   const int width = 2 * height;
   return painted(width, height, [&](int row, int column) {
-    return seen(cube, std::numbers::pi * (row + 0.5) / height, 2 * std::numbers::pi * (column + 0.5) / width);
+    const glm::dvec3 d = direction(std::numbers::pi * (row + 0.5) / height, 2 * std::numbers::pi * (column + 0.5) / width);
+    return seen(cube, {d.x, d.z, -d.y});
   });
 }
 
 Pixels by_angles(const Cube& cube, int width) {
   const int height = 2 * width;
   return painted(width, height, [&](int row, int column) {
-    return seen(cube, std::numbers::pi * (column + 0.5) / width, 2 * std::numbers::pi * (1 - (row + 0.5) / height));
+    return seen(cube, direction(std::numbers::pi * (column + 0.5) / width, 2 * std::numbers::pi * (1 - (row + 0.5) / height)));
   });
 }
 

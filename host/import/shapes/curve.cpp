@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/log.h"
+#include "import/detail/cubic_chain.h"
 #include "import/detail/pbrt_geometry.h"
 
 namespace caplet::pbrt {
@@ -35,49 +36,12 @@ Cubic of_bezier(const std::vector<glm::vec3>& points, std::size_t at, std::size_
   return degree == 2 ? elevate(p(0), p(1), p(2)) : Cubic{p(0), p(1), p(2), p(3)};
 }
 
-/// Adds the ends of the chords of `c`, but for its first, with the radii that belong there.
-class Chain {
- public:
-  Chain(double tolerance, CapsulesShape& out) : tolerance_(tolerance), out_(out) {}
-
-  void start(const dvec3& p, double radius) {
-    p_ = glm::vec3(p);
-    radius_ = static_cast<float>(radius);
-  }
-
-  /// With c(t) the curve and l(t) its chord, c - l = 3 t (1-t)^2 d1 + 3 t^2 (1-t) d2, d1 and d2 being the inner control points'
-  /// distances from where they lie on a chord of even speed. The weights' sum 3 t (1-t) is at most 3/4. Each halving divides d1
-  /// and d2 by 4 at least in the limit: from the diagonal D of the control points 1e-5 D is reached in 9 to 10 halvings.
-  void add(const Cubic& c, double radius0, double radius1, int depth = 0) {
-    const double d1 = glm::length(c[1] - (2.0 * c[0] + c[3]) / 3.0), d2 = glm::length(c[2] - (c[0] + 2.0 * c[3]) / 3.0);
-    if (depth == deepest || 0.75 * std::max(d1, d2) <= tolerance_) return add_chord(c[3], radius1);
-    const dvec3 a = (c[0] + c[1]) / 2.0, m = (c[1] + c[2]) / 2.0, b = (c[2] + c[3]) / 2.0;
-    const dvec3 left = (a + m) / 2.0, right = (m + b) / 2.0, middle = (left + right) / 2.0;
-    const double radius = (radius0 + radius1) / 2;
-    add({c[0], a, left, middle}, radius0, radius, depth + 1);
-    add({middle, right, b, c[3]}, radius, radius1, depth + 1);
-  }
-
- private:
-  static constexpr int deepest = 12;
-
-  void add_chord(const dvec3& to, double radius) {
-    const glm::vec3 p(to);
-    const auto r = static_cast<float>(radius);
-    if (p == p_ && r == radius_ && !out_.p0.empty()) return;
-    out_.p0.push_back(p_);
-    out_.p1.push_back(p);
-    out_.radius0.push_back(radius_);
-    out_.radius1.push_back(r);
-    p_ = p;
-    radius_ = r;
-  }
-
-  double tolerance_;
-  CapsulesShape& out_;
-  glm::vec3 p_{0};
-  float radius_ = 0;
-};
+/// With radii that change evenly along it.
+CubicTube tube_of(const Cubic& c, double radius0, double radius1) {
+  const double step = (radius1 - radius0) / 3;
+  return {glm::dvec4(c[0], radius0), glm::dvec4(c[1], radius0 + step), glm::dvec4(c[2], radius1 - step),
+          glm::dvec4(c[3], radius1)};
+}
 
 /// The number of segments that P makes; 0 when its count is wrong (reported).
 std::size_t segments_of(Parameters& parameters, std::size_t points, std::size_t degree, bool bezier) {
@@ -144,14 +108,16 @@ CapsulesShape make_curve(Parameters& parameters) {
 
   Bounds bounds;
   for (const glm::vec3& p : points) bounds.extend(dvec3(p));
-  Chain out(std::max(1e-3 * widest, 1e-5 * glm::length(bounds.max - bounds.min)), chain);
+  const double tolerance = std::max(1e-3 * widest, 1e-5 * glm::length(bounds.max - bounds.min));
+  CubicChain out(chain);
   const auto radius = [&](std::size_t end) {
     return 0.5 * glm::mix(widths[0], widths[1], static_cast<double>(end) / static_cast<double>(segments));
   };
   for (std::size_t i = 0; i < segments; ++i) {
     const Cubic cubic = bezier ? of_bezier(points, i, order) : of_b_spline(points, i, order);
-    if (i == 0) out.start(cubic[0], radius(0));
-    out.add(cubic, radius(i), radius(i + 1));
+    const CubicTube tube = tube_of(cubic, radius(i), radius(i + 1));
+    if (i == 0) out.start(tube[0]);
+    out.add(tube, tolerance);
   }
   if (widths[0] == widths[1]) chain.radius1.clear();
   return chain;

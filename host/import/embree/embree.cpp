@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The graph of an Embree scene: groups, transforms, and elements named before, which are placed as shapes or, where they occur
+// more than once, as instances.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/check.h"
+#include "import/detail/embree.h"
+#include "import/detail/gzip_file.h"
+#include "import/detail/importers.h"
+#include "import/import.h"
+#include "scene/append.h"
+
+namespace caplet {
+
+namespace fs = std::filesystem;
+
+namespace embree {
+
+namespace {
+
+constexpr int kDeepest = 500, kHighest = 5000;  // elements within each other, and by references
+constexpr std::size_t kMostFiles = 20;
+constexpr std::size_t kMostVisited = 4'000'000, kMostPlaced = 1'000'000;
+
+struct Node {
+  std::vector<glm::dmat4> places;  // of the children; none: where the node is
+  std::vector<std::shared_ptr<const Node>> children;
+  std::vector<Shape> shapes;
+  std::optional<LightElement> light;
+  std::optional<View> view;
+  SourceLocation where;
+  int height = 0;  // of what lies within it
+};
+using NodePtr = std::shared_ptr<const Node>;
+
+/// Null adds nothing.
+void add_child(Node& to, NodePtr child) {
+  if (!child) return;
+  to.height = std::max(to.height, child->height + 1);
+  if (to.height > kHighest) throw InputError(to.where, fmt::format("more than {} elements lie within each other", kHighest));
+  to.children.push_back(std::move(child));
+}
+
+class Reader {
+ public:
+  Reader(const fs::path& path, const ImageReader& reader, const ImportOptions& options)
+      : reader_(reader), options_(options), images_(scene_, reader) {
+    scene_.source = path.string();
+  }
+
+  Imported read(const fs::path& path) {
+    std::vector<NodePtr> roots;
+    ViewerOptions viewer;
+    if (is_xml(path)) {
+      roots.push_back(file(path, {}, 0));
+    } else {
+      viewer = read_ecs(path, notes_);
+      for (const auto& [one, where] : viewer.files) {
+        std::error_code error;
+        if (!fs::is_regular_file(one, error)) throw InputError(where, "there is no file '" + one.string() + "'");
+        if (!is_xml(one)) throw InputError(where, "'" + one.string() + "' is no XML: it is not read");
+        roots.push_back(file(one, where, 0));
+      }
+    }
+    const glm::dmat4 world = world_from_file(options_, "y");
+    scene_.world_from_file = glm::dmat3(world);
+    for (const NodePtr& root : roots) visit(*root, world);
+    place();
+    if (scene_.shapes.empty() && scene_.instances.empty()) throw InputError({scene_.source, 0, 0}, "holds no geometry");
+    const std::size_t before = scene_.shapes.size();
+    for (const auto& [light, place] : lights_) add_light(*light, place, scene_);
+    for (const LightElement& light : viewer.lights) add_light(light, world, scene_);
+    const bool is_lit = !scene_.lights.empty() || scene_.shapes.size() > before;
+    notes_.tell();
+    if (viewer.size) {
+      scene_.film.width = viewer.size->x;
+      scene_.film.height = viewer.size->y;
+    }
+    if (viewer.view) see(*viewer.view, world, {scene_.source, 0, 0});
+    if (view_) scene_.camera = camera_of(*view_, scene_.film, view_at_);
+    Imported out(std::move(scene_));
+    out.has_camera = view_.has_value();
+    out.is_lit = is_lit;
+    return out;
+  }
+
+ private:
+  static bool is_xml(const fs::path& path) {
+    const std::string text = read_file(path, {}).substr(0, 256);
+    const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    return first != std::string::npos && text[first] == '<';
+  }
+
+  NodePtr file(const fs::path& path, const SourceLocation& named_at, int depth) {
+    std::error_code error;
+    fs::path same = fs::weakly_canonical(path, error);
+    if (error) same = path;
+    if (const auto found = files_.find(same); found != files_.end()) {
+      if (!found->second) throw InputError(named_at, "'" + path.string() + "' names itself, or a file that names it");
+      return found->second;
+    }
+    if (files_.size() == kMostFiles) throw InputError(named_at, fmt::format("more than {} files", kMostFiles));
+    files_[same] = nullptr;
+    SceneFile scene_file(path, named_at);
+    const pugi::xml_node root = scene_file.root();
+    if (std::string_view(root.name()) != "scene")
+      scene_file.fail(root, "<" + std::string(root.name()) + "> is no scene of Embree (<scene>)");
+    auto group = std::make_shared<Node>();
+    group->where = scene_file.place(root);
+    children(scene_file, root, *group, depth);
+    return files_[same] = group;
+  }
+
+  void children(SceneFile& from, pugi::xml_node node, Node& to, int depth) {
+    for (const pugi::xml_node child : node.children())
+      if (child.type() == pugi::node_element) add_child(to, element(from, child, depth + 1));
+  }
+
+  /// Null: nothing is drawn.
+  NodePtr element(SceneFile& from, pugi::xml_node node, int depth) {
+    if (depth > kDeepest) from.fail(node, fmt::format("lies within {} others", kDeepest));
+    const std::string_view name = node.name();
+    const std::string id = node.attribute("id").value();
+    if (name == "ref") {
+      const auto found = nodes_.find(id);
+      if (found == nodes_.end()) from.fail(node, "there is nothing of the id '" + id + "' before it");
+      return found->second;
+    }
+    if (name == "assign") return assign(from, node, id, depth);
+    NodePtr out = made(from, node, name, depth);
+    if (!id.empty()) nodes_[id] = out;
+    return out;
+  }
+
+  NodePtr assign(SceneFile& from, pugi::xml_node node, const std::string& id, int depth) {
+    const std::string_view type = node.attribute("type").value();
+    pugi::xml_node child = node.first_child();
+    while (child && child.type() != pugi::node_element) child = child.next_sibling();
+    if (!child || (type != "material" && type != "scene")) from.fail(node, "assigns neither a material nor a scene");
+    if (type == "material")
+      looks_[id] = look(from, child, node.attribute("name").value());
+    else
+      nodes_[id] = element(from, child, depth + 1);
+    return nullptr;
+  }
+
+  NodePtr made(SceneFile& from, pugi::xml_node node, std::string_view name, int depth) {
+    auto out = std::make_shared<Node>();
+    out->where = from.place(node);
+    if (is_geometry(name)) {
+      out->shapes = shapes_of(from, node, look(from, node.child("material"), ""), notes_);
+      return out;
+    }
+    if (is_light(name)) {
+      out->light = read_light(from, node);
+      return out;
+    }
+    if (name == "Group" || name == "Flatten" || name == "TimeRange" || name.starts_with("Convert")) {
+      children(from, node, *out, depth);
+    } else if (name == "Transform" || name == "MultiTransform" || name == "Transform2" || name == "TransformAnimation") {
+      transform(from, node, *out, depth);
+    } else if (name == "Animation" || name == "Animation2") {
+      notes_.add("what moves is drawn as at its first moment", out->where);
+      Node all;
+      children(from, node, all, depth);
+      if (!all.children.empty()) add_child(*out, all.children.front());
+    } else if (name == "PerspectiveCamera") {
+      out->view = camera(from, node);
+    } else if (name == "AnimatedPerspectiveCamera") {
+      notes_.add("what moves is drawn as at its first moment", out->where);
+      if (const pugi::xml_node first = node.child("PerspectiveCamera")) out->view = camera(from, first);
+    } else if (name == "xml" || name == "extern" || name == "extern_combine" || name == "obj") {
+      add_child(*out, other(from, node, depth));
+    } else if (name == "SubdivisionMesh" || name == "FurBall" || name == "AnimatedLight") {
+      notes_.add(fmt::format("<{}> is left out", name), out->where);
+      return nullptr;
+    } else {
+      from.fail(node, "<" + std::string(name) + "> is no element of Embree's scenes");
+    }
+    return out;
+  }
+
+  /// One place, or as many as MultiTransform lists; of those of several moments the first.
+  void transform(SceneFile& from, pugi::xml_node node, Node& to, int depth) {
+    bool is_first = true, is_nowhere = false;
+    for (const pugi::xml_node child : node.children()) {
+      if (child.type() != pugi::node_element) continue;
+      const std::string_view name = child.name();
+      if (name == "AffineSpace" || name == "AffineSpaceArray") {
+        if (!is_first) {
+          notes_.add("what moves is drawn as at its first moment", from.place(child));
+          continue;
+        }
+        is_first = false;
+        if (name == "AffineSpace") {
+          to.places.push_back(affine_space(from, child));
+          continue;
+        }
+        if (child.attribute("ofs")) {  // columns: three of the turn, and the place
+          const std::vector<float> m = from.floats(child, 12);
+          for (std::size_t i = 0; i < m.size(); i += 12) {
+            glm::dmat4& one = to.places.emplace_back(1);
+            for (int column = 0; column < 4; ++column)
+              for (int row = 0; row < 3; ++row)
+                one[column][row] = static_cast<double>(m[i + static_cast<std::size_t>(3 * column + row)]);
+          }
+        }
+        for (const pugi::xml_node one : child.children())
+          if (one.type() == pugi::node_element) to.places.push_back(affine_space(from, one));
+        is_nowhere = to.places.empty();
+      } else if (name == "Quaternion" || name == "QuaternionArray") {
+        from.fail(child, "turns by quaternions are not read");
+      } else {
+        add_child(to, element(from, child, depth + 1));
+      }
+    }
+    if (is_first) from.fail(node, "a transform without an AffineSpace");
+    if (is_nowhere) to.children.clear();
+  }
+
+  static View camera(const SceneFile& from, pugi::xml_node node) {
+    const auto vector = [&](const char* name) {
+      const std::vector<double> v = numbers_of(node.attribute(name).value(), 3, 3, from.place(node), name);
+      return glm::dvec3(v[0], v[1], v[2]);
+    };
+    View out;
+    out.from = vector("from");
+    out.to = vector("to");
+    out.up = vector("up");
+    out.fov = numbers_of(node.attribute("fov").value(), 1, 1, from.place(node), "fov")[0];
+    return out;
+  }
+
+  Look look(SceneFile& from, pugi::xml_node node, const std::string& name) {
+    const std::string id = node.attribute("id").value();
+    if (!id.empty())
+      if (const auto found = looks_.find(id); found != looks_.end()) return found->second;
+    if (!node) {
+      if (!plain_) plain_ = add_plain_material(scene_);
+      return {*plain_, {}, {}};
+    }
+    const Look out = read_material(from, node, name.empty() ? id : name, scene_, images_, notes_);
+    if (!id.empty()) looks_[id] = out;
+    return out;
+  }
+
+  /// Another file: of Embree's, or a mesh.
+  NodePtr other(SceneFile& from, pugi::xml_node node, int depth) {
+    const std::string src = node.attribute("src").value();
+    const SourceLocation where = from.place(node);
+    if (src.empty()) from.fail(node, "names no file (src)");
+    const fs::path path = from.path().parent_path() / src;
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) from.fail(node, "there is no file '" + path.string() + "'");
+    const Format& format = format_of(path);
+    if (format.name == "embree") return file(path, where, depth);
+    if (format.name != "obj" && format.name != "ply" && format.name != "stl" && format.name != "off")
+      from.fail(node, "'" + path.string() + "': files of the format " + format.name + " are not read within a scene of Embree");
+    Imported part = format.import(path, reader_, {});
+    auto out = std::make_shared<Node>();
+    out->where = where;
+    const std::size_t before = scene_.shapes.size();
+    append(scene_, std::move(part.scene));
+    out->shapes.assign(std::make_move_iterator(scene_.shapes.begin() + static_cast<std::ptrdiff_t>(before)),
+                       std::make_move_iterator(scene_.shapes.end()));
+    scene_.shapes.resize(before);
+    return out;
+  }
+
+  void visit(const Node& node, const glm::dmat4& world) {
+    if (++visited_ > kMostVisited) throw InputError(node.where, fmt::format("more than {} elements are placed", kMostVisited));
+    if (node.view && !view_) see(*node.view, world, node.where);
+    if (node.light) lights_.emplace_back(&*node.light, world);
+    if (!node.shapes.empty()) {
+      const auto [at, fresh] = placed_index_.try_emplace(&node, placed_.size());
+      if (fresh) placed_.push_back({&node, {}});
+      placed_[at->second].places.push_back(world);
+      if (++placements_ > kMostPlaced) throw InputError(node.where, fmt::format("more than {} shapes are placed", kMostPlaced));
+    }
+    if (node.places.empty())
+      for (const NodePtr& child : node.children) visit(*child, world);
+    for (const glm::dmat4& place : node.places)
+      for (const NodePtr& child : node.children) visit(*child, world * place);
+  }
+
+  void see(const View& view, const glm::dmat4& world, const SourceLocation& where) {
+    view_ = view;
+    view_->from = glm::dvec3(world * glm::dvec4(view.from, 1));
+    view_->to = glm::dvec3(world * glm::dvec4(view.to, 1));
+    view_->up = glm::dmat3(world) * view.up;
+    view_at_ = where;
+  }
+
+  void place() {
+    for (const Placed& one : placed_) {
+      std::vector<Shape> shapes = one.node->shapes;
+      if (one.places.size() == 1) {
+        for (Shape& shape : shapes) {
+          shape.world_from_object = one.places[0] * shape.world_from_object;
+          scene_.shapes.push_back(std::move(shape));
+        }
+        continue;
+      }
+      const auto index = narrow<std::uint32_t>(scene_.objects.size());
+      Object object;
+      object.name = shapes[0].name;
+      object.where = one.node->where;
+      object.shapes = std::move(shapes);
+      for (const glm::dmat4& place : one.places) scene_.instances.push_back({index, place, one.node->where});
+      scene_.objects.push_back(std::move(object));
+    }
+  }
+
+  struct Placed {
+    const Node* node;
+    std::vector<glm::dmat4> places;
+  };
+
+  const ImageReader& reader_;
+  const ImportOptions& options_;
+  Scene scene_;
+  MeshImages images_;
+  Notes notes_;
+  std::map<fs::path, NodePtr> files_;  // null: being read
+  std::map<std::string, NodePtr> nodes_;
+  std::map<std::string, Look> looks_;
+  std::optional<std::uint32_t> plain_;
+  std::optional<View> view_;
+  std::vector<std::pair<const LightElement*, glm::dmat4>> lights_;
+  SourceLocation view_at_;
+  std::size_t visited_ = 0, placements_ = 0;
+  std::vector<Placed> placed_;
+  std::map<const Node*, std::size_t> placed_index_;
+};
+
+}  // namespace
+
+}  // namespace embree
+
+Imported import_embree(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
+  return embree::Reader(path, images, options).read(path);
+}
+
+}  // namespace caplet

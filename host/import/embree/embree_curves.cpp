@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Embree's curves, points and meshes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "import/detail/cubic_chain.h"
+#include "import/detail/embree.h"
+
+namespace caplet::embree {
+
+namespace {
+
+using glm::dvec4;
+
+enum class Basis { linear, cone, bezier, bspline, hermite, catmull_rom };
+
+struct Curves {
+  Basis basis = Basis::linear;
+  bool is_flat = false, is_oriented = false;
+  bool in_pairs = false;  // indices with the number of the hair
+};
+
+struct Element {
+  const char* name;
+  Curves curves;
+};
+constexpr Element elements[] = {{"Hair", {Basis::bezier, true, false, true}},
+                                {"BezierHair", {Basis::bezier, true, false, true}},
+                                {"BezierCurves", {Basis::bezier, false, false, true}},
+                                {"BSplineHair", {Basis::bspline, true, false, false}},
+                                {"BSplineCurves", {Basis::bspline, false, false, false}},
+                                {"LineSegments", {Basis::linear, true, false, false}},
+                                {"RoundLineSegments", {Basis::linear, false, false, false}},
+                                {"ConeSegments", {Basis::cone, false, false, false}}};
+
+Curves curves_of(const SceneFile& file, pugi::xml_node node) {
+  const std::string_view name = node.name(), basis = node.attribute("basis").value(), type = node.attribute("type").value();
+  for (const Element& element : elements)
+    if (name == element.name) return element.curves;
+  constexpr std::pair<const char*, Basis> bases[] = {{"linear", Basis::linear},
+                                                     {"bezier", Basis::bezier},
+                                                     {"bspline", Basis::bspline},
+                                                     {"hermite", Basis::hermite},
+                                                     {"catmull_rom", Basis::catmull_rom}};
+  Curves out;
+  const auto* found = std::ranges::find(bases, basis, [](const auto& row) { return std::string_view(row.first); });
+  if (found == std::end(bases))
+    file.fail(node, fmt::format("basis=\"{}\" is none of linear, bezier, bspline, hermite, catmull_rom", basis.substr(0, 40)));
+  out.basis = found->second;
+  out.is_flat = type == "flat" || type == "ribbon";
+  out.is_oriented = type == "normal_oriented" && out.basis != Basis::linear;
+  const bool is_surface = type == "surface" && out.basis != Basis::linear;
+  if (!out.is_flat && !out.is_oriented && type != "round" && !is_surface)
+    file.fail(node, fmt::format("type=\"{}\" is none of round, flat, normal_oriented", type.substr(0, 40)));
+  return out;
+}
+
+std::size_t vertices_of(Basis basis) { return basis == Basis::linear || basis == Basis::cone || basis == Basis::hermite ? 2 : 4; }
+
+/// The list of the first moment: of animated ones the first.
+pugi::xml_node first_list(pugi::xml_node node, const std::string& name, const SceneFile& file, Notes& notes) {
+  const pugi::xml_node animated = node.child(("animated_" + name).c_str());
+  if (!animated) return node.child(name.c_str());
+  notes.add("what moves is drawn as at its first moment", file.place(animated));
+  for (const pugi::xml_node one : animated.children())
+    if (one.type() == pugi::node_element) return one;
+  return {};
+}
+
+std::vector<dvec4> rows4(SceneFile& file, pugi::xml_node node, bool with_nan) {
+  const std::vector<float> numbers = file.floats(node, 4, with_nan);
+  std::vector<dvec4> out;
+  for (std::size_t i = 0; i < numbers.size(); i += 4)
+    out.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]);
+  return out;
+}
+
+template <class Vector>
+std::vector<Vector> rows(SceneFile& file, pugi::xml_node node) {
+  constexpr std::size_t width = sizeof(Vector) / sizeof(float);
+  const std::vector<float> numbers = file.floats(node, width);
+  std::vector<Vector> out;
+  for (std::size_t i = 0; i < numbers.size(); i += width) {
+    Vector& v = out.emplace_back();
+    for (std::size_t k = 0; k < width; ++k) v[static_cast<glm::length_t>(k)] = numbers[i + k];
+  }
+  return out;
+}
+
+class CurveSet {
+ public:
+  CurveSet(SceneFile& file, pugi::xml_node node, Notes& notes) : file_(file), node_(node), notes_(notes) {}
+
+  std::vector<Shape> read(const Look& look) {
+    const Curves curves = curves_of(file_, node_);
+    basis_ = curves.basis;
+    if (curves.is_flat) notes_.add("flat curves are drawn as round ones", file_.place(node_));
+    if (curves.is_oriented) notes_.add("curves that are oriented by normals are drawn as round ones", file_.place(node_));
+    const pugi::xml_node positions = first_list(node_, "positions", file_, notes_);
+    points_ = rows4(file_, positions, basis_ == Basis::bspline);
+    const std::vector<std::uint32_t> indices = file_.indices(node_.child("indices"), curves.in_pairs ? 2 : 1);
+    if (basis_ == Basis::hermite) tangents_ = rows4(file_, first_list(node_, "tangents", file_, notes_), false);
+    if (basis_ == Basis::hermite && tangents_.size() != points_.size())
+      file_.fail(node_, fmt::format("{} tangents of {} points", tangents_.size(), points_.size()));
+    const std::vector<std::uint32_t> flags = file_.bytes(node_.child("flags"));
+    const std::size_t step = curves.in_pairs ? 2 : 1;
+    for (std::size_t i = 0; i < indices.size(); i += step) {
+      const std::size_t first = indices[i], count = vertices_of(basis_);
+      if (first >= points_.size() || points_.size() - first < count)
+        file_.fail(node_, fmt::format("the curve from point {} on takes {} points; there are {}", first, count, points_.size()));
+      if (basis_ == Basis::cone)
+        cone(first, i < flags.size() ? flags[i] : 0);
+      else
+        curve(first);
+    }
+    return shapes(look);
+  }
+
+  std::vector<Shape> read_points(const Look& look) {
+    const std::string_view type = node_.attribute("type").value();
+    if (type != "sphere" && type != "disc" && type != "oriented")
+      file_.fail(node_, fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
+    if (type != "sphere") notes_.add("points that are discs are drawn as balls", file_.place(node_));
+    points_ = rows4(file_, first_list(node_, "positions", file_, notes_), false);
+    for (const dvec4& p : points_) segment(p, p);
+    return shapes(look);
+  }
+
+ private:
+  dvec4 point(std::size_t i) const {
+    const dvec4& p = points_[i];
+    if (!(p.w >= 0)) file_.fail(node_, fmt::format("the radius of point {} is {}", i, p.w < 0 ? "negative" : "no number"));
+    for (int k = 0; k < 3; ++k)
+      if (std::isnan(p[k])) file_.fail(node_, fmt::format("point {} is no number", i));
+    return p;
+  }
+
+  void segment(const dvec4& a, const dvec4& b) {
+    if (!(a.w > 0) && !(b.w > 0)) {
+      if (a.w < 0 || b.w < 0) file_.fail(node_, "a radius is negative");
+      notes_.add("what has no thickness is left out", file_.place(node_));
+      return;
+    }
+    if (a.w < 0 || b.w < 0) file_.fail(node_, "a radius is negative");
+    capsules_.p0.emplace_back(a);
+    capsules_.p1.emplace_back(b);
+    capsules_.radius0.push_back(static_cast<float>(a.w));
+    capsules_.radius1.push_back(static_cast<float>(b.w));
+  }
+
+  /// Bezier control points.
+  CubicTube tube(std::size_t i) const {
+    if (basis_ == Basis::bezier) return {point(i), point(i + 1), point(i + 2), point(i + 3)};
+    if (basis_ == Basis::hermite) {
+      const dvec4 p0 = point(i), p1 = point(i + 1);
+      return {p0, p0 + tangents_[i] / 3.0, p1 - tangents_[i + 1] / 3.0, p1};
+    }
+    const dvec4 p1 = point(i + 1), p2 = point(i + 2);
+    if (basis_ == Basis::catmull_rom) return {p1, p1 + (p2 - point(i)) / 6.0, p2 - (point(i + 3) - p1) / 6.0, p2};
+    // At an end, where a point is NaN, the curve goes on straight beyond the next.
+    const auto is_end = [&](std::size_t k) { return std::isnan(points_[k].x) || std::isnan(points_[k].w); };
+    const dvec4 p0 = is_end(i) ? 2.0 * p1 - p2 : point(i), p3 = is_end(i + 3) ? 2.0 * p2 - p1 : point(i + 3);
+    return {(p0 + 4.0 * p1 + p2) / 6.0, (2.0 * p1 + p2) / 3.0, (p1 + 2.0 * p2) / 3.0, (p1 + 4.0 * p2 + p3) / 6.0};
+  }
+
+  void curve(std::size_t first) {
+    if (basis_ == Basis::linear) return segment(point(first), point(first + 1));
+    const CubicTube c = tube(first);
+    glm::dvec3 low(c[0]), high(c[0]);
+    double widest = 0;
+    for (const dvec4& p : c) {
+      low = glm::min(low, glm::dvec3(p));
+      high = glm::max(high, glm::dvec3(p));
+      widest = std::max(widest, std::abs(p.w));
+    }
+    CapsulesShape chords;
+    CubicChain chain(chords);
+    chain.start(c[0]);
+    chain.add(c, std::max(2e-3 * widest, 1e-5 * glm::length(high - low)));
+    for (std::size_t i = 0; i < chords.p0.size(); ++i)
+      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]));
+  }
+
+  /// Bits of flags: a neighbour at the first, and at the second end, where there is no cap then.
+  void cone(std::size_t first, std::uint32_t flags) {
+    constexpr std::uint32_t left = 1, right = 2;
+    const dvec4 a = point(first), b = point(first + 1);
+    if (glm::vec3(a) == glm::vec3(b) || !(std::max(a.w, b.w) > 0)) {
+      notes_.add("cones without length or thickness are left out", file_.place(node_));
+      return;
+    }
+    const std::array<Cap, 2> caps{(flags & left) != 0 ? Cap::open : Cap::flat, (flags & right) != 0 ? Cap::open : Cap::flat};
+    if (a.w == b.w)
+      cones_.emplace_back(CylinderShape{glm::dvec3(a), glm::dvec3(b), a.w, caps});
+    else
+      cones_.emplace_back(ConeShape{glm::dvec3(a), glm::dvec3(b), {a.w, b.w}, caps});
+  }
+
+  std::vector<Shape> shapes(const Look& look) {
+    std::vector<Geometry> all = std::move(cones_);
+    if (!capsules_.p0.empty()) {
+      if (capsules_.radius0 == capsules_.radius1) capsules_.radius1.clear();
+      all.emplace_back(std::move(capsules_));
+    }
+    std::vector<Shape> out;
+    for (Geometry& geometry : all) {
+      Shape& shape = out.emplace_back();
+      shape.geometry = std::move(geometry);
+      shape.name = node_.attribute("name").empty() ? node_.name() : node_.attribute("name").value();
+      shape.material = look.material;
+      shape.alpha = look.alpha;
+      shape.where = file_.place(node_);
+    }
+    return out;
+  }
+
+  SceneFile& file_;
+  pugi::xml_node node_;
+  Notes& notes_;
+  Basis basis_ = Basis::linear;
+  std::vector<dvec4> points_, tangents_;
+  CapsulesShape capsules_;
+  std::vector<Geometry> cones_;
+};
+
+/// Two triangles a quadrilateral, as Embree cuts them; a grid is quadrilaterals.
+std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_node node, std::size_t vertices) {
+  std::vector<std::array<std::uint32_t, 4>> out;
+  if (std::string_view(node.name()) == "QuadMesh") {
+    const std::vector<std::uint32_t> indices = file.indices(node.child("indices"), 4);
+    for (std::size_t i = 0; i < indices.size(); i += 4)
+      out.push_back({indices[i], indices[i + 1], indices[i + 2], indices[i + 3]});
+    return out;
+  }
+  // First vertex, vertices from row to row, columns, rows.
+  const std::vector<std::uint32_t> grids = file.indices(node.child("grids"), 4);
+  for (std::size_t i = 0; i < grids.size(); i += 4) {
+    const std::uint64_t first = grids[i], stride = grids[i + 1], columns = grids[i + 2], lines = grids[i + 3];
+    if (columns == 0 || lines == 0 || first >= vertices || stride > vertices || columns > vertices || lines > vertices ||
+        (lines - 1) * stride + columns > vertices - first)
+      file.fail(node, fmt::format("grid {} goes on beyond the {} points", i / 4, vertices));
+    if (out.size() + (lines - 1) * (columns - 1) > (std::uint64_t{1} << 27)) file.fail(node, "grids of more than 2^27 cells");
+    for (std::uint64_t y = 0; y + 1 < lines; ++y)
+      for (std::uint64_t x = 0; x + 1 < columns; ++x) {
+        const auto at = static_cast<std::uint32_t>(first + y * stride + x), below = static_cast<std::uint32_t>(at + stride);
+        out.push_back({at, at + 1, below + 1, below});
+      }
+  }
+  return out;
+}
+
+std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes) {
+  TriangleMeshShape out;
+  out.positions = rows<glm::vec3>(file, first_list(node, "positions", file, notes));
+  out.normals = rows<glm::vec3>(file, first_list(node, "normals", file, notes));
+  out.uvs = rows<glm::vec2>(file, node.child("texcoords"));
+  const std::size_t count = out.positions.size();
+  if ((!out.normals.empty() && out.normals.size() != count) || (!out.uvs.empty() && out.uvs.size() != count))
+    file.fail(node, "has another number of normals or texture coordinates than of points");
+  if (std::string_view(node.name()) == "TriangleMesh") {
+    const std::vector<std::uint32_t> indices = file.indices(node.child("triangles"), 3);
+    for (std::size_t i = 0; i < indices.size(); i += 3) out.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  } else {
+    for (const std::array<std::uint32_t, 4>& q : quads_of(file, node, count)) {
+      out.triangles.push_back({q[0], q[1], q[3]});
+      if (q[2] != q[3]) out.triangles.push_back({q[2], q[3], q[1]});  // such a one is a triangle
+    }
+  }
+  for (const auto& triangle : out.triangles)
+    for (const std::uint32_t i : triangle)
+      if (i >= count) file.fail(node, fmt::format("point {}: there are {}", i, count));
+  if (out.triangles.empty()) return {};
+  Shape shape = mesh_shape(std::move(out), node.attribute("name").empty() ? node.name() : node.attribute("name").value(),
+                           look.material, file.place(node));
+  shape.alpha = look.alpha;
+  std::vector<Shape> all;
+  all.push_back(std::move(shape));
+  return all;
+}
+
+bool is_mesh(std::string_view name) { return name == "TriangleMesh" || name == "QuadMesh" || name == "GridMesh"; }
+
+}  // namespace
+
+bool is_geometry(std::string_view name) {
+  return is_mesh(name) || name == "Curves" || name == "Points" ||
+         std::ranges::any_of(elements, [&](const Element& element) { return name == element.name; });
+}
+
+std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes) {
+  const std::string_view name = node.name();
+  if (is_mesh(name)) return mesh(file, node, look, notes);
+  CurveSet set(file, node, notes);
+  return name == "Points" ? set.read_points(look) : set.read(look);
+}
+
+}  // namespace caplet::embree

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// MuJoCo's solids fitted to meshes: by the box that has the mesh's inertia, or by its extent along the inertia's axes
+// (XMLreference, geom/mesh, mesh/inertia, compiler/fitaabb).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "import/detail/robot.h"
+
+namespace caplet {
+
+namespace {
+
+using glm::dvec3;
+
+/// What the surface holds: how much, its middle, and its second moments about that.
+struct Moments {
+  double amount = 0;
+  dvec3 middle{0};
+  glm::dmat3 second{0};
+};
+
+using Corners = std::array<dvec3, 3>;
+
+/// Calls work with the corners of each triangle.
+template <class Work>
+void each_triangle(const MeshParts& parts, const glm::dmat4& m, const Work& work) {
+  for (const TriangleMeshShape& part : parts)
+    for (const auto& t : part.triangles) {
+      Corners corners;
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = dvec3(m * glm::dvec4(dvec3(part.positions[t[k]]), 1));
+      work(corners);
+    }
+}
+
+double area_of(const Corners& c) { return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) / 2; }
+
+/// Of a tetrahedron with its apex at the origin, or of the triangle alone; how much it counts.
+double amount_of(const Corners& c, MeshFit::Mass mass) {
+  if (mass == MeshFit::Mass::shell) return area_of(c);
+  const double volume = glm::dot(glm::cross(c[0], c[1]), c[2]) / 6;
+  return mass == MeshFit::Mass::legacy ? std::abs(volume) : volume;
+}
+
+Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass mass) {
+  // The middle of the faces, from which tetrahedra are counted.
+  double area = 0;
+  dvec3 origin(0);
+  each_triangle(parts, m, [&](const Corners& c) {
+    area += area_of(c);
+    origin += area_of(c) * (c[0] + c[1] + c[2]) / 3.0;
+  });
+  Moments out;
+  if (!(area > 0)) return out;
+  origin /= area;
+  const bool is_shell = mass == MeshFit::Mass::shell;
+  const double corners = is_shell ? 3 : 4;
+  each_triangle(parts, m, [&](Corners c) {
+    for (dvec3& p : c) p -= origin;
+    const double amount = amount_of(c, mass);
+    out.amount += amount;
+    out.middle += amount * (c[0] + c[1] + c[2]) / corners;
+  });
+  if (!(out.amount > 0)) return out;
+  out.middle = origin + out.middle / out.amount;
+  // Of a simplex of n corners (the origin among those of a tetrahedron) the mean of x y is (sum of x_i y_i + sum x_i sum y_i) /
+  // (n (n + 1)).
+  // How much there is is counted anew from there: of volumes that are all positive it is another number.
+  out.amount = 0;
+  each_triangle(parts, m, [&](Corners c) {
+    for (dvec3& p : c) p -= out.middle;
+    const double whole = amount_of(c, mass), amount = whole / (corners * (corners + 1));
+    out.amount += whole;
+    const dvec3 sum = c[0] + c[1] + c[2];
+    out.second += amount * glm::outerProduct(sum, sum);
+    for (const dvec3& p : c) out.second += amount * glm::outerProduct(p, p);
+  });
+  return out;
+}
+
+/// Axes of a symmetric matrix, the one of the least value first, as a rotation (Jacobi).
+glm::dmat3 axes_of(glm::dmat3 a, dvec3& values) {
+  glm::dmat3 axes(1);
+  for (int sweep = 0; sweep < 60; ++sweep)
+    for (int p = 0; p < 2; ++p)
+      for (int q = p + 1; q < 3; ++q) {
+        if (a[p][q] == 0) continue;
+        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        glm::dmat3 turn(1);
+        turn[p][p] = turn[q][q] = c;
+        turn[q][p] = s;
+        turn[p][q] = -s;
+        a = glm::transpose(turn) * a * turn;
+        a[p][q] = a[q][p] = 0;
+        axes = axes * turn;
+      }
+  std::array<int, 3> order{0, 1, 2};
+  std::ranges::sort(order, {}, [&](int k) { return a[k][k]; });
+  glm::dmat3 out;
+  for (int k = 0; k < 3; ++k) {
+    const int from = order[static_cast<std::size_t>(k)];
+    out[k] = axes[from];
+    values[k] = a[from][from];
+  }
+  if (glm::determinant(out) < 0) out[2] = -out[2];
+  return out;
+}
+
+}  // namespace
+
+bool fit(RobotGeom& geom, const MeshParts& parts) {
+  const MeshFit how = *geom.fit;
+  const Moments moments = moments_of(parts, geom.geom_from_mesh, how.mass);
+  if (!(moments.amount > 0)) return false;
+  // A box's second moment along an axis is its amount times a third of the half length squared.
+  dvec3 second;
+  const glm::dmat3 axes = axes_of(moments.second, second);
+  dvec3 half;
+  for (int k = 0; k < 3; ++k) half[k] = std::sqrt(std::max(0.0, 3 * second[k] / moments.amount));
+  dvec3 middle = moments.middle;
+  if (how.by_extent) {
+    dvec3 low(1e300), high(-1e300);
+    each_triangle(parts, geom.geom_from_mesh, [&](const Corners& c) {
+      for (const dvec3& p : c) {
+        const dvec3 local = glm::transpose(axes) * (p - moments.middle);
+        low = glm::min(low, local);
+        high = glm::max(high, local);
+      }
+    });
+    half = (high - low) / 2.0;
+    middle += axes * (low + high) / 2.0;
+  }
+  switch (geom.kind) {
+    case GeomKind::sphere:
+      geom.size = dvec3(how.by_extent ? std::max({half.x, half.y, half.z}) : (half.x + half.y + half.z) / 3, 0, 0);
+      break;
+    case GeomKind::capsule:
+    case GeomKind::cylinder: {
+      const double radius = how.by_extent ? std::max(half.x, half.y) : (half.x + half.y) / 2;
+      const double caps = geom.kind == GeomKind::cylinder ? 0 : how.by_extent ? radius : radius / 2;
+      geom.size = {radius, std::max(0.0, half.z - caps), 0};
+      break;
+    }
+    default:
+      geom.size = half;
+  }
+  geom.size *= how.scale;
+  glm::dmat4 place(axes);
+  place[3] = glm::dvec4(middle, 1);
+  geom.world = geom.world * place;
+  geom.fit.reset();
+  const int needed = geom.kind == GeomKind::sphere || geom.kind == GeomKind::capsule ? 1
+                     : geom.kind == GeomKind::cylinder                               ? 2
+                                                                                     : 3;
+  for (int k = 0; k < needed; ++k)
+    if (!(geom.size[k] > 0)) return false;
+  return true;
+}
+
+}  // namespace caplet
