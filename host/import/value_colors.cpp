@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 
 namespace caplet {
 

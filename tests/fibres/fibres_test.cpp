@@ -532,6 +532,8 @@ TEST(BadTrx, IsRefused) {
   EXPECT_EQ(said(trx_file("float32", points, "uint32", good, 3, 2)), "");
   EXPECT_THAT(said("not a zip"), HasSubstr("no zip archive"));
   EXPECT_THAT(said(test::zip_of({{"header.json", "{]"}})), AllOf(HasSubstr("header.json: byte 2"), HasSubstr("no JSON")));
+  EXPECT_THAT(said(test::zip_of({{"header.json", "{\"NB_VERTICES\": 1e999}"}})),
+              HasSubstr("header.json: a number is out of range"));
   EXPECT_THAT(said(test::zip_of({{"header.json", "{\"NB_VERTICES\": -1}"}})), HasSubstr("NB_VERTICES"));
   EXPECT_THAT(said(trx_file("float32", points, "uint32", good, 1000000000, 2)),
               AllOf(HasSubstr("3000000000"), HasSubstr("36 bytes")));

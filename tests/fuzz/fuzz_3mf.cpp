@@ -3,8 +3,8 @@
 //
 // Any bytes as a 3MF package; those that do not begin as an archive as the model of one.
 #include "import/detail/importers.h"
+#include "importer.h"
 #include "support/zip_text.h"
-#include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

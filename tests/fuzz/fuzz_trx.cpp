@@ -4,8 +4,8 @@
 // Any bytes as a TRX archive; those that do not begin as one as its arrays: two bytes say how many points and streamlines, and of
 // what type they are.
 #include "import/detail/importers.h"
+#include "importer.h"
 #include "support/zip_text.h"
-#include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -424,6 +424,11 @@ TEST(BadMeshes, OfBinaryStl) {
               HasSubstr("corner 2 of facet 1"));
 }
 
+TEST(BadMeshes, OfNumbersBeyondDoubles) {
+  EXPECT_THAT(complaint([] { scene_of("x.gltf", "{\n  \"asset\": 5e999}"); }),
+              AllOf(HasSubstr("x.gltf:2:12: "), HasSubstr("the number 5e999 is out of range")));
+}
+
 TEST(BadMeshes, OfMaterials) {
   EXPECT_THAT(complaint([] { scene_beside("b.obj", "mtllib bad.mtl\n", "bad.mtl", "newmtl a\nKd 1 x 0\n"); }),
               HasSubstr("bad.mtl:2:6:"));

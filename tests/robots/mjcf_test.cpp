@@ -176,6 +176,14 @@ TEST(Mjcf, FilesAreIncludedWhereTheyAreNamed) {
   EXPECT_THAT(complaint([] { scene_of_text("\n<include file='none.xml'/>"); }), HasSubstr("robot.xml:2:2: "));
 }
 
+// A file that has no canonical name: a link to itself.
+TEST(Mjcf, AnIncludedFileThatCannotBeReadIsNamed) {
+  const std::filesystem::path path = test::write_file("robot.xml", "<mujoco>\n<include file='loop.xml'/></mujoco>");
+  std::filesystem::create_symlink("loop.xml", path.parent_path() / "loop.xml");
+  EXPECT_THAT(complaint([&] { import_scene(path, test::NoImages()); }),
+              testing::AllOf(HasSubstr("robot.xml:2:"), HasSubstr("loop.xml")));
+}
+
 TEST(Mjcf, ModelsAreAttachedWithTheirOwnSettings) {
   const std::string arm =
       test::write_file("arm.xml", R"(<mujoco model="arm"><compiler angle="radian"/><default><geom size=".25"/></default>

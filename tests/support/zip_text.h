@@ -16,7 +16,7 @@ namespace caplet::test {
 /// Files as they are, or deflated.
 inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files, bool deflated = false) {
   const auto number = [](std::string& out, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+    for (int i = 0; i < bytes; ++i, value >>= 8) out += static_cast<char>(value);
   };
   std::string out, list;
   for (const auto& [name, bytes] : files) {

@@ -12,7 +12,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "import/detail/color_map.h"
+#include "import/color_map.h"
 #include "import/detail/fibres.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"

@@ -63,6 +63,8 @@ class TrxReader {
         header_ = nlohmann::json::parse(text, callback);
       } catch (const nlohmann::json::parse_error& error) {
         fail(fmt::format("{}: byte {}: is no JSON here", file, error.byte));
+      } catch (const nlohmann::json::out_of_range&) {
+        fail(file + ": a number is out of range");
       }
       parsed_ = true;
     }

@@ -62,15 +62,24 @@ File::File(std::filesystem::path file, std::string bytes) : path(std::move(file)
   }
   // Deep nesting would run out of stack when it is freed: what glTF needs is less than a dozen levels.
   const auto callback = [](int depth, Json::parse_event_t, Json&) { return depth < 64; };
-  try {
-    json = Json::parse(text.begin(), text.end(), callback);
-  } catch (const Json::parse_error& error) {
+  const auto place = [&](std::size_t byte) {
     SourceLocation where{path.string(), 1, 1};
-    for (std::size_t i = 0; i + 1 < std::min(error.byte, text.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(byte, text.size()); ++i) {
       where.column = text[i] == '\n' ? 1 : where.column + 1;
       where.line += text[i] == '\n';
     }
-    throw InputError(where, "is no JSON here");
+    return where;
+  };
+  try {
+    json = Json::parse(text.begin(), text.end(), callback);
+  } catch (const Json::parse_error& error) {
+    throw InputError(place(std::max<std::size_t>(error.byte, 1) - 1), "is no JSON here");
+  } catch (const Json::out_of_range& error) {
+    // A number beyond doubles, which the message has between quotes.
+    const std::string_view said = error.what();
+    const std::size_t begin = std::min(said.find('\''), said.size() - 1);
+    const std::string_view number = said.substr(begin + 1, said.rfind('\'') - begin - 1);
+    throw InputError(place(text.find(number)), "the number " + std::string(number) + " is out of range");
   }
   if (!json.is_object()) fail("is no glTF file: its JSON is no object");
 }

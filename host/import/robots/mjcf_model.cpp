@@ -59,6 +59,13 @@ constexpr Words kAttributes[] = {
     {"material", " class emission metallic name reflectance rgba roughness shininess specular texrepeat texture texuniform "},
 };
 
+/// One name of a file for all its spellings; of what has none, such as a pipe, its own.
+std::string known_as(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path out = std::filesystem::weakly_canonical(path, error);
+  return (error ? path : out).string();
+}
+
 }  // namespace
 
 void check_attributes(const Model& model, pugi::xml_node node) {
@@ -71,7 +78,7 @@ void check_attributes(const Model& model, pugi::xml_node node) {
 
 Model::Model(const std::filesystem::path& path, const SourceLocation& named_at, std::set<std::string> above)
     : folder_(path.parent_path()), above_(std::move(above)) {
-  const std::string here = std::filesystem::weakly_canonical(path).string();
+  const std::string here = known_as(path);
   if (!above_.insert(here).second) throw InputError(named_at, "the model '" + path.string() + "' is attached to itself");
   if (above_.size() > 20) throw InputError(named_at, "models are attached to models more than 20 deep");
   auto file = std::make_unique<XmlFile>(path, named_at);
@@ -120,8 +127,7 @@ pugi::xml_node Model::included(pugi::xml_node node) const {
     const std::filesystem::path beside = std::filesystem::path(place(node).file).parent_path() / name;
     if (std::filesystem::exists(beside, ignored)) path = beside;
   }
-  if (!seen_.insert(std::filesystem::weakly_canonical(path).string()).second)
-    fail(node, "the file '" + path.string() + "' is included already");
+  if (!seen_.insert(known_as(path)).second) fail(node, "the file '" + path.string() + "' is included already");
   if (seen_.size() > most_nested) fail(node, "too many files are included");
   auto file = std::make_unique<XmlFile>(path, place(node));
   const pugi::xml_node root = file->root();
