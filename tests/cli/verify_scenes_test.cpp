@@ -44,6 +44,7 @@ std::vector<std::string> scene_files() {
       for (const std::string& extension : format.extensions)
         if (entry.path().native().ends_with(extension)) out.push_back(fs::relative(entry.path(), folder).string());
   std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());  // of endings that formats share
   return out;
 }
 

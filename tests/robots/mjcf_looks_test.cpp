@@ -233,7 +233,8 @@ TEST(MjcfLooks, SkiesAreSeen) {
   EXPECT_GT(sky.image->rgb.front(), 0.9F);
   EXPECT_LT(sky.image->rgb.back(), 0.1F);
   // A white one would light everything white.
-  const Scene white = scene_of_text(R"(<asset><texture type="skybox" builtin="flat" width="8" height="8" rgb1="1 1 1"/></asset>
+  const Scene white =
+      scene_of_text(R"(<asset><texture type="skybox" builtin="flat" width="8" height="8" rgb1="1 1 1" rgb2="1 1 1"/></asset>
 <worldbody><geom size="1"/><light/></worldbody>)");
   EXPECT_NEAR(white.lights.back().scale, 0.35, 1e-6);
 }

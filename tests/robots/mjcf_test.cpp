@@ -391,6 +391,10 @@ TEST(Mjcf, SolidsAreFittedToMeshes) {
     }
     EXPECT_NEAR(glm::length(way(scene.shapes[3], {1, 0, 0})), one.box.x, digits);
   }
+  // Mirrored.
+  const Scene mirrored = scene_of_text(prism("inertia='exact' scale='-1 1 1'", "", "<geom type='box' mesh='m'/>"));
+  expect_near(at(mirrored.shapes.at(0)), {-1.25, 0.75, 0.25}, 1e-8);
+  expect_near(std::get<BoxShape>(mirrored.shapes[0].geometry).p1, {0.25, 0.79056942, 1.58113883}, 1e-8);
   // Scaled, moved and turned.
   const Scene scene =
       scene_of_text(prism("scale='1 2 1' refpos='1 0 0'", "",

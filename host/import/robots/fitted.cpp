@@ -39,10 +39,11 @@ void each_triangle(const MeshParts& parts, const glm::dmat4& m, const Work& work
 
 double area_of(const Corners& c) { return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) / 2; }
 
-/// Of a tetrahedron with its apex at the origin, or of the triangle alone; how much it counts.
-double amount_of(const Corners& c, MeshFit::Mass mass) {
+/// Of a tetrahedron with its apex at the origin, or of the triangle alone; how much it counts. `sign`: -1 where the mesh is
+/// mirrored.
+double amount_of(const Corners& c, MeshFit::Mass mass, double sign) {
   if (mass == MeshFit::Mass::shell) return area_of(c);
-  const double volume = glm::dot(glm::cross(c[0], c[1]), c[2]) / 6;
+  const double volume = sign * glm::dot(glm::cross(c[0], c[1]), c[2]) / 6;
   return mass == MeshFit::Mass::legacy ? std::abs(volume) : volume;
 }
 
@@ -58,10 +59,11 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   if (!(area > 0)) return out;
   origin /= area;
   const bool is_shell = mass == MeshFit::Mass::shell;
+  const double sign = glm::determinant(glm::dmat3(m)) < 0 ? -1 : 1;
   const double corners = is_shell ? 3 : 4;
   each_triangle(parts, m, [&](Corners c) {
     for (dvec3& p : c) p -= origin;
-    const double amount = amount_of(c, mass);
+    const double amount = amount_of(c, mass, sign);
     out.amount += amount;
     out.middle += amount * (c[0] + c[1] + c[2]) / corners;
   });
@@ -73,7 +75,7 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   out.amount = 0;
   each_triangle(parts, m, [&](Corners c) {
     for (dvec3& p : c) p -= out.middle;
-    const double whole = amount_of(c, mass), amount = whole / (corners * (corners + 1));
+    const double whole = amount_of(c, mass, sign), amount = whole / (corners * (corners + 1));
     out.amount += whole;
     const dvec3 sum = c[0] + c[1] + c[2];
     out.second += amount * glm::outerProduct(sum, sum);
