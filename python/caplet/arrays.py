@@ -68,7 +68,7 @@ def numbers(value, name):
     array = np.asarray(value)
     if array.dtype.kind not in "iu":
         raise InputError(f"{name}: an array of whole numbers is needed, not of {array.dtype}")
-    if array.size and (array.min() < 0 or array.max() > 2**32 - 1):
+    if array.size and (array.min() < 0 or array.max() > 2**33 - 1):
         raise InputError(f"{name}: numbers from 0 to 2^32 - 1 are needed")
     return np.ascontiguousarray(array, dtype=np.uint32)
 
