@@ -209,6 +209,12 @@ def test_images_are_textures():
     # Bytes are a screen's: 188 is 0.503 linear; one channel is grey.
     scene.set_material(0, materials.diffuse(reflectance=textures.imagemap(pixels=np.full((4, 8), 188, np.uint8))))
     assert np.allclose(caplet.render(scene, spp=4, size=(40, 40)).albedo[5, 5], 0.503, atol=0.02)
+    # Alpha is no colour: 188 of 255 is 0.737 of what is there; within five standard errors of 64 * 64 * 16 samples, 0.0017.
+    half = np.full((4, 4, 4), 188, np.uint8)
+    veil = caplet.Scene()
+    veil.add("disk", radius=99, alpha=textures.imagemap(pixels=half, is_float=True))
+    veil.look_at((0, 0, 5), (0, 0, 0))
+    assert caplet.render(veil, spp=16, size=(64, 64)).alpha.mean() == pytest.approx(188 / 255, abs=0.009)
     with pytest.raises(caplet.InputError, match="read from no file"):
         scene.save("scene.pbrt")
     for wrong in (np.zeros((2, 2, 2)), np.zeros((0, 2, 3)), np.full((2, 2), np.nan), np.full((2, 2), np.inf), np.zeros(3), "picture", np.zeros((2, 40000)),

@@ -183,7 +183,7 @@ def test_meshes():
         scene.add_mesh(vertices, faces, normals=[(0, 0, 1)] * 3, uv=[(0, 0), (1, 0), (0, 1)])
     assert scene.primitives == {"triangle": 3} and at_the_middle(scene)["t"] == 9
     for wrong in (dict(faces=[[0, 1, 3]]), dict(faces=[[0, 1, -1]]), dict(faces=[[0.0, 1, 2]]), dict(faces=np.empty((0, 3), int)), dict(faces=[0, 1, 2]),
-                  dict(faces=[[0, 1]]), dict(faces=[[0, 1, 2**40]]), dict(faces=[[0, 1, 2]], normals=[(0, 0, 1)]),
+                  dict(faces=[[0, 1]]), dict(faces=[[0, 1, 2**40]]), dict(faces=[[0, 1, 2**32]]), dict(faces=[[0, 1, 2]], normals=[(0, 0, 1)]),
                   dict(faces=[[0, 1, 2]], uv=[(math.nan, 0)] * 3), dict(vertices=vertices * math.inf, faces=[[0, 1, 2]])):
         with pytest.raises(caplet.InputError):
             scene.add_mesh(**{"vertices": vertices, **wrong})
