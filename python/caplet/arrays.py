@@ -16,7 +16,7 @@ def floats(value, name):
         raise InputError(f"{name}: not an array of numbers ({problem})") from None
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: an array of numbers is needed, not of {array.dtype}")
-    if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
+    if array.dtype not in (np.float32, np.float64):  # others, and those of the other byte order
         array = array.astype(np.float64)
     if any(stride % array.itemsize for stride in array.strides):  # fields of packed records
         array = np.ascontiguousarray(array)
@@ -68,7 +68,7 @@ def numbers(value, name):
     array = np.asarray(value)
     if array.dtype.kind not in "iu":
         raise InputError(f"{name}: an array of whole numbers is needed, not of {array.dtype}")
-    if array.size and (array.min() < 0 or array.max() > 2**33 - 1):
+    if array.size and (array.min() < 0 or array.max() > 2**32 - 1):
         raise InputError(f"{name}: numbers from 0 to 2^32 - 1 are needed")
     return np.ascontiguousarray(array, dtype=np.uint32)
 
