@@ -62,7 +62,7 @@ def test_overlays_are_the_programs():
     assert [line.split()[0] for line in group.splitlines() if line.strip().startswith("--")] == ["--" + name.replace("_", "-") for name in names]
 
 
-def test_pictures_are_those_of_the_program(tmp_path, saved):
+def test_pictures_are_those_of_the_program(tmp_path, saved, scenes):
     program = the_program()
     scene = balls()
     scene.spp = 4
@@ -73,6 +73,11 @@ def test_pictures_are_those_of_the_program(tmp_path, saved):
         made = saved(image, **overlays)
         subprocess.run([program, "render", "balls.pbrt", "-q", "-o", "none", "--preview", "b.ppm", *options], cwd=tmp_path, check=True)
         assert np.array_equal(made, pixels(tmp_path / "b.ppm")), options
+    neuron = scenes / "neuron.swc"
+    made = saved(caplet.render(caplet.load(neuron, least_width=4), spp=2, size=(96, 54)))  # thin branches, widened
+    subprocess.run([program, "render", neuron, "-q", "-o", "none", "--preview", "b.ppm", "--least-width", "4", "--spp", "2", "--size", "96x54"],
+                   cwd=tmp_path, check=True)
+    assert np.array_equal(made, pixels(tmp_path / "b.ppm"))
     file = tmp_path / "two.pdb"
     file.write_text("".join(f"ATOM  {i:5}  C   ALA A{i:4}    {2 * i:8.3f}{0:8.3f}{0:8.3f}  1.00{10 * i:6.2f}           C\n" for i in (1, 2, 3)))
     made = saved(caplet.render(caplet.load(file, color="bfactor"), spp=2, size=(96, 54)), color_bar=True)
