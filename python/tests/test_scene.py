@@ -176,6 +176,26 @@ def test_shapes_in_bulk_are_shapes_of_their_own(rng):
     assert scene.primitives["cylinder"] == n
 
 
+def test_ellipsoids_are_turned():
+    # Turned by a quarter about z: the first radius lies along y, the second along x.
+    turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
+    scene = caplet.Scene()
+    scene.add_ellipsoids((0, 0, 0), (1, 2, 3), rotation=turn)
+    for way, t in (((1, 0, 0), 8), ((0, 1, 0), 9), ((0, 0, 1), 7)):
+        assert caplet.trace(scene, -10 * np.array(way), way)["t"][0] == pytest.approx(t, abs=1e-4)
+
+
+def test_copies_are_of_their_own():
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 1, name="ball")
+    scene.info["numbers"] = [1]
+    other = scene.copy()
+    other.info["numbers"] = [2]
+    other["ball"].set(radius=3)
+    other.add_spheres((9, 0, 0), 1)
+    assert scene.info == {"numbers": [1]} and scene["ball"].radius[0, 0] == 1 and scene.shapes == ["ball"] and other["ball"].radius[0, 0] == 3
+
+
 def test_meshes():
     scene = caplet.Scene()
     vertices = np.array([(-1, -1, 1), (2, -1, 1), (-1, 2, 1.0)])
