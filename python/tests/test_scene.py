@@ -94,6 +94,8 @@ def test_colors_of_all_and_of_each():
     assert len(scene.materials) == 3
     hits = caplet.trace(scene, [(2, 0, 5), (0, 2, 5), (0, 0, 5), (1, 0, 5)], (0, 0, -1))
     assert hits["material_id"].tolist() in ([1, 2, 1, 0], [2, 1, 2, 0]) and hits["primitive"].tolist() == [0, 1, 2, 0]
+    scene.shape(1).set(radius=0.2)  # the colours stay
+    assert np.array_equal(caplet.trace(scene, [(2, 0, 5), (0, 2, 5), (0, 0, 5), (1, 0, 5)], (0, 0, -1))["material_id"], hits["material_id"])
     for wrong in ((2, 0, 0), (1, 0), np.ones((2, 3)), np.full((3, 3), math.nan), "red", -1.0):
         with pytest.raises(caplet.InputError):
             scene.add_spheres(np.eye(3), 0.1, color=wrong)
@@ -362,10 +364,10 @@ def test_wrong_words_are_told_and_change_nothing(make, says):
 
 def test_errors_have_places(tmp_path):
     file = tmp_path / "bad.pbrt"
-    file.write_text('WorldBegin\n\n  Shape "spher"\n')
+    file.write_text('WorldBegin\n\n    Shape "spher"\n')
     with pytest.raises(caplet.InputError) as caught:
         caplet.load(file)
-    assert (caught.value.file, caught.value.line, caught.value.column) == (str(file), 3, 3)
+    assert (caught.value.file, caught.value.line, caught.value.column) == (str(file), 3, 5)
     assert caught.value.messages == [str(caught.value)] and isinstance(caught.value, ValueError)
     with pytest.raises(caplet.InputError) as caught:
         caplet.load(tmp_path / "none.pbrt")
