@@ -16,7 +16,7 @@ def floats(value, name):
         raise InputError(f"{name}: not an array of numbers ({problem})") from None
     if array.dtype.kind not in "fiu":
         raise InputError(f"{name}: an array of numbers is needed, not of {array.dtype}")
-    if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
+    if array.dtype not in (np.float32, np.float64):  # others, and those of the other byte order
         array = array.astype(np.float64)
     if any(stride % array.itemsize for stride in array.strides):  # fields of packed records
         array = np.ascontiguousarray(array)

@@ -71,7 +71,7 @@ def arrays_like(base):
     yield "memoryview", memoryview(np.ascontiguousarray(base))
     yield "stack", base[np.newaxis]
     yield "deep", base.reshape((1,) * 20 + base.shape)
-    yield "huge", np.broadcast_to(base.reshape(-1)[:1], (2**56, *base.shape[1:]))
+    yield "huge", np.broadcast_to(base.reshape(-1)[:1], (2**50, *base.shape[1:]))
     yield "wide", np.broadcast_to(0.5, (3, 2**56))
     for wrong in (np.nan, np.inf, -np.inf, -1.0, 0.0, 1e300, 1e-320, 3.5):
         out = base.copy()
@@ -127,7 +127,7 @@ OF = {  # where the same name is something else
     ("add_disks", "transform"): [np.eye(4)] * 3, ("add_mesh", "color"): [0.1, 0.2, 0.3], ("set", "p0"): THREE[:2], ("set", "p1"): np.add(THREE[:2], 1),
     ("set", "radius"): [0.1, 0.2], ("resume", "image"): None, ("film", "type"): "rgb", ("filter", "type"): "box", ("sampler", "type"): "independent",
     ("integrator", "type"): "path", ("set_material", "material"): materials.diffuse(), ("add_many", "type"): "sphere", ("shape_parameters", "type"): "sphere",
-    ("from_nibabel", "radius"): 0.1, ("add", "radius"): 0.5,
+    ("from_nibabel", "radius"): 0.1, ("add", "radius"): 0.5, ("add_many", "radius"): 0.5,
 }
 # Of entries that take more by **options: what of it holds numbers.
 MORE = {"add_spheres": ("color", "transform"), "add_cylinders": ("color", "transform"), "add_cones": ("color", "transform"), "add_boxes": ("color", "transform"),

@@ -62,7 +62,7 @@ def test_overlays_are_the_programs():
     assert [line.split()[0] for line in group.splitlines() if line.strip().startswith("--")] == ["--" + name.replace("_", "-") for name in names]
 
 
-def test_pictures_are_those_of_the_program(tmp_path, saved):
+def test_pictures_are_those_of_the_program(tmp_path, saved, scenes):
     program = the_program()
     scene = balls()
     scene.spp = 4
@@ -73,6 +73,11 @@ def test_pictures_are_those_of_the_program(tmp_path, saved):
         made = saved(image, **overlays)
         subprocess.run([program, "render", "balls.pbrt", "-q", "-o", "none", "--preview", "b.ppm", *options], cwd=tmp_path, check=True)
         assert np.array_equal(made, pixels(tmp_path / "b.ppm")), options
+    neuron = scenes / "neuron.swc"
+    made = saved(caplet.render(caplet.load(neuron, least_width=4), spp=2, size=(96, 54)))  # thin branches, widened
+    subprocess.run([program, "render", neuron, "-q", "-o", "none", "--preview", "b.ppm", "--least-width", "4", "--spp", "2", "--size", "96x54"],
+                   cwd=tmp_path, check=True)
+    assert np.array_equal(made, pixels(tmp_path / "b.ppm"))
     file = tmp_path / "two.pdb"
     file.write_text("".join(f"ATOM  {i:5}  C   ALA A{i:4}    {2 * i:8.3f}{0:8.3f}{0:8.3f}  1.00{10 * i:6.2f}           C\n" for i in (1, 2, 3)))
     made = saved(caplet.render(caplet.load(file, color="bfactor"), spp=2, size=(96, 54)), color_bar=True)
@@ -209,6 +214,12 @@ def test_images_are_textures():
     # Bytes are a screen's: 188 is 0.503 linear; one channel is grey.
     scene.set_material(0, materials.diffuse(reflectance=textures.imagemap(pixels=np.full((4, 8), 188, np.uint8))))
     assert np.allclose(caplet.render(scene, spp=4, size=(40, 40)).albedo[5, 5], 0.503, atol=0.02)
+    # Alpha is no colour: 188 of 255 is 0.737 of what is there; within five standard errors of 64 * 64 * 16 samples, 0.0017.
+    half = np.full((4, 4, 4), 188, np.uint8)
+    veil = caplet.Scene()
+    veil.add("disk", radius=99, alpha=textures.imagemap(pixels=half, is_float=True))
+    veil.look_at((0, 0, 5), (0, 0, 0))
+    assert caplet.render(veil, spp=16, size=(64, 64)).alpha.mean() == pytest.approx(188 / 255, abs=0.009)
     with pytest.raises(caplet.InputError, match="read from no file"):
         scene.save("scene.pbrt")
     for wrong in (np.zeros((2, 2, 2)), np.zeros((0, 2, 3)), np.full((2, 2), np.nan), np.full((2, 2), np.inf), np.zeros(3), "picture", np.zeros((2, 40000)),

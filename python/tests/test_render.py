@@ -4,6 +4,7 @@
 import os
 import signal
 import struct
+import sys
 import threading
 import time
 
@@ -198,6 +199,47 @@ def test_other_threads_run_and_read_while_it_renders(ball):
     for thread in threads:
         thread.join()
     assert ticks[0] > 20 and seen == sorted(seen) and session.spp == 257
+
+
+@pytest.mark.parametrize("work", ["render", "trace", "all", "pick", "add_capsules", "load"])
+def test_the_interpreters_lock_is_released(ball, work, tmp_path):
+    """A thread of Python counts on while one call of the binding is under way."""
+    native = ball._native.copy()
+    native.present()
+    devices = caplet.rendering._devices(None)
+    held, picker = caplet._caplet.Session(native, devices), caplet._caplet.Picker(native, devices[0])
+    held.render(1, None, None)
+    n = 1 << 17
+    origins, directions, ends = np.tile([[0, 0, 5.0]], (n, 1)), np.array([[0, 0, -1.0]]), (np.zeros(1), np.full(1, np.inf))
+    out = np.empty(n, caplet.CROSSING).view(np.uint8)
+    many = np.zeros((1_000_000, 3))
+    (tmp_path / "big.capsules").write_text("<0, 0, 0> <1, 0, 0> 0.5\n" * 100_000)
+    calls = {"render": lambda: held.render(64, None, None), "trace": lambda: picker.nearest(n, origins, directions, *ends, out),
+             "all": lambda: picker.crossings(n, origins, directions, *ends, 16), "pick": lambda: picker.pixel(1, 1),
+             "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, {}),
+             "load": lambda: caplet._caplet.load(str(tmp_path / "big.capsules"), {})}
+    ticks, inside, stop = [0], [False], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            if inside[0]:
+                ticks[0] += 1
+            time.sleep(0.0005)
+    before = sys.getswitchinterval()
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        sys.setswitchinterval(60)  # the lock is never asked for: what counts has got it from the call
+        end = time.monotonic() + 60
+        while ticks[0] < 3 and time.monotonic() < end:
+            inside[0] = True
+            calls[work]()
+            inside[0] = False
+    finally:
+        sys.setswitchinterval(before)
+        stop.set()
+        thread.join()
+    assert ticks[0] >= 3
 
 
 def test_a_session_is_cancelled_from_another_thread(ball):

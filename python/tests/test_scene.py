@@ -94,6 +94,8 @@ def test_colors_of_all_and_of_each():
     assert len(scene.materials) == 3
     hits = caplet.trace(scene, [(2, 0, 5), (0, 2, 5), (0, 0, 5), (1, 0, 5)], (0, 0, -1))
     assert hits["material_id"].tolist() in ([1, 2, 1, 0], [2, 1, 2, 0]) and hits["primitive"].tolist() == [0, 1, 2, 0]
+    scene.shape(1).set(radius=0.2)  # the colours stay
+    assert np.array_equal(caplet.trace(scene, [(2, 0, 5), (0, 2, 5), (0, 0, 5), (1, 0, 5)], (0, 0, -1))["material_id"], hits["material_id"])
     for wrong in ((2, 0, 0), (1, 0), np.ones((2, 3)), np.full((3, 3), math.nan), "red", -1.0):
         with pytest.raises(caplet.InputError):
             scene.add_spheres(np.eye(3), 0.1, color=wrong)
@@ -176,6 +178,26 @@ def test_shapes_in_bulk_are_shapes_of_their_own(rng):
     assert scene.primitives["cylinder"] == n
 
 
+def test_ellipsoids_are_turned():
+    # Turned by a quarter about z: the first radius lies along y, the second along x.
+    turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
+    scene = caplet.Scene()
+    scene.add_ellipsoids((0, 0, 0), (1, 2, 3), rotation=turn)
+    for way, t in (((1, 0, 0), 8), ((0, 1, 0), 9), ((0, 0, 1), 7)):
+        assert caplet.trace(scene, -10 * np.array(way), way)["t"][0] == pytest.approx(t, abs=1e-4)
+
+
+def test_copies_are_of_their_own():
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 1, name="ball")
+    scene.info["numbers"] = [1]
+    other = scene.copy()
+    other.info["numbers"] = [2]
+    other["ball"].set(radius=3)
+    other.add_spheres((9, 0, 0), 1)
+    assert scene.info == {"numbers": [1]} and scene["ball"].radius[0, 0] == 1 and scene.shapes == ["ball"] and other["ball"].radius[0, 0] == 3
+
+
 def test_meshes():
     scene = caplet.Scene()
     vertices = np.array([(-1, -1, 1), (2, -1, 1), (-1, 2, 1.0)])
@@ -183,7 +205,7 @@ def test_meshes():
         scene.add_mesh(vertices, faces, normals=[(0, 0, 1)] * 3, uv=[(0, 0), (1, 0), (0, 1)])
     assert scene.primitives == {"triangle": 3} and at_the_middle(scene)["t"] == 9
     for wrong in (dict(faces=[[0, 1, 3]]), dict(faces=[[0, 1, -1]]), dict(faces=[[0.0, 1, 2]]), dict(faces=np.empty((0, 3), int)), dict(faces=[0, 1, 2]),
-                  dict(faces=[[0, 1]]), dict(faces=[[0, 1, 2**40]]), dict(faces=[[0, 1, 2]], normals=[(0, 0, 1)]),
+                  dict(faces=[[0, 1]]), dict(faces=[[0, 1, 2**40]]), dict(faces=[[0, 1, 2**32]]), dict(faces=[[0, 1, 2]], normals=[(0, 0, 1)]),
                   dict(faces=[[0, 1, 2]], uv=[(math.nan, 0)] * 3), dict(vertices=vertices * math.inf, faces=[[0, 1, 2]])):
         with pytest.raises(caplet.InputError):
             scene.add_mesh(**{"vertices": vertices, **wrong})
@@ -342,10 +364,10 @@ def test_wrong_words_are_told_and_change_nothing(make, says):
 
 def test_errors_have_places(tmp_path):
     file = tmp_path / "bad.pbrt"
-    file.write_text('WorldBegin\n\n  Shape "spher"\n')
+    file.write_text('WorldBegin\n\n    Shape "spher"\n')
     with pytest.raises(caplet.InputError) as caught:
         caplet.load(file)
-    assert (caught.value.file, caught.value.line, caught.value.column) == (str(file), 3, 3)
+    assert (caught.value.file, caught.value.line, caught.value.column) == (str(file), 3, 5)
     assert caught.value.messages == [str(caught.value)] and isinstance(caught.value, ValueError)
     with pytest.raises(caplet.InputError) as caught:
         caplet.load(tmp_path / "none.pbrt")

@@ -48,6 +48,18 @@ def test_hits_are_those_of_the_spheres(rng):
     assert (np.diff(every["ray"].astype(int)) >= 0).all()
 
 
+def test_rays_in_several_pieces(row):
+    """More than the binding asks at once (2^18, and 2^22 over `most` of lists): every one answers for itself."""
+    n = (1 << 18) + 1000
+    x = np.where(np.arange(n) % 3 == 1, 9.0, 2.0 * (np.arange(n) % 3))  # the first capsule, nothing, the third
+    origins = np.stack([x, np.full(n, 0.5), np.full(n, 9.0)], axis=1)
+    hits = caplet.trace(row, origins, (0, 0, -1))
+    assert np.array_equal(hits["ray"], np.arange(n))
+    assert np.array_equal(hits["primitive"], np.array([0, 2**32 - 1, 2])[np.arange(n) % 3])
+    every = caplet.trace(row, origins[:40_000], (0, 0, -1), mode="all")
+    assert np.array_equal(every["ray"], np.repeat(np.flatnonzero(np.arange(40_000) % 3 != 1), 2))
+
+
 def test_crossings_in_order(row):
     hits = caplet.trace(row, (-5, 0.5, 0), (1, 0, 0), mode="all")
     assert hits["t"] == pytest.approx([4.75, 5.25, 6.75, 7.25, hits["t"][4], hits["t"][5]])

@@ -170,6 +170,31 @@ TEST_F(Library, AFilmHasThePicture) {
   EXPECT_THROW(film.write_preview(folder_ / "out.nothing"), caplet::InputError);
 }
 
+TEST_F(Library, OverlaysAreDrawnByName) {
+  const caplet::Film film = caplet::render(caplet::import_scene(folder_ / "ball.pbrt"), test_device());
+  for (const caplet::Overlay& one : caplet::overlays()) EXPECT_FALSE(one.name.empty() || one.help.empty());
+  const fs::path file = folder_ / "drawn.png";
+  for (const caplet::OverlayOptions& wrong :
+       {caplet::OverlayOptions{{"outline", "wide"}}, {{"outlin", ""}}, {{"color-bar", ""}}, {{"scale-bar", "1e9"}}})
+    EXPECT_THROW(film.write_preview(file, wrong), caplet::InputError);
+  EXPECT_FALSE(fs::exists(file));
+}
+
+TEST_F(Library, LookAtShowsARightHandedWorldUnmirrored) {
+  // The camera's +x is to the right of the picture: along the world's +x where the view is from +z with y up.
+  caplet::Scene scene;
+  scene.add_shape("sphere", {});
+  scene.look_at({0, 0, 9}, {0, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(scene.camera()[0], 1);
+  EXPECT_EQ(scene.camera()[10], -1);
+  scene.look_at({0, 0, -9}, {0, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(scene.camera()[0], -1);
+  // As LookAt of pbrt's text has it, where that is what there was.
+  scene.set_camera("perspective", {}, caplet::identity);
+  scene.look_at({0, 0, 9}, {0, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(scene.camera()[0], -1);
+}
+
 TEST_F(Library, TheTimeLimitEndsARender) {
   caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   scene.set_size(320, 240);

@@ -12,6 +12,7 @@
 
 #include "post/detail/canvas.h"
 #include "post/detail/parts.h"
+#include "post/overlay_options.h"
 #include "support/import_files.h"
 
 namespace caplet::post {
@@ -107,6 +108,41 @@ TEST(ScaleBar, WrongOnesAreRefused) {
   Overlays overlays;
   overlays.color_bar = true;
   EXPECT_THAT(complaint([&] { check(overlays, ball(), "--"); }), HasSubstr("--color-bar"));
+}
+
+TEST(OverlayOptions, EachRowIsAskedForByItsName) {
+  for (const OverlayRow& row : overlay_rows()) {
+    Overlays overlays;
+    set_overlay(overlays, row.name, "", "--" + row.name);
+    EXPECT_TRUE(overlays.any()) << row.name;
+    EXPECT_FALSE(row.help.empty());
+    EXPECT_THAT(complaint([&] { set_overlay(overlays, row.name, "much", "--" + row.name); }), HasSubstr("--" + row.name));
+  }
+  EXPECT_THAT(complaint([] {
+                Overlays overlays;
+                set_overlay(overlays, "outlines", "", "");
+              }),
+              HasSubstr("'outline'"));
+}
+
+TEST(OverlayOptions, ValuesAreWithinTheirRange) {
+  const auto outline = [](const std::string& text) {
+    Overlays overlays;
+    set_overlay(overlays, "outline", text, "--outline");
+    return overlays.outline.value();
+  };
+  EXPECT_EQ(outline(""), 1.5);
+  EXPECT_EQ(outline("0.1"), 0.1);
+  EXPECT_EQ(outline("64"), 64);
+  for (const char* wrong : {"0.09", "64.1", "nan", "inf", "2 ", "-1"})
+    EXPECT_THAT(complaint([&] { outline(wrong); }), AllOf(HasSubstr("--outline"), HasSubstr("from 0.1 to 64"))) << wrong;
+  Overlays overlays;
+  set_overlay(overlays, "depth-cue", "", "");
+  EXPECT_EQ(overlays.depth_cue, 0.6);
+  set_overlay(overlays, "scale-bar", "auto", "");
+  EXPECT_EQ(overlays.scale_bar->length, 0);
+  set_overlay(overlays, "scale-bar", "3 mm", "");
+  EXPECT_EQ(overlays.scale_bar->length, 3);
 }
 
 TEST(ScaleBar, IsDrawnAsLong) {
