@@ -22,6 +22,20 @@ seeds() {
   echo "$to"
 }
 
+# dictionary NAME: a libFuzzer dictionary of the words that the sources of the target's kind name, and of those in tests/fuzz/words.
+dictionary() {
+  local kind=${1#fuzz_} to=$folder/seeds/$1.dict
+  local words=("$root/tests/fuzz/words/all" "$root/tests/fuzz/words/$kind")
+  case $kind in 3mf | mjcf | urdf) words+=("$root/tests/fuzz/words/xml") ;; esac
+  mkdir -p "$folder/seeds"
+  {
+    # Literals that are one word, or a list of words between blanks.
+    find "$root/host" -name "*$kind*.cpp" -exec grep -ohE '"([^" \\]+|[^"\\]* )"' {} + | tr -d '"' | tr ' ' '\n' | grep -E '..' || true
+    cat "${words[@]}" 2>/dev/null || true
+  } | sed -e 's/\\/\\\\/g; s/"/\\"/g; s/.*/"&"/' | sort -u >"$to"
+  echo "$to"
+}
+
 seconds=${1:-60}
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || {
   say "fuzz: SECONDS must be a positive whole number, not '$seconds'"
@@ -48,7 +62,7 @@ for name in "${targets[@]}"; do
   corpus=$folder/corpus/$name
   mkdir -p "$corpus"
   (cd "$folder" && exec "fuzz/$name" -max_total_time="$wall" -print_final_stats=1 -rss_limit_mb=4096 -timeout=20 \
-    -artifact_prefix="$folder/$name-" "$corpus" "$(seeds "$name")") >"$folder/$name.log" 2>&1 &
+    -dict="$(dictionary "$name")" -artifact_prefix="$folder/$name-" "$corpus" "$(seeds "$name")") >"$folder/$name.log" 2>&1 &
   names[$!]=$name
 done
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT

@@ -69,7 +69,9 @@ std::string ZipFile::read(const std::string& name) {
   if (info.size > left_) too_much();
   for (;;) {
     const std::size_t before = out.size();
-    const std::size_t piece = std::min<std::uintmax_t>(kPiece, left_ + 1);
+    // One byte more than is announced, so that its end shows.
+    const std::uintmax_t rest = info.size > before ? info.size - before : 0;
+    const std::size_t piece = std::min({std::uintmax_t{kPiece}, left_ + 1, rest + 1});
     out.resize(before + piece);
     const std::int64_t got = zip_fread(entry.get(), out.data() + before, piece);
     out.resize(before + static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -473,6 +474,17 @@ TEST(BadFibres, AreRefused) {
   EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, 900), "x.trk"); }), HasSubstr("ends before"));
   EXPECT_THAT(complaint([&] { read_trk(trk.substr(0, trk.size() - 20), "x.trk"); }), HasSubstr("x.trk: byte "));
   EXPECT_THAT(complaint([] { read_trk("nothing", "x.trk"); }), HasSubstr("TRACK"));
+  std::array<float, 16> endless{};
+  endless.fill(std::numeric_limits<float>::infinity());
+  EXPECT_THAT(complaint([&] {
+                read_trk(trk_file({1, 2, 3}, "RAS", endless, false), "x.trk");
+              }),
+              AllOf(HasSubstr("x.trk: byte 440"), HasSubstr("not finite")));
+  const std::array<float, 16> far = {3e38F, 0, 0, 0, 0, 3e38F, 0, 0, 0, 0, 3e38F, 0, 0, 0, 0, 1};
+  EXPECT_THAT(complaint([&] {
+                read_trk(trk_file({1e15F, 2, 3}, "RAS", far, false), "x.trk");
+              }),
+              AllOf(HasSubstr("x.trk: byte 1004"), HasSubstr("out of range in the world")));
   EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ncount: 1\n", "x.tck"); }), HasSubstr("x.tck:3: the header does not end"));
   EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Int8\nEND\n", "x.tck"); }), HasSubstr("x.tck:2"));
   EXPECT_THAT(complaint([] { read_tck("mrtrix tracks\ndatatype: Float32LE\nEND\nabc", "x.tck"); }), HasSubstr("infinite point"));
@@ -483,6 +495,8 @@ TEST(BadFibres, AreRefused) {
   EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 inf\n", "x.vtk"); }), HasSubstr("x.vtk:6"));
   EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 0\nLINES 1 1\n1 0\n", "x.vtk"); }),
               HasSubstr("more points than"));
+  EXPECT_THAT(complaint([&] { read_vtk(head + "POINTS 1 float\n0 0 0\nLINES 2 9\n1 0 9223372036854775807\n", "x.vtk"); }),
+              HasSubstr("cell 1 has more points than"));
   EXPECT_THAT(complaint([&] { read_vtk(head, "x.vtk"); }), HasSubstr("no lines"));
   EXPECT_THAT(complaint([&] { scene_of("r.tck", "mrtrix tracks\n", {{{"radius", "-1"}}}); }), HasSubstr("r.tck"));
   EXPECT_THAT(complaint([&] {
@@ -538,6 +552,11 @@ TEST(BadTrx, IsRefused) {
   EXPECT_THAT(said(trx_file("float32", points, "uint32", good, 1000000000, 2)),
               AllOf(HasSubstr("3000000000"), HasSubstr("36 bytes")));
   EXPECT_THAT(said(trx_file("float32", points, "uint32", good, 3, 1000000000)), HasSubstr("1000000000 streamlines"));
+  // One more than the greatest number of streamlines is 0, as many as there are.
+  EXPECT_THAT(said(test::zip_of({{"header.json", R"({"NB_VERTICES": 0, "NB_STREAMLINES": 18446744073709551615})"},
+                                 {"positions.3.float32", ""},
+                                 {"offsets.uint32", ""}})),
+              HasSubstr("18446744073709551615 streamlines"));
   EXPECT_THAT(said(trx_file("int8", points, "uint32", good, 3, 2)), HasSubstr("positions are float16"));
   EXPECT_THAT(said(trx_file("float32", points, "float32", good, 3, 2)), HasSubstr("offsets are"));
   EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(0u).put(9u).bytes(), 3, 2)),

@@ -80,6 +80,7 @@ class File {
   std::string bytes_;
   std::string_view binary_;  // GLB's chunk
   std::map<std::size_t, std::string> buffers_;
+  std::uintmax_t held_ = 0, taken_ = 0;  // bytes of the file and its buffers, and of what accessors took from them
 };
 
 /// What a shape of a glTF material has.

@@ -132,6 +132,8 @@ glm::dmat4 ras_from_trk(const Bytes& bytes, std::string_view text) {
     dimension[k] = bytes.at<std::int16_t>(6 + static_cast<std::size_t>(2 * k));
   }
   if (ras_from_voxel[3][3] == 0) return glm::dmat4(1);  // the file has none
+  for (std::size_t i = 0; i < 16; ++i)
+    if (!std::isfinite(bytes.at<float>(440 + 4 * i))) bytes.fail(440 + 4 * i, "a number of the matrix is not finite");
   for (int k = 0; k < 3; ++k)
     if (!(size[k] > 0)) bytes.fail(12, "a voxel's size is not positive");
   // Which world axis each voxel axis runs along, and whether against it.
@@ -244,7 +246,10 @@ Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* sc
     bytes.need(at + 4, static_cast<std::uint64_t>(count), stride);
     at += 4;
     for (std::int32_t i = 0; i < count; ++i, at += stride) {
-      out.points.emplace_back(glm::dvec3(ras * glm::dvec4(glm::dvec3(bytes.point(at)), 1)));
+      const glm::dvec3 p(ras * glm::dvec4(glm::dvec3(bytes.point(at)), 1));
+      for (int k = 0; k < 3; ++k)
+        if (!(std::abs(p[k]) <= static_cast<double>(largest_number))) bytes.fail(at, "the point is out of range in the world");
+      out.points.emplace_back(p);
       if (scalar >= 0) scalars_wanted->values.push_back(bytes.at<float>(at + 12 + 4 * static_cast<std::size_t>(scalar)));
     }
     bytes.need(at, static_cast<std::uint64_t>(properties), 4);

@@ -123,7 +123,7 @@ class TrxReader {
     if (size == 0) fail(name + ": offsets are uint32 or uint64");
     const std::string raw = zip_.read(name);
     const std::uint64_t count = raw.size() / size;
-    if (raw.size() % size != 0 || (count != tracks && count != tracks + 1))
+    if (raw.size() % size != 0 || count < tracks || count - tracks > 1)
       fail(fmt::format("{}: {} streamlines are announced; the array has {} bytes", name, tracks, raw.size()));
     const auto offset = [&](std::uint64_t i) -> std::uint64_t {
       if (i >= count) return points;

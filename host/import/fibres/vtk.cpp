@@ -146,8 +146,8 @@ class VtkReader {
     std::vector<std::int64_t> indices;
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t corners = binary_ ? raw<std::int32_t>() : whole();
+      if (corners < 0 || corners >= size - used) fail(fmt::format("cell {} has more points than are announced", i));
       used += corners + 1;
-      if (corners < 0 || used > size) fail(fmt::format("cell {} has more points than are announced", i));
       indices.clear();
       for (std::int64_t k = 0; k < corners; ++k) indices.push_back(binary_ ? raw<std::int32_t>() : whole());
       work(indices);

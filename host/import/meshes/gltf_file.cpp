@@ -43,7 +43,8 @@ const nlohmann::json& no_list() {
 
 }  // namespace
 
-File::File(std::filesystem::path file, std::string bytes) : path(std::move(file)), bytes_(std::move(bytes)) {
+File::File(std::filesystem::path file, std::string bytes)
+    : path(std::move(file)), bytes_(std::move(bytes)), held_(bytes_.size()) {
   std::string_view text = bytes_;
   constexpr std::size_t header = 12, chunk_header = 8;
   if (text.size() >= header && word(text, 0) == kGlb) {
@@ -214,6 +215,7 @@ std::string_view File::buffer(std::size_t index) {
   if (known != buffers_.end()) return known->second;
   std::optional<std::string> data = data_uri(uri);
   if (!data) data = read_file(beside(uri), {path.string(), 0, 0});
+  held_ += data->size();
   return buffers_[index] = std::move(*data);
 }
 
@@ -264,7 +266,7 @@ File::Elements File::elements(std::size_t accessor) {
   const Json& of = list("accessors")[accessor];
   if (of.contains("sparse")) fail(fmt::format("accessor {} is sparse, which is not read", accessor));
   Elements out;
-  out.type = static_cast<int>(number(of, "componentType", 0));
+  out.type = static_cast<int>(std::clamp(number(of, "componentType", 0), 0.0, 65536.0));
   const std::map<int, std::size_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2}, {5123, 2}, {5125, 4}, {5126, 4}};
   const auto size = sizes.find(out.type);
   if (size == sizes.end()) fail(fmt::format("accessor {} has a componentType that there is not", accessor));
@@ -288,6 +290,10 @@ File::Elements File::elements(std::size_t accessor) {
        (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) / static_cast<double>(out.stride) + 1 < count))
     fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, out.count, bytes.size()));
   out.bytes = bytes.substr(std::min(bytes.size(), static_cast<std::size_t>(offset)));
+  // Every primitive has its own vertices: any number of them can share an accessor.
+  taken_ += sizeof(float) * out.components * out.count;
+  if (taken_ > std::max<std::uintmax_t>(std::uintmax_t{1} << 30, 100 * held_))
+    fail(fmt::format("accessor {}: what the meshes share comes to {} bytes, of {} in the file", accessor, taken_, held_));
   return out;
 }
 
