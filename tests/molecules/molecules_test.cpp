@@ -185,6 +185,19 @@ TEST(Mmcif, NumbersBeyondTheirRangeAreNone) {
   EXPECT_FALSE(m.has_b_factors);
 }
 
+// Charges that no byte holds, which UndefinedBehaviorSanitizer sees.
+TEST(Mmcif, ComponentsMayHaveNoCharge) {
+  for (const char* charge : {"?", ".", "1e9", "-1"}) {
+    std::string text = "data_X\n_chem_comp.id X\nloop_\n";
+    for (const char* column : {"comp_id", "atom_id", "type_symbol", "charge", "model_Cartn_x", "model_Cartn_y", "model_Cartn_z"})
+      text += "_chem_comp_atom." + std::string(column) + "\n";
+    text += "X C1 C " + std::string(charge) + " 1 2 3\n";
+    const Molecule m = read_mmcif(text, "x.cif", {});
+    ASSERT_EQ(m.atoms.size(), 1u);
+    EXPECT_EQ(m.atoms[0].position, glm::vec3(1, 2, 3));
+  }
+}
+
 TEST(Pdb, OnlyTheFirstAlternativePlaceIsDrawn) {
   const std::string text = atom_line(1, " CA ", ' ', "SER", 'A', 1, 0, 0, 0, 1, " C") +
                            atom_line(2, " CB ", 'A', "SER", 'A', 1, 1.5, 0, 0, 1, " C") +

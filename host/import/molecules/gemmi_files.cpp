@@ -301,6 +301,12 @@ gemmi::cif::Document document_of(std::string_view text, const std::string& path)
   return gemmi::cif::read_memory(text.data(), text.size(), path.c_str());
 }
 
+/// gemmi 0.5 makes a byte of a component's charge whatever it is, none included.
+void mend_charges(gemmi::cif::Block& block) {
+  for (auto row : block.find("_chem_comp_atom.", {"charge"}))
+    if (!(std::abs(gemmi::cif::as_number(row[0])) <= 100)) row[0] = "0";
+}
+
 void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
   // A const table of gemmi 0.5 is not to be had.
   auto& table_of = const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
@@ -323,7 +329,8 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
-    const gemmi::cif::Document document = document_of(text, path);
+    gemmi::cif::Document document = document_of(text, path);
+    for (gemmi::cif::Block& block : document.blocks) mend_charges(block);
     gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
     Molecule out = Builder(structure, path, options).build();
     for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out.components);
