@@ -156,6 +156,48 @@ TEST(Pdb, BlankElementsComeFromTheNames) {
   EXPECT_EQ(m.atoms[1].element, 20);  // calcium
 }
 
+// gemmi 0.5 reads the distance of columns 74 to 78 beyond the end of a line that ends there, which AddressSanitizer sees.
+TEST(Pdb, LinesMayEndWithinTheDistance) {
+  for (const std::size_t columns : {73U, 74U, 76U, 78U}) {
+    std::string link = "SSBOND   1 CYS A    1    CYS A    2";
+    link.resize(73, ' ');
+    link = (link + " 2.03").substr(0, columns);
+    const std::string text = atom_line(1, " SG ", ' ', "CYS", 'A', 1, 0, 0, 0, 1, " S") +
+                             atom_line(2, " SG ", ' ', "CYS", 'A', 2, 9, 0, 0, 1, " S") + link;
+    for (const char* end : {"", "\n", "\r\n"}) EXPECT_EQ(read_pdb(text + end, "x.pdb", {}).bonds, (std::vector<Bond>{{0, 1}}));
+  }
+}
+
+// A serial number beyond integers, which no bond needs, and b factors whose range no float holds.
+TEST(Mmcif, NumbersBeyondTheirRangeAreNone) {
+  std::string text = "data_x\nloop_\n";
+  for (const char* column : {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id",
+                             "label_entity_id", "label_seq_id", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy", "B_iso_or_equiv",
+                             "auth_seq_id", "auth_asym_id", "pdbx_PDB_model_num"})
+    text += "_atom_site." + std::string(column) + "\n";
+  text +=
+      "ATOM 18446744073709551616 C CA . ALA A 1 1 0 0 0 1 3e38 1 A 1\n"
+      "ATOM 2 C CA . ALA A 1 2 0 0 9 1 -3e38 99999999999 A 1\n";
+  const Molecule m = read_mmcif(text, "x.cif", {});
+  ASSERT_EQ(m.atoms.size(), 2u);
+  EXPECT_EQ(m.atoms[0].element, 6);
+  EXPECT_EQ(m.atoms[1].serial, 2);
+  EXPECT_FALSE(m.has_b_factors);
+}
+
+// Charges that no byte holds, which UndefinedBehaviorSanitizer sees.
+TEST(Mmcif, ComponentsMayHaveNoCharge) {
+  for (const char* charge : {"?", ".", "1e9", "-1"}) {
+    std::string text = "data_X\n_chem_comp.id X\nloop_\n";
+    for (const char* column : {"comp_id", "atom_id", "type_symbol", "charge", "model_Cartn_x", "model_Cartn_y", "model_Cartn_z"})
+      text += "_chem_comp_atom." + std::string(column) + "\n";
+    text += "X C1 C " + std::string(charge) + " 1 2 3\n";
+    const Molecule m = read_mmcif(text, "x.cif", {});
+    ASSERT_EQ(m.atoms.size(), 1u);
+    EXPECT_EQ(m.atoms[0].position, glm::vec3(1, 2, 3));
+  }
+}
+
 TEST(Pdb, OnlyTheFirstAlternativePlaceIsDrawn) {
   const std::string text = atom_line(1, " CA ", ' ', "SER", 'A', 1, 0, 0, 0, 1, " C") +
                            atom_line(2, " CB ", 'A', "SER", 'A', 1, 1.5, 0, 0, 1, " C") +

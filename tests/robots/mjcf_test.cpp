@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // MJCF: where geoms lie by hand and by mujoco 4.0, counts of the shared files, bad input.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -306,6 +307,13 @@ TEST(Mjcf, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_THAT(said("<default><default class='x'/><default class='x'/></default>"), HasSubstr("was there before"));
   EXPECT_THAT(said("<worldbody><geom size='1' material='m'/></worldbody>"), HasSubstr("no material 'm'"));
   EXPECT_THAT(said("<worldbody><geom size='1' fromto='0 0 0 1 1 1'/></worldbody>"), HasSubstr("only capsules"));
+  std::string fields, geoms;
+  for (const char name : {'a', 'b', 'c', 'd'}) {
+    fields += fmt::format("<hfield name='{}' nrow='2048' ncol='2048' size='1 1 1 1'/>", name);
+    geoms += fmt::format("<geom type='hfield' hfield='{}'/>", name);
+  }
+  EXPECT_THAT(said("<asset>" + fields + "</asset><worldbody>" + geoms + "</worldbody>"), HasSubstr("1073741824 bytes"));
+  EXPECT_THAT(said("<worldbody><geom size='1' group='1e12'/></worldbody>"), HasSubstr("no geometry of the groups"));
   const std::string million =
       "<replicate count='1000'><replicate count='1000'><replicate count='1000'><geom "
       "size='1'/></replicate></replicate></replicate>";

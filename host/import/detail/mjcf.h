@@ -25,6 +25,8 @@ namespace caplet::mjcf {
 /// Elements within elements, models within models; elements that replicate makes among them.
 inline constexpr int most_nested = 500;
 inline constexpr std::size_t most_elements = 4'000'000, most_geoms = 1'000'000;
+/// Bytes of the textures and height fields of a model that are made of a few words.
+inline constexpr std::size_t most_made = std::size_t{1} << 30;
 
 /// A default class: what its elements say, and where it has the rest from.
 struct Class {
@@ -162,11 +164,14 @@ class Assets {
 
  private:
   std::shared_ptr<const RobotTexture> texture(const Model& model, const std::string& name, const SourceLocation& user);
+  /// Counts the bytes of what an element of a few words makes. Throws InputError beyond most_made.
+  void make(const Element& of, std::size_t bytes);
   Robot& robot_;
   const ImageReader& images_;
   std::map<const void*, std::size_t> materials_;  // by their elements
   std::map<const void*, std::shared_ptr<const RobotTexture>> textures_;
   std::map<const void*, std::shared_ptr<const MeshParts>> heights_, meshes_;
+  std::size_t made_ = 0;
 };
 
 /// Images as textures of MJCF are: bytes of red, green and blue, rows from the top.

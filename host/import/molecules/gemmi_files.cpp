@@ -17,6 +17,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/spelling.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
 
@@ -144,7 +145,7 @@ class Builder {
       if (!(std::abs(one.position[axis]) <= largest_number))
         throw InputError({path_, 0, 0}, fmt::format("atom {} ({} of {} {}) has no finite place", atom.serial, atom.name,
                                                     source.name, source.seqid.str()));
-    one.b_factor = std::isfinite(atom.b_iso) ? atom.b_iso : 0;
+    one.b_factor = std::abs(atom.b_iso) <= largest_number ? atom.b_iso : 0;
     one.residue = static_cast<std::uint32_t>(out_.residues.size());
     one.serial = atom.serial;
     one.altloc = atom.altloc;
@@ -278,8 +279,32 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
   return out;
 }
 
+/// gemmi 0.5 reads the distance of SSBOND and LINK, columns 74 to 78, beyond the end of a line that ends within it: such lines
+/// get blanks up to column 80.
+std::string with_whole_distances(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    out += line;
+    const std::string record = lower_case(std::string(line.substr(0, 4)));
+    if (line.size() > 72 && line.size() < 80 && (record == "ssbo" || record == "link")) out.append(80 - line.size(), ' ');
+    out += '\n';
+  }
+  return out;
+}
+
 gemmi::cif::Document document_of(std::string_view text, const std::string& path) {
   return gemmi::cif::read_memory(text.data(), text.size(), path.c_str());
+}
+
+/// gemmi 0.5 makes a byte of a component's charge whatever it is, none included.
+void mend_charges(gemmi::cif::Block& block) {
+  for (auto row : block.find("_chem_comp_atom.", {"charge"}))
+    if (!(std::abs(gemmi::cif::as_number(row[0])) <= 100)) row[0] = "0";
 }
 
 void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
@@ -293,7 +318,8 @@ void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
 
 Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
-    gemmi::Structure structure = gemmi::read_pdb_from_memory(text.data(), text.size(), path);
+    const std::string whole = with_whole_distances(text);
+    gemmi::Structure structure = gemmi::read_pdb_from_memory(whole.data(), whole.size(), path);
     Molecule out = Builder(structure, path, options).build();
     add_conect(text, out);
     out.assemblies = assemblies_of_remarks(text, path);
@@ -303,7 +329,8 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
-    const gemmi::cif::Document document = document_of(text, path);
+    gemmi::cif::Document document = document_of(text, path);
+    for (gemmi::cif::Block& block : document.blocks) mend_charges(block);
     gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
     Molecule out = Builder(structure, path, options).build();
     for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out.components);

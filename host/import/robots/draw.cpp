@@ -28,7 +28,8 @@ namespace {
 constexpr glm::dvec4 kGrey{0.5, 0.5, 0.5, 1};
 constexpr double kFar = 50;             // of an endless plane: so many times the size of what stands on it, to each side
 constexpr double kBrightestSky = 0.35;  // the mean of its radiance
-constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;
+constexpr std::size_t kMostTinted = std::size_t{1} << 30;  // bytes
 
 double linear(double screen) { return decoded_value({}, std::clamp(screen, 0.0, 1.0)); }
 RgbSpectrum linear(const glm::dvec3& screen) { return {{linear(screen.r), linear(screen.g), linear(screen.b)}}; }
@@ -181,16 +182,20 @@ class Drawing {
     }
     if (mapping.kind != TextureMapping::Kind::uv)
       mapping.texture_from_world = texture_from_geom * glm::inverse(world_ * geom.world);
-    image.image = tinted(of.texture->image, glm::dvec3(rgba));
+    image.image = tinted(of.texture->image, glm::dvec3(rgba), of.where);
     scene_.textures.push_back({image, false, of.name, of.where});
     return narrow<std::uint32_t>(scene_.textures.size() - 1);
   }
 
   /// Its colours as on a screen, times another: what MuJoCo shows.
-  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color) {
+  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color,
+                                             const SourceLocation& where) {
     if (color == glm::dvec3(1)) return image;
     std::shared_ptr<const TextureImage>& known = tinted_[{image.get(), color.r, color.g, color.b}];
     if (known) return known;
+    tinted_bytes_ += image->bytes.size() + sizeof(float) * image->floats.size();
+    if (tinted_bytes_ > kMostTinted)
+      throw InputError(where, "the textures in the colours of all materials take more than 2^30 bytes");
     auto out = std::make_shared<TextureImage>(*image);
     out->file.clear();
     const std::size_t channels = static_cast<std::size_t>(image->channels), pixels = image->values() / channels;
@@ -245,7 +250,7 @@ class Drawing {
     if (!parts) parts = files_.read(geom.mesh, geom.where);
     for (const TriangleMeshShape& part : *parts) {
       triangles_ += part.triangles.size();
-      if (triangles_ > kMostTriangles) throw InputError(geom.where, "the meshes of all geoms have more than 2^28 triangles");
+      if (triangles_ > kMostTriangles) throw InputError(geom.where, "the meshes of all geoms have more than 2^26 triangles");
       add(geom, part, geom.geom_from_mesh);
     }
   }
@@ -258,6 +263,7 @@ class Drawing {
   std::size_t triangles_ = 0;
   std::map<Key, std::uint32_t> materials_;
   std::map<std::tuple<const TextureImage*, double, double, double>, std::shared_ptr<const TextureImage>> tinted_;
+  std::size_t tinted_bytes_ = 0;
   std::optional<std::uint32_t> mirror_;
   std::vector<const RobotGeom*> planes_;
 };

@@ -153,6 +153,12 @@ TriangleMeshShape written_mesh(const Element& of) {
 
 }  // namespace
 
+void Assets::make(const Element& of, std::size_t bytes) {
+  made_ += bytes;
+  if (made_ > most_made)
+    of.fail(fmt::format("the model's built-in textures and height fields take more than {} bytes", most_made));
+}
+
 void Assets::mesh(const Model& model, const std::string& name, RobotGeom& geom) {
   const Element of = model.asset("mesh", name, geom.where);
   if (of.has("builtin") && of.text("builtin") != "none") of.fail("builtin: meshes that MuJoCo makes itself are not read");
@@ -201,7 +207,10 @@ void Assets::height_field(const Model& model, const std::string& name, RobotGeom
       if (!(v > 0)) of.fail("size: four positive numbers are needed");
     const std::filesystem::path path =
         of.text("file").empty() ? std::filesystem::path() : model.file(of, of.text("file"), model.compiler().meshes);
-    parts = std::make_shared<const MeshParts>(MeshParts{height_mesh(heights_of(of, images_, path), size)});
+    const Heights heights = heights_of(of, images_, path);
+    // Two vertices and four triangles each.
+    make(of, heights.values.size() * (2 * sizeof(glm::vec3) + 4 * sizeof(std::array<std::uint32_t, 3>)));
+    parts = std::make_shared<const MeshParts>(MeshParts{height_mesh(heights, size)});
   }
   geom.parts = parts;
 }
@@ -256,6 +265,7 @@ std::shared_ptr<const RobotTexture> Assets::texture(const Model& model, const st
     const Cube cube = cube_texture(of, images_);
     out->image = texture_image(by_angles(cube, std::clamp(2 * cube.faces[0].height, 2, 1024)));
   }
+  make(of, out->image->bytes.size());
   return known = out;
 }
 

@@ -331,7 +331,7 @@ class Reader {
     geom.where = element.where();
     geom.name = node.attribute("name") ? scope.name(node.attribute("name").value()) : fmt::format("geom {}", geoms_);
     ++geoms_;
-    geom.group = static_cast<int>(element.number("group", 0));
+    geom.group = static_cast<int>(std::clamp(element.number("group", 0), -1.0, 6.0));
     geom.collides = element.number("contype", 1) != 0 || element.number("conaffinity", 1) != 0;
     if (element.has("rgba")) {
       const std::vector<double> c = element.numbers("rgba", 4, {0.5, 0.5, 0.5, 1});
@@ -497,7 +497,7 @@ class Reader {
     geom.kind = GeomKind::capsule;
     geom.size = {element.number("width", 0.003), glm::length(b - a) / 2, 0};
     if (!(geom.size.x > 0)) return;
-    geom.group = static_cast<int>(element.number("group", 0));
+    geom.group = static_cast<int>(std::clamp(element.number("group", 0), -1.0, 6.0));
     geom.world = placed((a + b) / 2.0, from_z(b - a));
     const std::vector<double> c = element.numbers("rgba", 4, {0.5, 0.5, 0.5, 1});
     if (element.has("rgba")) geom.rgba = {c[0], c[1], c[2], c[3]};
