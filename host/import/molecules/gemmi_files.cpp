@@ -330,6 +330,7 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
     gemmi::cif::Document document = document_of(text, path);
+    if (std::optional<Molecule> crystal = read_crystal(document, path, options)) return std::move(*crystal);
     for (gemmi::cif::Block& block : document.blocks) mend_charges(block);
     gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
     Molecule out = Builder(structure, path, options).build();
