@@ -194,14 +194,14 @@ TEST(Mmcif, ColumnsMayBeMissing) {
   };
   const Molecule few =
       read_mmcif(text_of({"label_atom_id", "label_comp_id", "label_seq_id", "Cartn_x", "Cartn_y", "Cartn_z", "auth_asym_id"},
-                         "CA ALA 7 0 0 0 B\nCB ALA 7 1.5 0 0 B\nCA GLY 8 3 0 0 B\n"),
+                         "CA ALA 7 0 0 0 B\nCB ALA 7 1.5 0 0 B\nCA ALA 8 3 0 0 B\n"),
                  "x.cif", {});
   ASSERT_EQ(few.atoms.size(), 3u);
   EXPECT_EQ(few.chains, (std::vector<std::string>{"B"}));
   ASSERT_EQ(few.residues.size(), 2u);
   EXPECT_EQ(few.residues[0].atom_count, 2u);
   EXPECT_EQ(few.residues[0].part, "B");
-  EXPECT_EQ(few.residues[1].name, "GLY");
+  EXPECT_EQ(few.residues[1].atom_count, 1u);
   EXPECT_EQ(few.atoms[1].position, glm::vec3(1.5F, 0, 0));
   EXPECT_EQ(few.atoms[2].altloc, '\0');
   EXPECT_FALSE(few.has_b_factors);
