@@ -171,8 +171,11 @@ TEST(SeveralFiles, OptionsGoToThoseThatKnowThem) {
 }
 
 TEST(SeveralFiles, OfFormatsThatAreNotReadSayWhatHelps) {
-  for (const char* name : {"cell.nml", "cells.h5", "cell.asc"})
-    EXPECT_THAT(complaint([&] { several({write_file(name, "x")}); }), testing::AllOf(HasSubstr("not read"), HasSubstr("SWC")));
+  for (const auto& [name, helps] : {std::pair{"cell.nml", "caplet.from_neuroml"}, std::pair{"cells.h5", "caplet.from_sonata"},
+                                    std::pair{"cells.h5", "caplet.from_morphio"}, std::pair{"cells.h5", "as SWC"},
+                                    std::pair{"circuit_config.json", "caplet.from_sonata"}, std::pair{"cell.nml", "as SWC"},
+                                    std::pair{"cell.asc", "caplet.from_morphio"}, std::pair{"cell.asc", "as SWC"}})
+    EXPECT_THAT(complaint([&] { several({write_file(name, "x")}); }), testing::AllOf(HasSubstr("not read"), HasSubstr(helps)));
 }
 
 // --- Colours of neurons ---
