@@ -14,7 +14,7 @@ from ..named import color as as_color
 TYPE_COLORS = {1: (0.86, 0.62, 0.22), 2: (0.20, 0.62, 0.95), 3: (0.95, 0.36, 0.18), 4: (0.66, 0.22, 0.66)}
 OTHER_COLOR = (0.55, 0.56, 0.52)
 TYPE_NAMES = {0: "undefined", 1: "soma", 2: "axon", 3: "basal dendrite", 4: "apical dendrite"}
-MOST_NODES = 10_000_000  # that are shown: 3 GB of instances
+MOST_NODES = 10_000_000  # that are shown: 5 GB of instances while they are read
 STEPS = 16  # of colours that tell numbers: a cell of each is an object definition of its own
 _MOST_CLASSES = 256
 
@@ -77,7 +77,9 @@ class Look:
 
     @classmethod
     def by_kind(cls, kinds, labels):
-        class_colors = categories(len(labels))
+        """kinds: (n,), numbers of labels, which are sorted; the empty one is grey."""
+        nameless = int(bool(labels) and labels[0] == "")
+        class_colors = np.concatenate([np.broadcast_to(colors.UNKNOWN, (nameless, 3)), categories(len(labels) - nameless)])
         return cls(kinds, class_colors, class_colors[kinds], labels)
 
     @classmethod
