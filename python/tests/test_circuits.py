@@ -117,8 +117,8 @@ def circuit(tmp_path):
              "mtype*": ["L5", "L2", "L2", "L5", "L5"], "depth": [0.0, 1, 2, 3, 4]}
     cells.update({f"orientation_{axis}": q[:, k] for k, axis in enumerate("wxyz")})
     points = {"x": [1000.0, 1010, 1020], "y": [0.0, 0, 0], "z": [0.0, 1, 2]}
-    write_nodes(h5py, tmp_path / "nodes.h5", {"cells": cells, "points": points, "inputs": {"rate": [1.0, 2]}})
-    path = write_config(tmp_path, {"cells": {**BIO, "morphologies_dir": "$BASE/morphologies"}, "points": {"type": "point_neuron"}, "inputs": {"type": "virtual"}},
+    write_nodes(h5py, tmp_path / "nodes.h5", {"cells": cells, "points": points, "inputs": {"x": [0.0], "y": [0.0], "z": [0.0]}, "rates": {"rate": [1.0, 2]}})
+    path = write_config(tmp_path, {"cells": {**BIO, "morphologies_dir": "$BASE/morphologies"}, "points": {"type": "point_neuron"}, "inputs": {"type": "virtual"}, "rates": {"type": "virtual"}},
                         node_sets_file="$BASE/sets.json")
     (tmp_path / "sets.json").write_text(json.dumps({"deep": {"mtype": "L5"}, "both": {"node_id": [0, 1], "population": "cells"}}))
     return path
@@ -191,6 +191,9 @@ def test_angles_go_about_z_then_y_then_x(tmp_path):
     # Quaternions go before angles.
     write_nodes(h5py, tmp_path / "nodes.h5", {"A": {**held, "orientation_w": [0.0], "orientation_x": [0.0], "orientation_y": [0.0], "orientation_z": [7.0]}})
     assert np.allclose(caplet.from_sonata(path, morphologies=tmp_path).instance(0)[:3, :3], np.diag([-1, -1, 1]))
+    for size in (1e-300, 1e300):  # of any length
+        write_nodes(h5py, tmp_path / "nodes.h5", {"A": {**held, **{f"orientation_{k}": [size] for k in "wxyz"}}})
+        assert np.allclose(caplet.from_sonata(path, morphologies=tmp_path).instance(0)[:3, :3], [[0, 0, 1], [1, 0, 0], [0, 1, 0]])  # by 120 degrees about (1, 1, 1)
 
 
 def test_somata_are_moved_to_the_node_unless_it_says_no(tmp_path):
@@ -224,6 +227,7 @@ def test_every_format_of_morphologies_and_folders(tmp_path):
     assert sorted(scene.objects) == ["one", "three", "two"]
     for name, file in (("one", "swc/one.swc"), ("two", "h5/deep/two.h5"), ("three", "asc/three.asc")):
         assert np.array_equal(capsules(scene, name), ordered(*segments(morphio, str(tmp_path / file))))
+    assert scene["three soma"].p0.tolist() == [[0, 0, 0]] and scene["three soma"].radius.tolist() == [[1, 1]]  # of an outline the mean
     assert scene["three axon"].radius.tolist() == [[1, 0.5], [0.5, 0.5]]  # a file of diameters
     # A container holds them by their names.
     with h5py.File(tmp_path / "all.h5", "w") as file, h5py.File(tmp_path / "h5/deep/two.h5") as one:
@@ -306,6 +310,7 @@ def test_some_of_the_nodes(circuit):
         assert np.array_equal(scene.instance(number), full.instance(other))
     assert sorted(caplet.from_sonata(circuit, population="cells", ids="deep").info["instances"][:, 1]) == [0, 3, 4]
     assert sorted(caplet.from_sonata(circuit, ids="both").info["instances"][:, 1]) == [0, 1]
+    assert caplet.from_sonata(circuit, population="inputs").info["nodes"]["inputs"].tolist() == [0]
     spheres = caplet.from_sonata(circuit, population=["points", "cells"], morphologies=False, radius=2)
     assert spheres.objects == [] and spheres.primitives == {"capsule": 8} and set(spheres.shapes) == {"cells", "points"}
     assert np.array_equal(spheres["points"].p0[:, 0], [1000, 1010, 1020]) and (spheres["cells"].radius == 2).all()
@@ -377,6 +382,7 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
         return str(tmp_path / "c.json")
 
     (folder / "morphologies/broken.swc").write_text("1 1 0 0 zero 1 -1\n")
+    (folder / "morphologies/notes.txt").write_text(NEURON)
     (folder / "morphologies/two.asc").write_text("(\n(Axon) (0 1 . 2))")
     (folder / "morphologies/flat.swc").write_text("1 1 0 0 0 0 -1\n2 2 0 1 0 0 1\n3 2 0 2 0 0 2\n")
     edges = '"edges": []'
@@ -385,11 +391,11 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
             (lambda: caplet.from_sonata("none.json"), "none.json: no such file"), (lambda: caplet.from_sonata(str(tmp_path)), "no such file"),
             (lambda: caplet.from_sonata(config('{"networks": \n  nodes}')), r"c\.json:2:3: "), (lambda: caplet.from_sonata(config("[" * 100000)), "no circuit configuration"),
             (lambda: caplet.from_sonata(config("{}")), "c.json: .*networks"), (lambda: caplet.from_sonata(config("[]")), "c.json: "),
-            (lambda: caplet.from_sonata(config('{"networks": {"nodes": [{"nodes_file": "none.h5", "populations": {"A": {"type": "point_neuron"}}}], %s}}' % edges)), "c.json: .*none.h5"),
+            (lambda: caplet.from_sonata(config('{"networks": {"nodes": [{"nodes_file": "none.h5", "populations": {"A": {"type": "point_neuron"}}}], %s}}' % edges)), "c.json: population 'A': there is no file .*none.h5"),
             (lambda: caplet.from_sonata(config('{"networks": {"nodes": [], %s}}' % edges)), "c.json: "),
             (lambda: caplet.from_sonata(str(shutil.copy(circuit, "text.h5"))), "text.h5: .*HDF5"), (lambda: caplet.from_sonata(circuit, population="none"), "no 'none'; it has 'cells'"),
             (lambda: caplet.from_sonata(circuit, population=3), "population"), (lambda: caplet.from_sonata(circuit, population=[]), "population"),
-            (lambda: caplet.from_sonata(circuit, population="inputs"), "population 'inputs': its nodes have no x, y, z"),
+            (lambda: caplet.from_sonata(circuit, population="rates"), "population 'rates': its nodes have no x, y, z"),
             (lambda: caplet.from_sonata(circuit, ids=[0]), "of which population"), (lambda: caplet.from_sonata(circuit, population="cells", ids=[5]), "5 nodes"),
             (lambda: caplet.from_sonata(circuit, population="cells", ids=[-1]), "negative"), (lambda: caplet.from_sonata(circuit, population="cells", ids=[1, 1]), "once"),
             (lambda: caplet.from_sonata(circuit, population="cells", ids=[0.5]), "whole"), (lambda: caplet.from_sonata(circuit, ids="none"), "node set 'none'"),
@@ -398,6 +404,7 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
             (lambda: caplet.from_sonata(circuit, color="depth", low=3, high=2), "low"), (lambda: caplet.from_sonata(circuit, radius=-1), "radi"),
             (lambda: caplet.from_sonata(circuit, morphologies="none"), "no 'none'"), (lambda: caplet.from_sonata(nodes), "node 0 has morphology 'fork', and no folder"),
             (lambda: caplet.from_sonata(circuit, morphologies=tmp_path), r"population 'cells': node 0: there is no morphology 'fork' in"),
+            (lambda: caplet.from_sonata(with_nodes(morphology=["", "notes.txt"]), morphologies=morphologies), "node 1: there is no morphology 'notes.txt'"),
             (lambda: caplet.from_sonata(with_nodes(y=[0.0, np.nan])), "population 'A': node 1: y is nan"), (lambda: caplet.from_sonata(with_nodes(y=["a", "b"])), "y: numbers"),
             (lambda: caplet.from_sonata(with_nodes(orientation_w=[1.0, 1])), "has orientation_w and not all"),
             (lambda: caplet.from_sonata(with_nodes(**{f"orientation_{k}": [1.0, 0] for k in "wxyz"})), "node 1: its orientation is 0"),
@@ -422,6 +429,18 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
         caplet.from_sonata(many, morphologies=morphologies, color=np.linspace(0, 1, 900).reshape(300, 3))
 
 
+def test_files_are_let_go_of(tmp_path):
+    _, _, h5py = sonata()
+    path, errors = str(tmp_path / "nodes.h5"), []
+    for count, bad in ((2, {"morphology": ["none", ""]}), (3, {"orientation_w": [1.0] * 3}), (400, {"y": ["a"] * 400})):
+        write_nodes(h5py, path, {"A": {**{axis: np.arange(float(count)) for axis in "xyz"}, **bad}})
+        with pytest.raises(caplet.InputError) as caught:
+            caplet.from_sonata(path)
+        errors.append(caught.value)  # with all that their frames hold
+    write_nodes(h5py, path, {"A": {axis: np.arange(5.0) for axis in "xyz"}})
+    assert caplet.from_sonata(path)["A"].p0[:, 0].tolist() == [0, 1, 2, 3, 4] and len(errors) == 3
+
+
 def test_neurons_of_the_data(tmp_path):
     _, morphio, h5py = sonata()
     folder = os.path.join(os.environ.get("CAPLET_DATA", ""), "swc/neuromorpho")
@@ -434,6 +453,7 @@ def test_neurons_of_the_data(tmp_path):
     assert len(p0) > 1000 and np.array_equal(capsules(scene, name), ordered(p0, p1, radii)) and scene.objects == [name]
     middle = morphio.Morphology(f"{folder}/{name}.swc").soma.center
     assert np.allclose(scene.instance(1) @ [*middle, 1], (500, 0, 0, 1), atol=1e-4)  # of 32-bit points up to 500
+    assert scene.info["section"][f"{name} soma"].tolist() == [-1]
     sections = np.concatenate([ids for shape, ids in scene.info["section"].items() if not shape.endswith("soma")])
     assert len(sections) == len(p0) and set(sections) == {one.id for one in morphio.Morphology(f"{folder}/{name}.swc").iter()}
 
@@ -448,16 +468,19 @@ CELL = """<cell id="pyramid"><morphology id="m">
 <segment id="8"><parent segment="7" fractionAlong="0.5"/><distal x="15" y="10" z="9" diameter="0.5"/></segment>
 <segment id="9"><parent segment="7" fractionAlong="0"/><distal x="0" y="15" z="-9" diameter="0.5"/></segment>
 <segment id="2"><parent segment="0" fractionAlong="0"/><proximal x="0" y="-6" z="0" diameter="1"/><distal x="0" y="-30" z="0" diameter="0.5"/></segment>
+<segment id="3"><parent segment="2"/><distal x="4" y="-40" z="0" diameter="0.25"/></segment>
 <segmentGroup id="soma_group" neuroLexId="GO:0043025"><member segment="0"/></segmentGroup>
 <segmentGroup id="tree"><subTree><from segment="7"/></subTree></segmentGroup>
 <segmentGroup id="apical_dendrites" neuroLexId="GO:0030425"><member segment="1"/><include segmentGroup="tree"/></segmentGroup>
 <segmentGroup id="dendrite_group" neuroLexId="GO:0030425"><include segmentGroup="apical_dendrites"/></segmentGroup>
-<segmentGroup id="ModelViewParmSubset_1" neuroLexId="GO:0030424"><path><from segment="2"/><to segment="2"/></path></segmentGroup>
+<segmentGroup id="ModelViewParmSubset_1" neuroLexId="GO:0030424"><path><from segment="2"/><to segment="3"/></path></segmentGroup>
+<segmentGroup id="axon_of_nothing"><include segmentGroup="axon_of_nothing"/></segmentGroup>
 <segmentGroup id="all"><include segmentGroup="dendrite_group"/><include segmentGroup="soma_group"/><include segmentGroup="all"/></segmentGroup>
 </morphology></cell>"""
 # By hand: id: proximal, distal (x, y, z, diameter), SWC type. 7 begins a quarter along from (0, 5, 0; 12) to (0, 45, 0; 4).
 WANT = {0: ((0, -5, 0, 10), (0, 5, 0, 12), 1), 4: ((0, 0, 50, 6), (0, 0, 50, 6), 0), 1: ((0, 5, 0, 12), (0, 45, 0, 4), 4), 7: ((0, 15, 0, 10), (30, 15, 0, 1), 4),
-        8: ((15, 15, 0, 5.5), (15, 10, 9, 0.5), 4), 9: ((0, 15, 0, 10), (0, 15, -9, 0.5), 4), 2: ((0, -6, 0, 1), (0, -30, 0, 0.5), 2)}
+        8: ((15, 15, 0, 5.5), (15, 10, 9, 0.5), 4), 9: ((0, 15, 0, 10), (0, 15, -9, 0.5), 4), 2: ((0, -6, 0, 1), (0, -30, 0, 0.5), 2),
+        3: ((0, -30, 0, 0.5), (4, -40, 0, 0.25), 2)}
 TYPES = {0: "undefined", 1: "soma", 2: "axon", 3: "basal dendrite", 4: "apical dendrite"}
 
 
@@ -527,7 +550,7 @@ def test_networks_are_instances():
     pathlib.Path("parts/dynamics.xml").write_text("<Lems></Lems>")
     path = neuroml(NETWORK, "net.nml")
     scene = caplet.from_neuroml(path, radius=2)
-    assert scene.objects == ["pyramid"] and scene.instances == 4 and scene.primitives == {"capsule": 4 * 7 + 3}
+    assert scene.objects == ["pyramid"] and scene.instances == 4 and scene.primitives == {"capsule": 4 * 8 + 3}
     assert scene.info["populations"] == ["cells", "others", "points", "more", "nowhere"]
     assert scene.info["instances"].tolist() == [[0, 3], [0, 5], [0, 6], [1, 0]]
     assert np.array_equal(scene.instance(1), [[1, 0, 0, 100], [0, 1, 0, -20], [0, 0, 1, 30], [0, 0, 0, 1]]) and np.array_equal(scene.instance(3), np.eye(4))
@@ -546,7 +569,7 @@ def test_morphologies_beside_their_cells():
     inner = CELL[CELL.index("<morphology"):CELL.index("</cell>")]
     path = neuroml(f'{inner}<cell id="a" morphology="m"/><cell2CaPools id="b">{inner}</cell2CaPools>')
     scene = caplet.from_neuroml(path)
-    assert scene.primitives == {"capsule": 14} and np.array_equal(scene["a axon"].p0, scene["b axon"].p0)
+    assert scene.primitives == {"capsule": 16} and np.array_equal(scene["a axon"].p0, scene["b axon"].p0)
 
 
 def test_what_neuroml_cannot_give():
@@ -578,9 +601,9 @@ def test_what_neuroml_cannot_give():
             (lambda: cell(root.replace('diameter="1"', 'diameter="0"')), "all diameters are 0", 2),
             (lambda: cell(root + '<segmentGroup id="soma"><include segmentGroup="z"/></segmentGroup>'), "includes 'z'", 4),
             (lambda: neuroml('\n<include href="none.nml"/>'), "includes none.nml, which is no file", 3), (lambda: neuroml('<include href="a.nml.h5"/>', "a.nml.h5"), "HDF5", None),
-            (lambda: neuroml(CELL + CELL.replace('"m"', '"k"')), "two cells 'pyramid'", 16), (lambda: neuroml(network.format("z", "")), "there is no cell 'z'", 2),
-            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"/>')), "instance 4 lacks a location", 16),
-            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"><location x="inf" y="0" z="0"/></instance>')), "instance 4 is at inf", 16),
+            (lambda: neuroml(CELL + CELL.replace('"m"', '"k"')), "two cells 'pyramid'", 18), (lambda: neuroml(network.format("z", "")), "there is no cell 'z'", 2),
+            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"/>')), "instance 4 lacks a location", 18),
+            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"><location x="inf" y="0" z="0"/></instance>')), "instance 4 is at inf", 18),
             (lambda: neuroml('<izhikevichCell id="iz"/>' + network.format("iz", "")), "no cells with segments or locations", None)):
         path = make()
         with pytest.raises(caplet.InputError, match=says) as caught:

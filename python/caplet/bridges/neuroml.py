@@ -174,7 +174,7 @@ class _Cell:
             elif up is None:
                 raise self.wrong(f"segment {number} has neither a proximal point nor a parent", segment)
             else:
-                along = float(1 if segment.parent.fraction_along is None else segment.parent.fraction_along)
+                along = float(segment.parent.fraction_along)
                 if not 0 <= along <= 1:
                     raise self.wrong(f"segment {number}: fractionAlong is {along:g}; from 0 to 1 is needed", segment.parent)
                 proximal = (1 - along) * out[up][0] + along * out[up][1]
@@ -210,7 +210,7 @@ class _Cell:
             roots = {tree.from_.segments for tree in group.sub_trees if tree.from_ is not None}
             if roots:
                 for number in self.order:  # parents come first
-                    if number in roots or self.parent(self.segments[number]) in roots:
+                    if self.parent(self.segments[number]) in roots:
                         roots.add(number)
                 members |= roots
             for include in group.includes:

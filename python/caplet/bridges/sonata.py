@@ -74,15 +74,18 @@ def _types_of(path, population):
 class _Population:
     """Nodes of one population that are shown: their ids, and columns of what is known of them."""
 
-    def __init__(self, libsonata, held, file, types_path=None, folders=(), config=None):
-        self.libsonata, self.held, self.file, self.folders, self.config = libsonata, held, file, folders, config
-        self.name = held.name
-        self.types_path = types_path
+    def __init__(self, libsonata, name, open_it, file, types_path=None, folders=(), config=None):
+        self.libsonata, self.name, self.file, self.types_path, self.folders, self.config = libsonata, name, file, types_path, folders, config
+        self.types = _types_of(types_path, name) if types_path else {}
+        self.of_types = set().union(*self.types.values())
         with self.told():
-            self.own, self.kinds = held.attribute_names, held.enumeration_names
-        self.types = _types_of(types_path, self.name) if types_path else {}
-        self.of_types = set().union(*self.types.values()) - self.own
+            self.held = open_it()
+            self.own, self.kinds = self.held.attribute_names, self.held.enumeration_names
         self._type_ids = None
+
+    def close(self):
+        """libsonata has the file open while its objects are there: one that is written anew meanwhile would be read as it was, or worse."""
+        self.held = self.selection = None
 
     def told(self):
         return _Told(self.file, f"population {self.name!r}: ")
@@ -269,27 +272,26 @@ def _config(libsonata, path):
         folders += [(folder, (_ALTERNATE[kind],)) for kind, folder in properties.alternate_morphology_formats.items() if kind in _ALTERNATE]
 
         def make(name=name, properties=properties, folders=folders):
-            with _Told(path, f"population {name!r}: "):
-                held = config.node_population(name)
-            return _Population(libsonata, held, properties.elements_path, properties.types_path or None, folders, config)
+            if not os.path.isfile(properties.elements_path):
+                raise wrong(path, f"population {name!r}: there is no file {properties.elements_path}")
+            return _Population(libsonata, name, lambda: config.node_population(name), properties.elements_path, properties.types_path or None, folders, config)
 
         yield name, make, properties.type
 
 
 def _nodes(libsonata, path):
     with _Told(path):
-        storage = libsonata.NodeStorage(path)
-        names = sorted(storage.population_names)
+        names = sorted(libsonata.NodeStorage(path).population_names)
     for name in names:
 
         def make(name=name):
-            with _Told(path, f"population {name!r}: "):
-                return _Population(libsonata, storage.open_population(name), path)
+            return _Population(libsonata, name, lambda: libsonata.NodeStorage(path).open_population(name), path)
 
         yield name, make, ""
 
 
-def _populations(libsonata, path, wanted):
+def _populations(libsonata, path, wanted, out):
+    """Adds to `out`, which is let go of whatever happens."""
     with open(path, "rb") as file:
         is_nodes = file.read(8) == b"\x89HDF\r\n\x1a\n" or path.endswith((".h5", ".hdf5"))
     held = list((_nodes if is_nodes else _config)(libsonata, path))
@@ -297,12 +299,13 @@ def _populations(libsonata, path, wanted):
     for name in wanted or ():
         if name not in there:
             raise InputError(f"population: {path} has no {name!r}; it has {', '.join(map(repr, there)) or 'none'}")
-    out = [make() for name, make, kind in held if (name in wanted if wanted else kind not in _UNSEEN)]
-    if wanted is None:
-        out = [one for one in out if one.is_placed]
-        if not out:
-            raise wrong(path, f"no population has nodes with x, y and z, of {', '.join(map(repr, there)) or 'none'}")
-    return out
+    for name, make, kind in held:
+        if name in wanted if wanted else kind not in _UNSEEN:
+            out.append(make())
+            if not (wanted or out[-1].is_placed):
+                out.pop().close()
+    if not out:
+        raise wrong(path, f"no population has nodes with x, y and z, of {', '.join(map(repr, there)) or 'none'}")
 
 
 def _ids(given):
@@ -394,7 +397,16 @@ def from_sonata(path, population=None, ids=None, morphologies=None, color="type"
     if not os.path.isfile(path):
         raise wrong(path, "no such file")
     libsonata = package("libsonata", "from_sonata")
-    populations = _populations(libsonata, path, wanted)
+    populations = []
+    try:
+        _populations(libsonata, path, wanted, populations)
+        return _scene(path, populations, ids, morphologies, color, radius, low, high)
+    finally:
+        for one in populations:
+            one.close()
+
+
+def _scene(path, populations, ids, morphologies, color, radius, low, high):
     if not (ids is None or isinstance(ids, str)) and len(populations) > 1:
         raise InputError(f"ids: of which population? {', '.join(repr(one.name) for one in populations)}")
     for one in populations:
