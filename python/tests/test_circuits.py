@@ -331,12 +331,17 @@ def test_node_types_are_read_from_their_table(tmp_path):
     text = (tmp_path / "types.csv").read_text()
     (tmp_path / "types.csv").write_text(text.replace("LIF NULL", "LIF 0"))
     scene = caplet.from_sonata(path, color="pop_name")
-    assert scene.objects == ["fork e 4", "stick e 4"] and scene.info["nodes"]["A"].tolist() == [2] and set(scene.info["colors"]) == {"e 4", "LIF"}
+    assert sorted(scene.objects) == ["fork e 4", "stick e 4"] and scene.info["nodes"]["A"].tolist() == [2] and set(scene.info["colors"]) == {"e 4", "LIF"}
     of = {int(node): scene.instance(k) for k, (_, node) in enumerate(scene.info["instances"])}
     assert sorted(of) == [0, 1, 3]
     assert np.allclose(of[0][:2, 0], (math.cos(1.5), math.sin(1.5))) and np.allclose(of[3][:2, 0], (math.cos(0.5), math.sin(0.5)))
     some = caplet.from_sonata(path, ids=[3, 0], color="layer")  # a node's own go before its type's
     assert {int(node) for node in some.info["instances"][:, 1]} == {0, 3} and sorted(some.objects) == ["fork color 15", "stick color 0"]
+    again = caplet.from_sonata(path, ids=[3, 0, 2, 1])  # all of them, in another order
+    assert {int(node): again.instance(k).tolist() for k, (_, node) in enumerate(again.info["instances"])} == {node: place.tolist() for node, place in of.items()}
+    (tmp_path / "m/007.swc").write_text(STICK)  # a name that looks like a number
+    (tmp_path / "types.csv").write_text(text.replace("LIF NULL", "LIF 0").replace("fork.swc", "007").replace("stick", "007"))
+    assert caplet.from_sonata(path).objects == ["007"]
     (tmp_path / "types.csv").write_text(text.replace("100 A", "100 C"))
     with pytest.raises(caplet.InputError, match=r"node type 100 is not in .*types\.csv"):
         caplet.from_sonata(path)

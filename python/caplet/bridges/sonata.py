@@ -126,38 +126,50 @@ class _Population:
 
     def column(self, name):
         """Numbers or texts (count,) of an attribute: a node's own, or else its type's."""
-        if name in self.own:
-            with self.told():
-                if name in self.kinds:
-                    labels, codes = np.array(self.held.enumeration_values(name), dtype=object), self.held.get_enumeration(name, self.selection)
-                    codes = np.asarray(codes).astype(np.int64)
-                    if codes.size and not (0 <= codes.min() and codes.max() < len(labels)):
-                        raise self.wrong(f"{name}: a number beyond the {len(labels)} names of its @library")
-                    values = labels[codes]
-                else:
-                    values = np.asarray(self.held.get_attribute(name, self.selection))
-        else:
-            values = self._of_types(name)
+        if name in self.kinds or name not in self.own:
+            texts, which = self.texts(name)
+            if name not in self.own:
+                try:
+                    return np.array([np.nan if text in _NONE else float(text) for text in texts], dtype=np.float64)[which]
+                except ValueError:
+                    pass
+            return np.array(texts, dtype=object)[which]
+        with self.told():
+            values = np.asarray(self.held.get_attribute(name, self.selection))
         if values.shape != (self.count,):
             raise self.wrong(f"{name}: {len(values)} values of {self.count} nodes")
         return values
 
-    def _of_types(self, name):
+    def texts(self, name):
+        """An attribute as texts, and which of them each node has (count,)."""
+        if name in self.kinds:
+            with self.told():
+                texts, which = self.held.enumeration_values(name), np.asarray(self.held.get_enumeration(name, self.selection)).astype(np.int64)
+            if which.size and not (0 <= which.min() and which.max() < len(texts)):
+                raise self.wrong(f"{name}: a number beyond the {len(texts)} names of its @library")
+            return texts, which
+        if name in self.own:
+            different, which = np.unique(self.column(name), return_inverse=True)
+            return list(map(str, different)), which
         if self._type_ids is None:
-            h5py = package("h5py", "from_sonata (of circuits with node types)")
-            with self.told(), h5py.File(self.file, "r") as file:
-                of = file["nodes"][self.name]["node_type_id"]
-                ids = self.ids()
-                self._type_ids = of[:] if self.count == len(of) else of[np.sort(ids)][np.argsort(np.argsort(ids))]
+            self._type_ids = self._read_type_ids()
         known, which = np.unique(self._type_ids, return_inverse=True)
         lacking = [int(one) for one in known if int(one) not in self.types]
         if lacking:
             raise self.wrong(f"node type {lacking[0]} is not in {self.types_path}")
-        texts = [self.types[int(one)][name] for one in known]
-        try:
-            return np.array([np.nan if text in _NONE else float(text) for text in texts], dtype=np.float64)[which]
-        except ValueError:
-            return np.array(texts, dtype=object)[which]
+        return [self.types[int(one)][name] for one in known], which
+
+    def _read_type_ids(self):
+        """Of the chosen nodes, which libsonata does not give: by blocks, for they may be few of many."""
+        h5py = package("h5py", "from_sonata (of circuits with node types)")
+        ids, block = self.ids(), 1 << 20
+        out, order = np.empty(self.count, dtype=np.int64), np.argsort(ids)
+        with self.told(), h5py.File(self.file, "r") as file:
+            of = file["nodes"][self.name]["node_type_id"]
+            for rows in np.split(order, np.flatnonzero(np.diff(ids[order] // block)) + 1):
+                begin = int(ids[rows[0]] // block * block) if len(rows) else 0
+                out[rows] = of[begin:begin + block][ids[rows] - begin]
+        return out
 
     def numbers(self, name):
         values = self.column(name)
@@ -207,24 +219,22 @@ class _Population:
         out = np.full(self.count, -1)
         if "morphology" not in self.columns:
             return out, []
-        names = self.column("morphology")
-        if names.dtype.kind == "f" and np.isnan(names).all():
-            return out, []
-        different, which = np.unique(names.astype(str), return_inverse=True)
-        found, missing = [], []
-        for number, name in enumerate(different.tolist()):
-            if name in _NONE:
+        names, which = self.texts("morphology")
+        ids, number, found, missing = self.ids(), np.full(len(names), -1), [], []
+        for name, row in zip(*np.unique(which, return_index=True)):  # those that occur, and where first
+            text = names[name]
+            if text in _NONE:
                 continue
             if not self.folders:
-                raise self.wrong(f"node {self.ids()[which == number][0]} has morphology {name!r}, and no folder of morphologies is known: "
-                                 "morphologies= takes one, or False for spheres")
-            place = _find(self.folders, name)
+                raise self.wrong(f"node {ids[row]} has morphology {text!r}, and no folder of morphologies is known: morphologies= takes one, or False for spheres")
+            place = _find(self.folders, text)
             if place is None:
-                missing.append(f"{self.file}: population {self.name!r}: node {self.ids()[which == number][0]}: there is no morphology {name!r} in "
+                missing.append(f"{self.file}: population {self.name!r}: node {ids[row]}: there is no morphology {text!r} in "
                                f"{', '.join(folder for folder, _ in self.folders)}")
                 continue
-            out[which == number] = len(found)
+            number[name] = len(found)
             found.append(place)
+        out = number[which] if len(names) else out
         if missing:
             more = len(missing) - _MOST_MISSING
             error = InputError(missing[:_MOST_MISSING] + ([f"{self.file}: {more} more morphologies are missing"] if more > 0 else []))
