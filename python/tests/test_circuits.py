@@ -229,6 +229,11 @@ def test_every_format_of_morphologies_and_folders(tmp_path):
         assert np.array_equal(capsules(scene, name), ordered(*segments(morphio, str(tmp_path / file))))
     assert scene["three soma"].p0.tolist() == [[0, 0, 0]] and scene["three soma"].radius.tolist() == [[1, 1]]  # of an outline the mean
     assert scene["three axon"].radius.tolist() == [[1, 0.5], [0.5, 0.5]]  # a file of diameters
+    # A folder of one format holds no others.
+    shutil.copy(tmp_path / "two.asc", tmp_path / "h5/three.asc")
+    os.remove(tmp_path / "asc/three.asc")
+    with pytest.raises(caplet.InputError, match=r"no morphology 'three' in .*/swc, .*/h5"):
+        caplet.from_sonata(path)
     # A container holds them by their names.
     with h5py.File(tmp_path / "all.h5", "w") as file, h5py.File(tmp_path / "h5/deep/two.h5") as one:
         one.copy(one, file, name="deep/two")
@@ -295,6 +300,8 @@ def test_colors(circuit):
     caplet.render(scene, spp=1, size=(64, 48)).save("bar.png", color_bar=True)
     scene = caplet.from_sonata(circuit, population="cells", color=np.array([9.0, 0, np.nan, 4, 4]), low=0, high=4)
     assert np.allclose(albedo(scene, at[0]), caplet.color_map(1.0, 0, 1)[0], **close) and np.allclose(albedo(scene, at[2]), 0.5, **close)
+    scene = caplet.from_sonata(circuit, population="points", ids=[0, 1], color=[0, 1], low=0, high=4)
+    assert np.allclose(albedo(scene, (1010, 0)), caplet.color_map(1.0, 0, 4)[0], **close)
     given = np.linspace(0.05, 0.9, 15).reshape(5, 3)
     scene = caplet.from_sonata(circuit, population="cells", ids=[4, 0, 1, 3, 2], color=given)
     assert len(scene.objects) == 5 and np.allclose(albedo(scene, at[4]), given[0], **close) and np.allclose(albedo(scene, at[3]), given[3], **close)
@@ -371,6 +378,23 @@ def test_a_billion_nodes_are_announced_and_some_are_shown(tmp_path):
     scene = caplet.from_sonata(path, ids=[5, count - 1], radius=1)
     assert scene.info["nodes"]["A"].tolist() == [5, count - 1] and scene["A"].p0[:, 0].tolist() == [1.5, 1.5]
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 300_000  # KB; a column would be 4 GB
+
+
+def test_types_of_few_of_many_nodes(tmp_path):
+    _, _, h5py = sonata()
+    (tmp_path / "stick.swc").write_text(STICK)
+    (tmp_path / "types.csv").write_text("node_type_id morphology\n0 NULL\n1 stick\n")
+    count, ids = 3_000_000, [2_999_999, 5, 1_500_000, 2_200_000]
+    with h5py.File(tmp_path / "nodes.h5", "w") as file:
+        for name in ("node_type_id", "node_group_id", "node_group_index"):
+            file.create_dataset(f"nodes/A/{name}", (count,), "i8", chunks=(1 << 14,))
+        for axis in "xyz":
+            file.create_dataset(f"nodes/A/0/{axis}", (count,), "f4", chunks=(1 << 14,))
+        for node in (2_999_999, 1_500_000, 6):
+            file["nodes/A/node_type_id"][node] = 1
+    path = write_config(tmp_path, {"A": {**BIO, "morphologies_dir": "."}}, node_types_file="types.csv")
+    scene = caplet.from_sonata(path, ids=ids)
+    assert sorted(scene.info["instances"][:, 1]) == [1_500_000, 2_999_999] and scene.info["nodes"]["A"].tolist() == [5, 2_200_000]
 
 
 def test_what_circuits_cannot_give(circuit, tmp_path):
@@ -575,6 +599,8 @@ def test_morphologies_beside_their_cells():
     path = neuroml(f'{inner}<cell id="a" morphology="m"/><cell2CaPools id="b">{inner}</cell2CaPools>')
     scene = caplet.from_neuroml(path)
     assert scene.primitives == {"capsule": 16} and np.array_equal(scene["a axon"].p0, scene["b axon"].p0)
+    named = caplet.from_neuroml(neuroml(CELL.replace('name="ball"', 'name="dend_4"').replace('name="Soma"', 'name="axon"')))  # groups go before names
+    assert named.info["segment"]["pyramid basal dendrite"].tolist() == [4] and named.info["segment"]["pyramid soma"].tolist() == [0]
 
 
 def test_what_neuroml_cannot_give():

@@ -226,7 +226,8 @@ class _Population:
             if text in _NONE:
                 continue
             if not self.folders:
-                raise self.wrong(f"node {ids[row]} has morphology {text!r}, and no folder of morphologies is known: morphologies= takes one, or False for spheres")
+                raise self.wrong(f"node {ids[row]} has morphology {text!r}, and no folder of morphologies is known: "
+                                 "morphologies= takes one, or False for spheres")
             place = _find(self.folders, text)
             if place is None:
                 missing.append(f"{self.file}: population {self.name!r}: node {ids[row]}: there is no morphology {text!r} in "
@@ -388,12 +389,13 @@ def from_sonata(path, population=None, ids=None, morphologies=None, color="type"
 
     path: of a circuit's configuration (circuit_config.json) or of a file of nodes (.h5). population: a name or a list of them; None: all
     of nodes with positions that are neither virtual, vasculature nor astrocytes. ids: of the nodes that are shown, (n,), of one population; or
-    the name of a node set; None: all. morphologies: their folder, or MorphIO's container; None: the configuration's; False: spheres for all.
-    radius: of the spheres.
+    the name of a node set; None: all. morphologies: their folder, or MorphIO's container; None: the configuration's; False: spheres for
+    all. radius: of the spheres.
 
     color: "type" (of segments, as in files of neurons; spheres by population), "population", the name of an attribute ("mtype",
-    "layer"), one colour, or an array with a number or a colour of each node. Texts have a colour each (scene.info["colors"]); numbers are
-    told by caplet.color_map between low and high, for cells in 16 steps. Cells of n colours need a morphology n times.
+    "layer"), one colour (any three numbers are), or an array with a number or a colour of each node. Texts have a colour each
+    (scene.info["colors"]); numbers are told by caplet.color_map between low and high, for cells in 16 steps. Cells of n colours need a
+    morphology n times.
 
     A morphology is moved to have its soma at 0 (unless the node's `recenter` is 0), turned by the node's quaternion (orientation_w, x, y, z, of
     any length) or by its angles about the fixed axes, z first, then y, then x (radians), and moved to x, y, z. At most 10^7 nodes.
