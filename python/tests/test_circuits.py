@@ -380,6 +380,32 @@ def test_a_billion_nodes_are_announced_and_some_are_shown(tmp_path):
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 300_000  # KB; a column would be 4 GB
 
 
+def test_configurations_that_name_no_populations(tmp_path):
+    """As those of the Allen Institute's tools are."""
+    _, _, h5py = sonata()
+    for folder in ("network", "components/morphologies"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "components/morphologies/stick.swc").write_text(STICK)
+    places = {axis: [0.0, 100] for axis in "xyz"}
+    write_nodes(h5py, tmp_path / "network/nodes.h5", {"v1": {**places, "node_type_id": [1, 2]}})
+    write_nodes(h5py, tmp_path / "network/outside.h5", {"lgn": {**places, "node_type_id": [5, 5]}})
+    (tmp_path / "network/types.csv").write_text("node_type_id population model_type morphology\n1 v1 biophysical stick.swc\n2 v1 point_neuron NULL\n")
+    (tmp_path / "network/outside.csv").write_text("node_type_id model_type\n5 virtual\n")
+    made = {"manifest": {"$BASE_DIR": ".", "$NET": "$BASE_DIR/network", "$PARTS": "$BASE_DIR/components"},
+            "components": {"morphologies_dir": "$PARTS/morphologies", "biophysical_neuron_models_dir": "$PARTS"},
+            "networks": {"nodes": [{"nodes_file": "$NET/nodes.h5", "node_types_file": "$NET/types.csv"},
+                                   {"nodes_file": "$NET/outside.h5", "node_types_file": "$NET/outside.csv"}], "edges": []}}
+    path = tmp_path / "circuit_config.json"
+    path.write_text(json.dumps(made))
+    scene = caplet.from_sonata(path)
+    assert scene.info["populations"] == ["v1"] and scene.objects == ["stick"] and scene.info["nodes"]["v1"].tolist() == [1]
+    assert scene.info["instances"].tolist() == [[0, 0]]
+    assert caplet.from_sonata(path, population="lgn").info["nodes"]["lgn"].tolist() == [0, 1]
+    os.remove(tmp_path / "network/outside.h5")
+    with pytest.raises(caplet.InputError, match="circuit_config.json: there is no file .*outside.h5"):
+        caplet.from_sonata(path)
+
+
 def test_types_of_few_of_many_nodes(tmp_path):
     _, _, h5py = sonata()
     (tmp_path / "stick.swc").write_text(STICK)

@@ -98,8 +98,9 @@ class _Population:
         return self.own | self.of_types
 
     @property
-    def is_placed(self):
-        return {"x", "y", "z"} <= self.columns
+    def is_seen(self):
+        """Whether its nodes have places, and are not virtual by their types."""
+        return {"x", "y", "z"} <= self.columns and {one.get("model_type") for one in self.types.values()} != {"virtual"}
 
     def choose(self, ids):
         """ids: None, an array, or the name of a node set."""
@@ -264,6 +265,19 @@ def _load(morphio, place):
         return morphio.Morphology(path) if name is None else morphio.Collection(path).load(name)
 
 
+def _completed(libsonata, path, config):
+    """With the populations of files for which a configuration names none: all that they hold."""
+    base = os.path.dirname(os.path.abspath(path))
+    made = json.loads(config.expanded_json)
+    open_ones = [entry for entry in made["networks"]["nodes"] if not entry.get("populations")]
+    for entry in open_ones:
+        file = os.path.join(base, entry["nodes_file"])
+        if not os.path.isfile(file):
+            raise wrong(path, f"there is no file {file}")
+        entry["populations"] = {name: {} for name in libsonata.NodeStorage(file).population_names}
+    return libsonata.CircuitConfig(json.dumps(made), base) if open_ones else config
+
+
 def _config(libsonata, path):
     """(name, _Population maker, type) of all populations that a circuit's configuration names."""
     try:
@@ -274,7 +288,7 @@ def _config(libsonata, path):
     except (UnicodeDecodeError, RecursionError) as problem:
         raise wrong(path, f"is no circuit configuration ({_first_line(problem)})") from None
     with _Told(path):
-        config = libsonata.CircuitConfig.from_file(path)
+        config = _completed(libsonata, path, libsonata.CircuitConfig.from_file(path))
         names = sorted(config.node_populations)
     for name in names:
         with _Told(path, f"population {name!r}: "):
@@ -313,7 +327,7 @@ def _populations(libsonata, path, wanted, out):
     for name, make, kind in held:
         if name in wanted if wanted else kind not in _UNSEEN:
             out.append(make())
-            if not (wanted or out[-1].is_placed):
+            if not (wanted or out[-1].is_seen):
                 out.pop().close()
     if not out:
         raise wrong(path, f"no population has nodes with x, y and z, of {', '.join(map(repr, there)) or 'none'}")
