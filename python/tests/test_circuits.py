@@ -524,18 +524,20 @@ CELL = """<cell id="pyramid"><morphology id="m">
 <segment id="9"><parent segment="7" fractionAlong="0"/><distal x="0" y="15" z="-9" diameter="0.5"/></segment>
 <segment id="2"><parent segment="0" fractionAlong="0"/><proximal x="0" y="-6" z="0" diameter="1"/><distal x="0" y="-30" z="0" diameter="0.5"/></segment>
 <segment id="3"><parent segment="2"/><distal x="4" y="-40" z="0" diameter="0.25"/></segment>
+<segment id="5"><parent segment="3"/><distal x="4" y="-50" z="0" diameter="0.25"/></segment>
 <segmentGroup id="soma_group" neuroLexId="GO:0043025"><member segment="0"/></segmentGroup>
 <segmentGroup id="tree"><subTree><from segment="7"/></subTree></segmentGroup>
 <segmentGroup id="apical_dendrites" neuroLexId="GO:0030425"><member segment="1"/><include segmentGroup="tree"/></segmentGroup>
 <segmentGroup id="dendrite_group" neuroLexId="GO:0030425"><include segmentGroup="apical_dendrites"/></segmentGroup>
 <segmentGroup id="ModelViewParmSubset_1" neuroLexId="GO:0030424"><path><from segment="2"/><to segment="3"/></path></segmentGroup>
+<segmentGroup id="Myelin_0"><member segment="5"/></segmentGroup>
 <segmentGroup id="axon_of_nothing"><include segmentGroup="axon_of_nothing"/></segmentGroup>
 <segmentGroup id="all"><include segmentGroup="dendrite_group"/><include segmentGroup="soma_group"/><include segmentGroup="all"/></segmentGroup>
 </morphology></cell>"""
 # By hand: id: proximal, distal (x, y, z, diameter), SWC type. 7 begins a quarter along from (0, 5, 0; 12) to (0, 45, 0; 4).
 WANT = {0: ((0, -5, 0, 10), (0, 5, 0, 12), 1), 4: ((0, 0, 50, 6), (0, 0, 50, 6), 0), 1: ((0, 5, 0, 12), (0, 45, 0, 4), 4), 7: ((0, 15, 0, 10), (30, 15, 0, 1), 4),
         8: ((15, 15, 0, 5.5), (15, 10, 9, 0.5), 4), 9: ((0, 15, 0, 10), (0, 15, -9, 0.5), 4), 2: ((0, -6, 0, 1), (0, -30, 0, 0.5), 2),
-        3: ((0, -30, 0, 0.5), (4, -40, 0, 0.25), 2)}
+        3: ((0, -30, 0, 0.5), (4, -40, 0, 0.25), 2), 5: ((4, -40, 0, 0.25), (4, -50, 0, 0.25), 2)}
 TYPES = {0: "undefined", 1: "soma", 2: "axon", 3: "basal dendrite", 4: "apical dendrite"}
 
 
@@ -605,7 +607,7 @@ def test_networks_are_instances():
     pathlib.Path("parts/dynamics.xml").write_text("<Lems></Lems>")
     path = neuroml(NETWORK, "net.nml")
     scene = caplet.from_neuroml(path, radius=2)
-    assert scene.objects == ["pyramid"] and scene.instances == 4 and scene.primitives == {"capsule": 4 * 8 + 3}
+    assert scene.objects == ["pyramid"] and scene.instances == 4 and scene.primitives == {"capsule": 4 * 9 + 3}
     assert scene.info["populations"] == ["cells", "others", "points", "more", "nowhere"]
     assert scene.info["instances"].tolist() == [[0, 3], [0, 5], [0, 6], [1, 0]]
     assert np.array_equal(scene.instance(1), [[1, 0, 0, 100], [0, 1, 0, -20], [0, 0, 1, 30], [0, 0, 0, 1]]) and np.array_equal(scene.instance(3), np.eye(4))
@@ -624,7 +626,9 @@ def test_morphologies_beside_their_cells():
     inner = CELL[CELL.index("<morphology"):CELL.index("</cell>")]
     path = neuroml(f'{inner}<cell id="a" morphology="m"/><cell2CaPools id="b">{inner}</cell2CaPools>')
     scene = caplet.from_neuroml(path)
-    assert scene.primitives == {"capsule": 16} and np.array_equal(scene["a axon"].p0, scene["b axon"].p0)
+    assert scene.primitives == {"capsule": 18} and np.array_equal(scene["a axon"].p0, scene["b axon"].p0)
+    alone = caplet.from_neuroml(neuroml(inner))
+    assert alone.primitives == {"capsule": 9} and np.array_equal(alone["m axon"].p0, scene["a axon"].p0)
     named = caplet.from_neuroml(neuroml(CELL.replace('name="ball"', 'name="dend_4"').replace('name="Soma"', 'name="axon"')))  # groups go before names
     assert named.info["segment"]["pyramid basal dendrite"].tolist() == [4] and named.info["segment"]["pyramid soma"].tolist() == [0]
 
@@ -658,9 +662,9 @@ def test_what_neuroml_cannot_give():
             (lambda: cell(root.replace('diameter="1"', 'diameter="0"')), "all diameters are 0", 2),
             (lambda: cell(root + '<segmentGroup id="soma"><include segmentGroup="z"/></segmentGroup>'), "includes 'z'", 4),
             (lambda: neuroml('\n<include href="none.nml"/>'), "includes none.nml, which is no file", 3), (lambda: neuroml('<include href="a.nml.h5"/>', "a.nml.h5"), "HDF5", None),
-            (lambda: neuroml(CELL + CELL.replace('"m"', '"k"')), "two cells 'pyramid'", 18), (lambda: neuroml(network.format("z", "")), "there is no cell 'z'", 2),
-            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"/>')), "instance 4 lacks a location", 18),
-            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"><location x="inf" y="0" z="0"/></instance>')), "instance 4 is at inf", 18),
+            (lambda: neuroml(CELL + CELL.replace('"m"', '"k"')), "two cells 'pyramid'", 20), (lambda: neuroml(network.format("z", "")), "there is no cell 'z'", 2),
+            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"/>')), "instance 4 lacks a location", 20),
+            (lambda: neuroml(CELL + network.format("pyramid", '<instance id="4"><location x="inf" y="0" z="0"/></instance>')), "instance 4 is at inf", 20),
             (lambda: neuroml('<izhikevichCell id="iz"/>' + network.format("iz", "")), "no cells with segments or locations", None)):
         path = make()
         with pytest.raises(caplet.InputError, match=says) as caught:

@@ -8,6 +8,7 @@ doi:10.3389/fninf.2014.00079, and of its schema (docs.neuroml.org).
 import importlib
 import os
 import re
+import types
 import warnings
 
 import numpy as np
@@ -18,7 +19,7 @@ from .cells import MOST_NODES, Look, add_cell, package, wrong
 
 # What groups of segments are, as SWC types: by their identifiers of the Gene Ontology, or by the first word of their names.
 _ONTOLOGY = {"GO:0043025": 1, "GO:0030424": 2, "GO:0030425": 3, "GO:0097441": 3, "GO:0097440": 4}
-_WORDS = {"soma": 1, "axon": 2, "apic": 4, "dend": 3, "basa": 3}
+_WORDS = {"soma": 1, "axon": 2, "myel": 2, "apic": 4, "dend": 3, "basa": 3}
 _STRONGEST = (1, 2, 4, 3)  # of several groups of a segment
 
 
@@ -290,12 +291,13 @@ def from_neuroml(path, cell=None, color="type", radius=5.0):
 
     Where there is a network, the cells of its populations are instances at their locations; a population without locations is shown
     once, its cell as it lies in its file. Cells without segments (point neurons) are spheres, where they have locations. Without a network
-    all cells of the file and its includes are shown as they lie. cell: the id of one cell, which is shown alone, without a network.
+    all cells of the file and its includes are shown as they lie, or its morphologies where there are no cells. cell: the id of one cell,
+    which is shown alone, without a network.
     radius: of point neurons whose population has no property "radius".
 
     color: "type": by groups of segments, whose neuroLexId (GO:0043025 soma, GO:0030424 axon, GO:0030425 and GO:0097441 dendrite,
-    GO:0097440 apical dendrite) or else name ("soma...", "axon...", "apic...", "dend...", "basa...") says what they are; "population": by its property "color",
-    or else a palette; or one colour. A segment without a proximal point begins where its parent ends, or fractionAlong it, as thick as that
+    GO:0097440 apical dendrite) or else name ("soma...", "axon...", "myel...", "apic...", "dend...", "basa...") says what they are;
+    "population": by its property "color", or else a palette; or one colour. A segment without a proximal point begins where its parent ends, or fractionAlong it, as thick as that
     is there. At most 10^7 instances.
 
     scene.info: "segment" {shape: ids of the segments of its capsules}; of a network "populations" (names), "instances" (n, 2): the
@@ -306,7 +308,11 @@ def from_neuroml(path, cell=None, color="type", radius=5.0):
         path = os.fsdecode(path)
     documents = _Documents(path)
     cells = {}
-    for file, one in documents.every("cells", "cell2_ca_poolses"):
+    held = list(documents.every("cells", "cell2_ca_poolses"))
+    if not held:  # morphologies alone, as tools write them from SWC
+        held = [(file, types.SimpleNamespace(id=one.id, morphology=one, gds_elementtree_node_=one.gds_elementtree_node_))
+                for file, one in documents.every("morphology")]
+    for file, one in held:
         if str(one.id) in cells and cells[str(one.id)][1] is not one:
             raise wrong(file, f"there are two cells {one.id!r}; the other is in {cells[str(one.id)][0]}", _line(one))
         cells[str(one.id)] = file, one
