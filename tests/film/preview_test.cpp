@@ -100,7 +100,7 @@ TEST(Preview, BytesAreSrgb) {
 
 TEST(Preview, ConvertsToSrgbPrimaries) {
   // (0.18, 0.18, 0.18) is grey in every D65 space; saturated Rec. 2020 green lies outside sRGB and clips its red to 0.
-  LayeredImage image = picture({{0.18f, 0.18f, 0.18f}, {0, 0.3f, 0}});
+  LayeredImage image = picture({{0.18f, 0.18f, 0.18f}, {0, 0.3f, 0}, {0.2f, 0.3f, 0.1f}});
   image.space = ColorSpace::rec2020;
   const auto bytes = preview_rgb8(image);
   EXPECT_EQ(bytes[0], 118);
@@ -108,6 +108,10 @@ TEST(Preview, ConvertsToSrgbPrimaries) {
   EXPECT_EQ(bytes[2], 118);
   EXPECT_EQ(bytes[3], 0);
   EXPECT_GT(bytes[4], 118);
+  // By the matrix of ITU-R BT.2087 (0.148521, 0.314125, 0.078069), and sRGB's curve: 107.5, 152.0 and 78.9.
+  EXPECT_EQ(bytes[6], 108);
+  EXPECT_EQ(bytes[7], 152);
+  EXPECT_EQ(bytes[8], 79);
 }
 
 #ifdef CAPLET_WITH_OIIO

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 
 #include "post/detail/canvas.h"
@@ -80,6 +81,14 @@ TEST(ScaleBar, IsAsLongAsItSays) {
   EXPECT_EQ(bar_of(parse_scale_bar("3", ""), unknown, "").label, "3");
   EXPECT_EQ(bar_of(parse_scale_bar("3 cells", ""), unknown, "").label, "3 cells");
   EXPECT_DOUBLE_EQ(bar_of(parse_scale_bar("3 cells", ""), unknown, "").pixels, 12);
+}
+
+// Ten micrometres, 40 pixels, as each unit says them.
+TEST(ScaleBar, UnitsAreWhatTheirNamesSay) {
+  for (const char* text : {"1e7 pm", "1e5 A", "1e5 \u00c5", "1e5 angstrom", "1e4 nm", "10 um", "10 \u00b5m", "10 \u03bcm",
+                           "10 micron", "0.01 mm", "0.001 cm", "1e-5 m", "1e-8 km"})
+    EXPECT_NEAR(bar_of(parse_scale_bar(text, ""), ball(), "").pixels, 40, 1e-9) << text;
+  EXPECT_DOUBLE_EQ(bar_of({100, ""}, ball(), "").pixels, 400);  // as wide as the picture, and no wider
 }
 
 TEST(ScaleBar, IsRoundWhereNoOneAsks) {
@@ -159,6 +168,12 @@ TEST(ScaleBar, IsDrawnAsLong) {
     for (int x = 0; x < 400; ++x) (row < 100 ? far : above) += double{1 - red(on.picture, x, row)};
   EXPECT_GT(above, 5);
   EXPECT_EQ(far, 0);
+  // The text stands over the bar's middle, but for the room about its letters.
+  int first = 400, last = 0;
+  for (int row = 100; row < y - 4; ++row)
+    for (int x = 0; x < 400; ++x)
+      if (red(on.picture, x, row) < 0.9F) first = std::min(first, x), last = std::max(last, x);
+  EXPECT_NEAR(0.5 * (first + last + 1), 400 - margin(on.picture) - 0.5 * 80.25, 2);
 }
 
 TEST(Outline, RunsAroundADisk) {
@@ -264,6 +279,17 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
   EXPECT_GT(bottom - top, 60);
   EXPECT_GT(red_of_top, 0.98);
   EXPECT_LT(red_of_bottom, 0.02);
+  // Of two colours each has half of the rows.
+  Canvas two = empty_canvas(400, 300);
+  draw_color_bar(two.picture, {"B", "", 0, 1, {{0, 0, 0.25}, {0.5, 0, 0.25}}}, {0, 0, 0});
+  int difference = 0;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 0; x < 400; ++x)
+      if (const auto& color = two.picture.rgb[static_cast<std::size_t>(y * 400 + x)]; color[2] == 0.25f) {
+        difference += color[0] == 0 ? 1 : -1;
+        break;
+      }
+  EXPECT_LE(std::abs(difference), 1);
 }
 
 TEST(Ink, IsSeenOnWhatIsBehind) {
@@ -272,6 +298,10 @@ TEST(Ink, IsSeenOnWhatIsBehind) {
              8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
   EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
+  // Of one pixel just above the luminance between, 0.179: black.
+  Canvas grey = canvas(
+      1, 1, {0.2f, 0.2f, 0.2f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
+  EXPECT_EQ(ink_for(grey.picture, grey.layers)[0], 0);
 }
 
 TEST(Letters, EachIsThereAndNoTwoAreAlike) {
