@@ -32,21 +32,14 @@ SourceLocation XmlFile::place(std::ptrdiff_t offset) const {
 
 std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
                                const std::string& what) {
-  constexpr std::string_view kBlanks = " \t\r\n";
   std::vector<double> out;
-  for (;;) {
-    const std::size_t begin = text.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) break;
-    text.remove_prefix(begin);
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-    text.remove_prefix(word.size());
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+  each_word(text, [&](std::string_view word) {
     double value = 0;
-    if (!parse_number(digits, value)) throw InputError(where, what + ": " + quoted(word) + " is not a number");
+    if (!parse_number(word, value)) throw InputError(where, what + ": " + quoted(word) + " is not a number");
     if (!(std::abs(value) <= static_cast<double>(largest_number)))
       throw InputError(where, what + ": " + quoted(word) + " is not finite or out of range");
     out.push_back(value);
-  }
+  });
   if (out.size() < least || out.size() > most)
     throw InputError(where, least == most ? fmt::format("{}: {} numbers, not {}", what, least, out.size())
                                           : fmt::format("{}: {} to {} numbers, not {}", what, least, most, out.size()));

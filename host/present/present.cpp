@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -17,6 +18,7 @@
 
 #include "present/lights.h"
 #include "present/look.h"
+#include "scene/principal_axes.h"
 
 namespace caplet {
 
@@ -87,35 +89,23 @@ struct Axes {
   glm::dmat3 axis{1};    // columns, unit
 };
 
-/// Principal axes of the balls' centres, by cyclic Jacobi rotations.
-Axes principal_axes(const std::vector<Ball>& balls) {
+/// Of the balls' centres.
+Axes axes_of(const std::vector<Ball>& balls) {
   glm::dvec3 mean(0);
   for (const Ball& ball : balls) mean += ball.center / static_cast<double>(balls.size());
-  glm::dmat3 a(0), v(1);
+  glm::dmat3 covariance(0);
   for (const Ball& ball : balls) {
     const glm::dvec3 d = ball.center - mean;
-    a += glm::outerProduct(d, d) / static_cast<double>(balls.size());
+    covariance += glm::outerProduct(d, d) / static_cast<double>(balls.size());
   }
-  constexpr int kSweeps = 16;  // quadratic convergence: 3x3 needs about 6
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-      if (a[q][p] == 0) continue;
-      const double theta = (a[q][q] - a[p][p]) / (2 * a[q][p]);
-      const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-      const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-      glm::dmat3 rotation(1);
-      rotation[p][p] = rotation[q][q] = c;
-      rotation[q][p] = s;
-      rotation[p][q] = -s;
-      a = glm::transpose(rotation) * a * rotation;
-      v = v * rotation;
-    }
+  const PrincipalAxes found = principal_axes(covariance);
   std::array<int, 3> order{0, 1, 2};
-  std::ranges::sort(order, [&a](int i, int j) { return a[i][i] > a[j][j]; });
+  std::ranges::sort(order, std::greater(), [&](int k) { return found.values[k]; });
   Axes axes;
   for (int i = 0; i < 3; ++i) {
-    axes.extent[i] = std::sqrt(std::max(0.0, a[order[static_cast<std::size_t>(i)]][order[static_cast<std::size_t>(i)]]));
-    axes.axis[i] = v[order[static_cast<std::size_t>(i)]];
+    const int from = order[static_cast<std::size_t>(i)];
+    axes.extent[i] = std::sqrt(std::max(0.0, found.values[from]));
+    axes.axis[i] = found.world_from_axes[from];
   }
   return axes;
 }
@@ -170,7 +160,7 @@ View along_image(const View& view, const std::vector<Ball>& balls, double aspect
 }
 
 View choose_view(const std::vector<Ball>& balls) {
-  const Axes axes = principal_axes(balls);
+  const Axes axes = axes_of(balls);
   const auto facing = [](glm::dvec3 n) {
     // Seen from the front, from above or from the right, whichever the normal is nearest to.
     const glm::dvec3 size = glm::abs(n);

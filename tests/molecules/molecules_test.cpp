@@ -185,6 +185,38 @@ TEST(Mmcif, NumbersBeyondTheirRangeAreNone) {
   EXPECT_FALSE(m.has_b_factors);
 }
 
+// As PyMOL and others write it: columns that hold nothing new are not there.
+TEST(Mmcif, ColumnsMayBeMissing) {
+  const auto text_of = [](const std::vector<std::string>& columns, const std::string& rows) {
+    std::string text = "data_x\nloop_\n";
+    for (const std::string& column : columns) text += "_atom_site." + column + "\n";
+    return text + rows;
+  };
+  const Molecule few =
+      read_mmcif(text_of({"label_atom_id", "label_comp_id", "label_seq_id", "Cartn_x", "Cartn_y", "Cartn_z", "auth_asym_id"},
+                         "CA ALA 7 0 0 0 B\nCB ALA 7 1.5 0 0 B\nCA ALA 8 3 0 0 B\n"),
+                 "x.cif", {});
+  ASSERT_EQ(few.atoms.size(), 3u);
+  EXPECT_EQ(few.chains, (std::vector<std::string>{"B"}));
+  ASSERT_EQ(few.residues.size(), 2u);
+  EXPECT_EQ(few.residues[0].atom_count, 2u);
+  EXPECT_EQ(few.residues[0].part, "B");
+  EXPECT_EQ(few.residues[1].atom_count, 1u);
+  EXPECT_EQ(few.atoms[1].position, glm::vec3(1.5F, 0, 0));
+  EXPECT_EQ(few.atoms[2].altloc, '\0');
+  EXPECT_FALSE(few.has_b_factors);
+  // Residues of one number are apart by the chain alone; the author's numbers count where both are there.
+  const Molecule both =
+      read_mmcif(text_of({"id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id", "label_seq_id",
+                          "Cartn_x", "Cartn_y", "Cartn_z", "B_iso_or_equiv", "auth_seq_id"},
+                         "5 C CA A ALA X 1 0 0 0 12.5 40\n6 C CA . ALA X 1 0 0 9 1 41\n"),
+                 "x.cif", {});
+  ASSERT_EQ(both.residues.size(), 2u);
+  EXPECT_EQ(both.atoms[0].serial, 5);
+  EXPECT_EQ(both.atoms[0].altloc, 'A');
+  EXPECT_EQ(both.atoms[0].b_factor, 12.5F);
+}
+
 // Charges that no byte holds, which UndefinedBehaviorSanitizer sees.
 TEST(Mmcif, ComponentsMayHaveNoCharge) {
   for (const char* charge : {"?", ".", "1e9", "-1"}) {

@@ -10,12 +10,17 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "import/import_options.h"
+
+namespace gemmi::cif {
+struct Document;
+}
 
 namespace caplet {
 
@@ -71,6 +76,10 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_sdf(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_xyz(std::string_view text, const std::string& path, const ImportOptions& options);
+
+/// The crystal of a document of the core CIF dictionary, atoms at fractions of a cell; none of other documents. `--assembly
+/// cell`: all of its cell, by the file's operators or its space group's. Throws InputError.
+std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::string& path, const ImportOptions& options);
 
 /// Atomic number of a symbol in any case ("Fe", "FE"), of a number ("26"), or of a symbol with digits after it ("C12"); 0: none.
 std::uint8_t element_of(std::string_view symbol);

@@ -34,6 +34,20 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
+/// Calls work with each word, blanks between them, without a leading '+'.
+template <class Work>
+void each_word(std::string_view text, const Work& work) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  for (;;) {
+    const std::size_t begin = text.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return;
+    text.remove_prefix(begin);
+    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    text.remove_prefix(word.size());
+    work(word.size() > 1 && word.front() == '+' ? word.substr(1) : word);
+  }
+}
+
 /// Finite numbers with blanks between them, at least `least` and at most `most`. Throws InputError.
 std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
                                const std::string& what);

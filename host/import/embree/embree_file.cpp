@@ -26,19 +26,9 @@ bool is_binary(pugi::xml_node node) { return !node.attribute("ofs").empty(); }
 /// Calls work with each word of the element.
 template <class Work>
 void each_word(pugi::xml_node node, const Work& work) {
-  constexpr std::string_view blanks = " \t\r\n";
-  for (const pugi::xml_node piece : node.children()) {
-    if (piece.type() != pugi::node_pcdata && piece.type() != pugi::node_cdata) continue;
-    std::string_view text = piece.value();
-    for (;;) {
-      const std::size_t begin = text.find_first_not_of(blanks);
-      if (begin == std::string_view::npos) break;
-      text.remove_prefix(begin);
-      const std::string_view word = text.substr(0, text.find_first_of(blanks));
-      text.remove_prefix(word.size());
-      work(word.starts_with('+') && word.size() > 1 ? word.substr(1) : word);
-    }
-  }
+  for (const pugi::xml_node piece : node.children())
+    if (piece.type() == pugi::node_pcdata || piece.type() == pugi::node_cdata)
+      caplet::each_word(std::string_view(piece.value()), work);
 }
 
 std::uint64_t count_of(const SceneFile& file, pugi::xml_node node, const char* name) {

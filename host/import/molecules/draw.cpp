@@ -20,6 +20,7 @@
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
+#include "import/detail/value_colors.h"
 #include "present/present.h"
 #include "table/npy.h"
 
@@ -46,6 +47,7 @@ class Painter {
         low_ = std::min(low_, atom.b_factor);
         high_ = std::max(high_, atom.b_factor);
       }
+      b_factors_ = ValueColors(scene, "bfactor", static_cast<double>(low_), static_cast<double>(high_), map_steps);
     }
   }
 
@@ -61,11 +63,8 @@ class Painter {
         return named("chain " + molecule_.chains[residue.chain], [&] { return palette_color(residue.chain); });
       case ColorBy::residue:
         return named(residue.name.empty() ? "residue" : residue.name, [&] { return palette_color(index_.size()); });
-      case ColorBy::bfactor: {
-        const int step = static_cast<int>(part(atom) * (map_steps - 1) + 0.5F);
-        return named(fmt::format("bfactor {:.4g}", low_ + (high_ - low_) * static_cast<float>(step) / (map_steps - 1)),
-                     [&] { return viridis(static_cast<double>(step) / (map_steps - 1)); });
-      }
+      case ColorBy::bfactor:
+        return b_factors_.of(static_cast<double>(atom.b_factor));
     }
     return 0;
   }
@@ -92,6 +91,7 @@ class Painter {
   const Molecule& molecule_;
   ColorBy by_;
   float low_ = 0, high_ = 0;
+  ValueColors b_factors_;
   std::map<std::string, std::uint32_t> index_;
 };
 

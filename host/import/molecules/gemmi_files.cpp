@@ -307,6 +307,41 @@ void mend_charges(gemmi::cif::Block& block) {
     if (!(std::abs(gemmi::cif::as_number(row[0])) <= 100)) row[0] = "0";
 }
 
+/// gemmi 0.5 reads no atoms without some columns of _atom_site that other programs leave out (PyMOL auth_seq_id): they become
+/// those of the other name, or say that nothing is known.
+void add_columns(gemmi::cif::Block& block) {
+  const std::string category = "_atom_site.";
+  gemmi::cif::Loop* loop = block.find_loop(category + "Cartn_x").get_loop();
+  if (!loop) return;
+  struct Column {
+    const char *name, *other, *value;
+  };
+  static constexpr Column needed[] = {{"id", "", "?"},
+                                      {"type_symbol", "", "?"},
+                                      {"label_alt_id", "", "."},
+                                      {"label_asym_id", "auth_asym_id", "A"},
+                                      {"occupancy", "", "1"},
+                                      {"B_iso_or_equiv", "", "0"},
+                                      {"auth_seq_id", "label_seq_id", "?"}};
+  std::vector<std::pair<int, std::string>> added;  // the column whose values they have, or what all rows have
+  const std::size_t width = loop->width();
+  for (const Column& column : needed) {
+    if (loop->has_tag(category + column.name)) continue;
+    added.emplace_back(*column.other ? loop->find_tag(category + column.other) : -1, column.value);
+    loop->tags.push_back(category + column.name);
+  }
+  if (added.empty()) return;
+  std::vector<std::string> values;
+  values.reserve(loop->values.size() / width * loop->tags.size());
+  for (std::size_t row = 0; row + width <= loop->values.size(); row += width) {
+    for (std::size_t i = 0; i < width; ++i) values.push_back(std::move(loop->values[row + i]));
+    const std::size_t begin = values.size() - width;
+    for (const auto& [from, value] : added)
+      values.push_back(from < 0 ? value : std::string(values[begin + static_cast<std::size_t>(from)]));
+  }
+  loop->values = std::move(values);
+}
+
 void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
   // A const table of gemmi 0.5 is not to be had.
   auto& table_of = const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
@@ -330,7 +365,11 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
     gemmi::cif::Document document = document_of(text, path);
-    for (gemmi::cif::Block& block : document.blocks) mend_charges(block);
+    if (std::optional<Molecule> crystal = read_crystal(document, path, options)) return std::move(*crystal);
+    for (gemmi::cif::Block& block : document.blocks) {
+      mend_charges(block);
+      add_columns(block);
+    }
     gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
     Molecule out = Builder(structure, path, options).build();
     for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out.components);

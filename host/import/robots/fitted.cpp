@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "import/detail/robot.h"
+#include "scene/principal_axes.h"
 
 namespace caplet {
 
@@ -84,31 +85,16 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   return out;
 }
 
-/// Axes of a symmetric matrix, the one of the least value first, as a rotation (Jacobi).
-glm::dmat3 axes_of(glm::dmat3 a, dvec3& values) {
-  glm::dmat3 axes(1);
-  for (int sweep = 0; sweep < 60; ++sweep)
-    for (int p = 0; p < 2; ++p)
-      for (int q = p + 1; q < 3; ++q) {
-        if (a[p][q] == 0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        glm::dmat3 turn(1);
-        turn[p][p] = turn[q][q] = c;
-        turn[q][p] = s;
-        turn[p][q] = -s;
-        a = glm::transpose(turn) * a * turn;
-        a[p][q] = a[q][p] = 0;
-        axes = axes * turn;
-      }
+/// Principal axes, the one of the least value first, as a rotation.
+glm::dmat3 axes_of(const glm::dmat3& symmetric, dvec3& values) {
+  const PrincipalAxes found = principal_axes(symmetric);
   std::array<int, 3> order{0, 1, 2};
-  std::ranges::sort(order, {}, [&](int k) { return a[k][k]; });
+  std::ranges::sort(order, {}, [&](int k) { return found.values[k]; });
   glm::dmat3 out;
   for (int k = 0; k < 3; ++k) {
     const int from = order[static_cast<std::size_t>(k)];
-    out[k] = axes[from];
-    values[k] = a[from][from];
+    out[k] = found.world_from_axes[from];
+    values[k] = found.values[from];
   }
   if (glm::determinant(out) < 0) out[2] = -out[2];
   return out;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace caplet {
+
+/// Eigenvalues of a symmetric matrix, in no order, and their unit vectors, the columns of a rotation.
+struct PrincipalAxes {
+  glm::dvec3 values{0};
+  glm::dmat3 world_from_axes{1};
+};
+
+/// By cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5).
+PrincipalAxes principal_axes(glm::dmat3 symmetric);
+
+}  // namespace caplet
