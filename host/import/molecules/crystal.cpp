@@ -12,10 +12,10 @@
 #include <gemmi/numb.hpp>
 #include <gemmi/symmetry.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include "base/check.h"
@@ -46,7 +46,9 @@ class CrystalReader {
     read_sites(block);
     out_.name = block.name;
     out_.chains.emplace_back();
-    out_.residues.push_back({.name = {}, .part = {}, .atom_count = narrow<std::uint32_t>(out_.atoms.size())});
+    Residue all;
+    all.atom_count = narrow<std::uint32_t>(out_.atoms.size());
+    out_.residues.push_back(all);
     out_.assemblies["cell"] = {{{""}, {}, {glm::dmat4(1)}}};
     if (options_.text("assembly") == "cell") fill_cell(operators(block));
     return std::move(out_);
@@ -101,7 +103,7 @@ class CrystalReader {
         if (altloc == "first" ? group != first_group : altloc != "all" && altloc != std::string(1, letter)) continue;
         atom.altloc = letter;
       }
-      if (row.has2(5)) atom.b_factor = b_factor(8 * std::numbers::pi * std::numbers::pi * gemmi::cif::as_number(row[5]));
+      if (row.has2(5)) atom.b_factor = b_factor(8 * glm::pi<double>() * glm::pi<double>() * gemmi::cif::as_number(row[5]));
       if (!row.has2(5) && row.has2(6)) atom.b_factor = b_factor(gemmi::cif::as_number(row[6]));
       out_.has_b_factors |= atom.b_factor != 0;
       add(atom, fraction, row.str(0));
@@ -244,7 +246,7 @@ class CrystalReader {
         const glm::dvec3 shift = -glm::floor(middle + 1e-6);  // a middle on the cell's face, rounded, is of this side
         for (std::size_t i = 0; i < part.size(); ++i) {
           const glm::dvec3 p = placed[i] + shift;
-          const bool known = std::ranges::any_of(copies[i], [&](const glm::dvec3& other) {
+          const bool known = std::any_of(copies[i].begin(), copies[i].end(), [&](const glm::dvec3& other) {
             const glm::dvec3 d = p - other;
             return glm::length(place_from_fraction_ * (d - glm::round(d))) < kSame;
           });
