@@ -18,7 +18,6 @@
 #include <limits>
 #include <numeric>
 
-#include "base/check.h"
 #include "base/error.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
@@ -47,7 +46,7 @@ class CrystalReader {
     out_.name = block.name;
     out_.chains.emplace_back();
     Residue all;
-    all.atom_count = narrow<std::uint32_t>(out_.atoms.size());
+    all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
     out_.residues.push_back(all);
     out_.assemblies["cell"] = {{{""}, {}, {glm::dmat4(1)}}};
     if (options_.text("assembly") == "cell") fill_cell(operators(block));
@@ -256,7 +255,7 @@ class CrystalReader {
         }
       }
     }
-    out_.residues.front().atom_count = narrow<std::uint32_t>(out_.atoms.size());
+    out_.residues.front().atom_count = static_cast<std::uint32_t>(out_.atoms.size());
   }
 
   const std::string& path_;
@@ -276,7 +275,7 @@ std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::
   const std::uint32_t number = options.number("model", 1);
   if (number > blocks.size()) throw InputError({"--model"}, fmt::format("{}: the file has {} structures", number, blocks.size()));
   Molecule out = CrystalReader(path, options).read(*blocks[number - 1]);
-  out.frames = narrow<std::uint32_t>(blocks.size());
+  out.frames = static_cast<std::uint32_t>(blocks.size());
   return out;
 }
 
