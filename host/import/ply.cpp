@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include "import/detail/ply.h"
+#include "import/detail/mesh_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,11 +53,17 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
   drop_unless_finite(mesh.uvs, file, "texture coordinates", "those of a mesh without any are used");
   mesh.triangles.reserve(faces);
   std::uint64_t dropped = 0;
+  std::vector<glm::vec3> places;
   for (std::uint64_t i = 0; i < faces; ++i) {
     const aiFace& face = from.mFaces[i];
     if (face.mNumIndices < 3) ++dropped;
-    for (unsigned k = 2; k < face.mNumIndices; ++k) {
-      mesh.triangles.push_back({face.mIndices[0], face.mIndices[k - 1], face.mIndices[k]});
+    places.clear();
+    for (unsigned k = 0; k < face.mNumIndices; ++k) places.push_back(mesh.positions[face.mIndices[k]]);
+    // Of four corners the triangles that pbrt makes.
+    const auto cut =
+        face.mNumIndices == 4 ? std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}} : triangles_of(places);
+    for (const auto& [a, b, c] : cut) {
+      mesh.triangles.push_back({face.mIndices[a], face.mIndices[b], face.mIndices[c]});
       for (const std::uint32_t vertex : mesh.triangles.back()) {
         if (!given.of_vertices.empty()) colors->push_back(given.of_vertices[vertex]);
         if (!given.of_faces.empty()) colors->push_back(given.of_faces[i]);

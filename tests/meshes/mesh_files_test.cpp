@@ -7,6 +7,7 @@
 
 #include <cstring>
 
+#include "import/detail/mesh_file.h"
 #include "import/import.h"
 #include "support/data.h"
 #include "support/import_files.h"
@@ -70,6 +71,58 @@ TEST(Obj, CornersOfAllKinds) {
   EXPECT_EQ(mesh_of(scene.shapes[2]).uvs.size(), 3u);
 }
 
+/// Areas of a shape's triangles, along z.
+double area_of(const Shape& shape) {
+  const TriangleMeshShape& mesh = mesh_of(shape);
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const glm::dvec3 p(mesh.positions[a]), q(mesh.positions[b]), r(mesh.positions[c]);
+    EXPECT_GE(glm::cross(q - p, r - p).z, 0);
+    sum += glm::cross(q - p, r - p).z / 2;
+  }
+  return sum;
+}
+
+// An arrow head, an L and a comb: triangles of positive areas that add up to theirs, which a fan's do not.
+TEST(Polygons, ThatAreNotConvexAreCutAtTheirEars) {
+  const char* head = "v 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\n";
+  for (const char* face : {"f 1 2 3 4\n", "f 2 3 4 1\n", "f 3 4 1 2\n", "f 4 1 2 3\n"}) {
+    const Scene scene = scene_of("h.obj", std::string(head) + face);
+    EXPECT_EQ(mesh_of(scene.shapes[0]).triangles.size(), 2u);
+    EXPECT_DOUBLE_EQ(area_of(scene.shapes[0]), 0.5) << face;
+  }
+  const Scene l = scene_of("l.off", "OFF\n6 1 0\n3 1 0\n1 1 0\n1 3 0\n0 3 0\n0 0 0\n3 0 0\n6 0 1 2 3 4 5\n");
+  EXPECT_EQ(mesh_of(l.shapes[0]).triangles.size(), 4u);
+  EXPECT_DOUBLE_EQ(area_of(l.shapes[0]), 5);
+  std::string comb = "v 10 -1 0\n";
+  std::string face = "f 1";
+  for (int i = 10; i >= 0; --i) {
+    comb += "v " + std::to_string(i) + (i % 2 == 0 ? " 1 0\n" : " 0 0\n");
+    face += " " + std::to_string(12 - i);
+  }
+  comb += "v 0 -1 0\n";
+  const Scene teeth = scene_of("c.obj", comb + face + " 13\n");
+  EXPECT_EQ(mesh_of(teeth.shapes[0]).triangles.size(), 11u);
+  EXPECT_DOUBLE_EQ(area_of(teeth.shapes[0]), 15);
+}
+
+TEST(Polygons, AreFansWhereNothingElseIsThere) {
+  using Cut = std::vector<std::array<std::uint32_t, 3>>;
+  const auto cut = [](const std::vector<glm::vec3>& corners) { return triangles_of(corners); };
+  EXPECT_EQ(cut({}), Cut());
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}}), Cut());
+  const Cut quad{{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), quad);
+  EXPECT_EQ(cut({{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}}), quad);  // the other way around
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}), quad);  // of no area as a whole
+  EXPECT_EQ(cut({{2, 2, 2}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2}}), quad);
+}
+
+TEST(Obj, FacesOfFewerThanThreeCornersAreLeftOut) {
+  const Scene scene = scene_of("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1\nf 1 2 3\n");
+  EXPECT_EQ(mesh_of(scene.shapes.at(0)).triangles.size(), 1u);
+}
+
 TEST(Obj, MaterialsAreThoseOfTheLibrary) {
   const std::string library =
       "newmtl red\nKd 0.8 0.1 0.1\nnewmtl metal\nKd .9 .9 .9\nKs 1 1 1\nPm 1\nPr 0.25\nmap_Kd -s 2 2 1 a picture.png\n"
@@ -77,7 +130,13 @@ TEST(Obj, MaterialsAreThoseOfTheLibrary) {
   std::string text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (const char* name : {"red", "metal", "glass", "lamp", "thin", "glossy"})
     text += std::string("usemtl ") + name + "\nf 1 2 3\n";
-  const Scene scene = scene_beside("m.obj", text, "m.mtl", library);
+  const std::filesystem::path folder = test::write_file("m.mtl", library).parent_path();
+  std::ofstream(folder / "m.obj") << text;
+  // Without the image: the colour alone.
+  const Scene without = import_scene(folder / "m.obj", OneTexel());
+  EXPECT_FALSE(texture_of(without.materials[without.shapes.at(1).material], "base_color"));
+  std::ofstream(folder / "a picture.png") << "for the reader of images";
+  const Scene scene = import_scene(folder / "m.obj", OneTexel());
   ASSERT_EQ(scene.shapes.size(), 6u);
   const auto material = [&](std::size_t i) -> const Material& { return scene.materials[scene.shapes[i].material]; };
   EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(material(0).model).reflectance).rgb, glm::dvec3(0.8F, 0.1F, 0.1F));
@@ -388,7 +447,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"a.obj", "v 0 0 0\n", "no faces"}, Bad{"b.obj", "v 0 0\n", ":1:6: a number is missing"},
         Bad{"c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ":4:7: '4': there are 3"},
-        Bad{"d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", ":4:"}, Bad{"e.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 0 2\n", ":4:5:"},
+        Bad{"d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 4\n", ":4:5:"},
+        Bad{"e.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 0 2\n", ":4:5:"},
         Bad{"f.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/1 3/1\n", ":4:3:"}, Bad{"g.obj", "v 0 nan 0\n", ":1:5:"},
         Bad{"h.obj", "v 0 0 0\nf 1 1/2/3/4 1\n", ":2:5:"}, Bad{"a.stl", "hello\n", ":1:1:"},
         Bad{"b.stl", "solid x\nfacet\nvertex 0 0 0\n", ":3:1: a vertex outside"},

@@ -397,7 +397,8 @@ TEST_P(BadMolecule, IsRefusedAtItsPlace) {
   EXPECT_THAT(complaint([&] { scene_of_text(bad.name, bad.text); }), AllOf(HasSubstr(bad.name), HasSubstr(bad.says)));
 }
 INSTANTIATE_TEST_SUITE_P(All, BadMolecule,
-                         testing::Values(Bad{"a.xyz", "1000000000\n\nC 0 0 0\n", ":4:"}, Bad{"b.xyz", "two\n\n", ":1:"},
+                         testing::Values(Bad{"g.sdf", "<?xml version=\"1.0\"?>\n<sdf version=\"1.6\"/>\n", ":1: is XML"},
+                                         Bad{"a.xyz", "1000000000\n\nC 0 0 0\n", ":4:"}, Bad{"b.xyz", "two\n\n", ":1:"},
                                          Bad{"c.xyz", "1\n\nC 0 0\n", ":3:"}, Bad{"d.xyz", "1\n\nC 0 nan 0\n", ":3:"},
                                          Bad{"e.xyz", "0\n\n", "no atoms"},
                                          Bad{"a.sdf", "x\n\n\n  2  1\n    0.0       0.0       0.0    C\n", ":6:"},

@@ -258,7 +258,6 @@ TEST(MjcfLooks, TheExampleWalks) {
   EXPECT_TRUE(found);
 }
 
-#ifdef CAPLET_WITH_PLY
 TEST(RobotMeshes, ColladaIsReadInItsUnit) {
   const std::string mesh_file =
       test::write_file("t.dae",
@@ -287,7 +286,6 @@ TEST(RobotMeshes, ColladaIsReadInItsUnit) {
               }),
               HasSubstr("bad.dae"));
 }
-#endif
 
 }  // namespace
 }  // namespace caplet

@@ -70,6 +70,23 @@ TEST(Urdf, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_EQ(said(arm + std::string(1, '\0')), "");
 }
 
+TEST(Urdf, WhatCollidesIsDrawnWhereNothingIsToBeSeen) {
+  const std::string solid = "<collision><geometry><sphere radius='0.5'/></geometry></collision>";
+  const std::string begin = "<robot><link name='a'>", end = "</link></robot>";
+  EXPECT_EQ(scene_of_text(begin + solid + end).shapes.size(), 1U);
+  EXPECT_THAT(complaint([&] {
+                scene_of_text(begin + solid + end, {{{"groups", "visual"}}});
+              }),
+              HasSubstr("no geometry of the groups"));
+  // Where one thing is to be seen it alone is; a ball of no size is nothing, and one of less an error.
+  const std::string seen = "<visual><geometry><box size='1 1 1'/></geometry></visual>";
+  EXPECT_EQ(scene_of_text(begin + solid + seen + end).shapes.size(), 1U);
+  const std::string point = "<visual><geometry><sphere radius='0'/></geometry></visual>";
+  EXPECT_EQ(scene_of_text(begin + point + seen + end).shapes.size(), 1U);
+  EXPECT_THAT(complaint([&] { scene_of_text(begin + "<visual><geometry><sphere radius='-1'/></geometry></visual>" + end); }),
+              HasSubstr("radius is not positive"));
+}
+
 TEST(Urdf, SharedFilesHaveTheirGeometry) {
   CAPLET_NEEDS_DATA();
   // Boxes, cylinders and spheres within <visual> and <collision>, as Python's ElementTree counts them; the DAE meshes are not

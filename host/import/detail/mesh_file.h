@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,11 +82,17 @@ bool color_corners(Scene& scene, Shape& shape, std::vector<glm::vec3> colors);
 /// A mesh's shape, with its material.
 Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
 
+/// The corners of a polygon's triangles, around it as they are: a fan where it is convex (seen along its normal's greatest axis),
+/// else its ears (Meisters 1975, doi:10.2307/2319703); what crosses itself, or has more than 2,000 corners, is a fan.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3> corners);
+
 /// The meshes of files in memory, or of an OBJ file without its materials, in the file's coordinates; `colors`: where those of
 /// corners go, linear, three a triangle. Throw InputError.
 TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file);
 TriangleMeshShape parse_off(std::string_view bytes, const std::string& file, std::vector<glm::vec3>* colors = nullptr);
 std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation& where);
+/// Those of a COLLADA file where its nodes have them, in metres; which axis is up is not looked at, as in ROS.
+std::vector<TriangleMeshShape> read_dae_meshes(const std::filesystem::path& path, const SourceLocation& where);
 
 /// What an MTL file says of a material: linear colours, numbers by their names there, files of maps from its folder.
 struct MtlValues {

@@ -89,13 +89,13 @@ class Maker {
       model.eta = std::clamp(e.ni, 1.01, 4.0);
       material.model = model;
       color_field = "base_color";
-      if (!e.map_pm.empty()) material.textures.push_back({"metallic", image(e.map_pm, true, where)});
-      if (!e.map_pr.empty()) material.textures.push_back({"roughness", image(e.map_pr, true, where)});
+      if (is_there(e.map_pm, where)) material.textures.push_back({"metallic", image(e.map_pm, true, where)});
+      if (is_there(e.map_pr, where)) material.textures.push_back({"roughness", image(e.map_pr, true, where)});
     } else {
       material.model = DiffuseMaterial{RgbSpectrum{kd}};
     }
-    if (color_field && !e.map_kd.empty()) material.textures.push_back({color_field, image(e.map_kd, false, where)});
-    if (!glass && !e.map_d.empty()) {
+    if (color_field && is_there(e.map_kd, where)) material.textures.push_back({color_field, image(e.map_kd, false, where)});
+    if (!glass && is_there(e.map_d, where)) {
       TextureOperand alpha(1);
       alpha.texture = image(e.map_d, true, where);
       out.alpha = alpha;
@@ -114,6 +114,14 @@ class Maker {
   }
 
  private:
+  /// Models are passed on without their images, and with paths of other machines: they are drawn in their colours alone.
+  bool is_there(const std::string& name, const SourceLocation& where) const {
+    if (name.empty()) return false;
+    std::error_code error;
+    if (std::filesystem::exists(folder_ / name, error)) return true;
+    Diagnostics().warning(where, "the image '" + (folder_ / name).string() + "' is left out: there is no such file");
+    return false;
+  }
   std::uint32_t image(const std::string& name, bool is_float, const SourceLocation& where) {
     return images_.texture(folder_ / name, is_float, !is_float, where);
   }

@@ -87,6 +87,9 @@ class ObjReader {
       line_ += more;
       kept_.clear();
     }
+    if (thin_faces_ > 0)
+      Diagnostics().warning({scene_.source, first_thin_face_, 0},
+                            fmt::format("{} faces of fewer than three corners are left out", thin_faces_));
     if (left_out_ > 0)
       Diagnostics().warning({scene_.source, first_left_out_, 0},
                             fmt::format("{} statements of points, lines, curves and surfaces are left out", left_out_));
@@ -183,15 +186,22 @@ class ObjReader {
   }
 
   void face(const LineWords& words) {
-    if (words.count() < 4) words.fail(words.count(), "a face has three corners or more");
-    Part& to = part();
-    const std::uint32_t first = vertex(to, corner(words, 1));
-    std::uint32_t before = vertex(to, corner(words, 2));
-    for (std::size_t i = 3; i < words.count(); ++i) {
-      const std::uint32_t next = vertex(to, corner(words, i));
-      to.mesh.triangles.push_back({first, before, next});
-      before = next;
+    if (words.count() < 4) {
+      for (std::size_t i = 1; i < words.count(); ++i) corner(words, i);
+      if (thin_faces_++ == 0) first_thin_face_ = line_;
+      return;
     }
+    Part& to = part();
+    corners_.clear();
+    places_.clear();
+    for (std::size_t i = 1; i < words.count(); ++i) {
+      corners_.push_back(vertex(to, corner(words, i)));
+      places_.push_back(to.mesh.positions[corners_.back()]);
+    }
+    if (corners_.size() == 3)
+      to.mesh.triangles.push_back({corners_[0], corners_[1], corners_[2]});
+    else
+      for (const auto& [a, b, c] : triangles_of(places_)) to.mesh.triangles.push_back({corners_[a], corners_[b], corners_[c]});
   }
 
   void library(const LineWords& words) {
@@ -259,7 +269,10 @@ class ObjReader {
   Scene scene_;
   MeshImages images_;
   int line_ = 0, first_left_out_ = 0;
-  std::size_t left_out_ = 0;
+  std::size_t left_out_ = 0, thin_faces_ = 0;
+  int first_thin_face_ = 0;
+  std::vector<std::uint32_t> corners_;  // of the face that is read
+  std::vector<glm::vec3> places_;
   std::vector<std::string> kept_;
   std::vector<glm::vec3> positions_, normals_, colors_;  // the last: fewer where the rest have none; -1: none
   float most_color_ = 0;

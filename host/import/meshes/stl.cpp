@@ -143,15 +143,15 @@ class OffReader {
     for (std::int64_t i = 0; i < faces; ++i) {
       const std::int64_t corners = whole();
       if (corners < 0) fail("a count is negative");
-      std::uint32_t first = 0, before = 0;
+      std::vector<std::uint32_t> around;
+      std::vector<glm::vec3> places;
       for (std::int64_t k = 0; k < corners; ++k) {
         const std::int64_t index = whole();
         if (index < 0 || index >= vertices) fail(fmt::format("vertex {}: there are {}", index, vertices));
-        const auto at = static_cast<std::uint32_t>(index);
-        if (k == 0) first = at;
-        if (k >= 2) mesh.triangles.push_back({first, before, at});
-        before = at;
+        around.push_back(static_cast<std::uint32_t>(index));
+        places.push_back(mesh.positions[around.back()]);
       }
+      for (const auto& [a, b, c] : triangles_of(places)) mesh.triangles.push_back({around[a], around[b], around[c]});
       if (all_faces) {
         const std::optional<glm::vec3> own = color();
         all_faces = own.has_value();

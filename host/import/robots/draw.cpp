@@ -397,8 +397,13 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const I
   const std::size_t groups = options.choice("groups", {"visual", "collision", "all"}, visual);
   const glm::dmat4 world = world_from_file(options, "z");
   const Robot robot = read_urdf(path, Pose(options));
+  bool collides = groups == collision;
+  if (!options.text("groups") && !robot.geoms.empty() && std::ranges::all_of(robot.geoms, &RobotGeom::collides)) {
+    Diagnostics().warning({scene.source}, "has nothing that is to be seen: what collides is drawn");
+    collides = true;
+  }
   draw(
-      robot, world, [&](const RobotGeom& geom) { return groups == all || geom.collides == (groups == collision); }, scene);
+      robot, world, [&](const RobotGeom& geom) { return groups == all || geom.collides == collides; }, scene);
   return scene;
 }
 

@@ -15,13 +15,6 @@
 #include "import/detail/robot.h"
 #include "import/detail/text_file.h"
 
-#ifdef CAPLET_WITH_PLY
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
-#endif
-
 namespace caplet {
 
 namespace {
@@ -61,51 +54,6 @@ TriangleMeshShape parse_msh(const std::string& bytes, const std::string& file) {
   return mesh;
 }
 
-#ifdef CAPLET_WITH_PLY
-void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, MeshParts& parts, int depth) {
-  const aiMatrix4x4 world = above * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& from = *scene.mMeshes[node.mMeshes[i]];
-    TriangleMeshShape mesh;
-    for (unsigned k = 0; k < from.mNumVertices; ++k) {
-      const aiVector3D p = world * from.mVertices[k];
-      mesh.positions.emplace_back(p.x, p.y, p.z);
-    }
-    for (unsigned k = 0; from.mNormals && k < from.mNumVertices; ++k) {
-      // Of a turn and a scale alone; lengths are of no matter.
-      const aiVector3D n = aiMatrix3x3(world).Inverse().Transpose() * from.mNormals[k];
-      mesh.normals.emplace_back(n.x, n.y, n.z);
-    }
-    for (unsigned k = 0; k < from.mNumFaces; ++k)
-      if (from.mFaces[k].mNumIndices == 3)
-        mesh.triangles.push_back({from.mFaces[k].mIndices[0], from.mFaces[k].mIndices[1], from.mFaces[k].mIndices[2]});
-    if (!mesh.triangles.empty()) parts.push_back(std::move(mesh));
-  }
-  if (depth < 1000)
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], world, parts, depth + 1);
-}
-
-/// COLLADA: its unit is applied, its axis that is up is not, as in ROS.
-MeshParts parse_dae(const std::string& bytes, const std::string& file) {
-  Assimp::Importer importer;
-  importer.SetPropertyBool("IMPORT_COLLADA_IGNORE_UP_DIRECTION", true);
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, "dae");
-  if (!scene || !scene->mRootNode)
-    throw InputError({file, 0, 0}, std::string("is no COLLADA file: ") + importer.GetErrorString());
-  MeshParts parts;
-  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), parts, 0);
-  for (const TriangleMeshShape& part : parts)
-    for (const glm::vec3& p : part.positions)
-      for (int k = 0; k < 3; ++k)
-        if (!(std::abs(p[k]) <= largest_number)) throw InputError({file, 0, 0}, "a vertex is not finite or out of range");
-  return parts;
-}
-#else
-MeshParts parse_dae(const std::string&, const std::string& file) {
-  throw InputError({file}, "this build cannot read COLLADA meshes (CAPLET_WITH_PLY is off)");
-}
-#endif
-
 constexpr std::string_view kEndings[] = {".stl", ".obj", ".msh", ".dae", ".ply", ".off"};
 
 }  // namespace
@@ -132,7 +80,7 @@ std::shared_ptr<const MeshParts> MeshFiles::read(const std::filesystem::path& pa
   } else if (ending == ".msh") {
     parts.push_back(parse_msh(read_file(path, where), file));
   } else if (ending == ".dae") {
-    parts = parse_dae(read_file(path, where), file);
+    parts = read_dae_meshes(path, where);
   } else {
     throw InputError(where, "the mesh '" + file + "' is of a format that is not read");
   }

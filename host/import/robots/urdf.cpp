@@ -130,6 +130,11 @@ class UrdfReader {
       const std::string_view kind = geometry.name();
       if (kind == "sphere") {
         geom.kind = GeomKind::sphere;
+        // A point's place: nothing is seen of it.
+        if (numbers(geometry, "radius", 1)[0] == 0) {
+          Diagnostics().warning(geom.where, "a sphere of radius 0 is left out");
+          continue;
+        }
         geom.size.x = length(geometry, "radius");
       } else if (kind == "cylinder" || kind == "capsule") {
         geom.kind = kind == "capsule" ? GeomKind::capsule : GeomKind::cylinder;
