@@ -247,6 +247,7 @@ NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std
 
 void NpyReader::read(std::span<double> out) {
   const std::size_t count = out.size() / columns_;
+  if (count == 0) return;
   if (by_columns_)
     for (std::size_t c = 0; c < columns_; ++c) read_elements(c * rows_ + next_, count, columns_, out.data() + c);
   else
