@@ -28,10 +28,14 @@ namespace {
 
 /// What people have of these fields and no importer reads, with what helps.
 constexpr std::pair<const char*, const char*> not_read[] = {
-    {".nml", "NeuroML is not read: write the morphology as SWC (the Python packages morphio and neurom, or NEURON, do)"},
+    {".nml", "NeuroML is not read by the program; Python's caplet.from_neuroml reads it. Or write the morphology as SWC"},
     {".h5",
-     "SONATA and other HDF5 files are not read: write the morphologies as SWC (morphio's Morphology.write), one file a cell"},
-    {".asc", "Neurolucida files are not read: write the morphology as SWC (morphio's Morphology.write)"},
+     "SONATA and other HDF5 files are not read by the program; Python's caplet.from_sonata reads circuits, caplet.from_morphio "
+     "morphologies. Or write the morphologies as SWC (morphio's Morphology.write), one file a cell"},
+    {"circuit_config.json", "SONATA circuits are not read by the program; Python's caplet.from_sonata reads them"},
+    {".asc",
+     "Neurolucida files are not read by the program; Python's caplet.from_morphio takes them as MorphIO reads them. Or write the "
+     "morphology as SWC (morphio's Morphology.write)"},
 };
 
 /// The name of the root element of an XML file, as far as its beginning tells; empty: it does not.

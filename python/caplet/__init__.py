@@ -13,7 +13,8 @@ from . import errors
 from .errors import Error, InputError, RunError
 from . import _caplet, bridges, cameras, lights, materials, media, textures
 from ._caplet import formats, set_log_level
-from .bridges import denoise, from_gemmi, from_meshio, from_morphio, from_mujoco, from_nibabel, from_pyvista, from_trimesh, lidar, to_xarray
+from .bridges import (denoise, from_gemmi, from_meshio, from_morphio, from_mujoco, from_neuroml, from_nibabel, from_pyvista, from_sonata, from_trimesh, lidar,
+                      to_xarray)
 from .colors import color_map
 from .image import Image, load_film
 from .named import Blackbody, Camera, Light, Material, Medium, Texture
@@ -33,6 +34,6 @@ def shape_parameters(type):
 
 __all__ = ["Blackbody", "CROSSING", "Camera", "Error", "Image", "InputError", "Light", "Material", "Medium", "Report", "RunError", "Scene",
            "Session", "Shape", "Shapes", "Texture", "cameras", "color_map", "denoise", "devices", "errors", "formats", "from_gemmi",
-           "from_meshio", "from_morphio", "from_mujoco", "from_nibabel", "from_pyvista", "from_trimesh", "lidar", "lights", "load", "load_film",
-           "materials", "media", "pick", "render", "set_log_level", "shape_parameters", "shape_types", "textures", "to_xarray", "trace", "verify"]
+           "from_meshio", "from_morphio", "from_mujoco", "from_neuroml", "from_nibabel", "from_pyvista", "from_sonata", "from_trimesh", "lidar", "lights", "load",
+           "load_film", "materials", "media", "pick", "render", "set_log_level", "shape_parameters", "shape_types", "textures", "to_xarray", "trace", "verify"]
 __version__ = "0.1.0"

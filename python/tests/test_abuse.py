@@ -18,6 +18,7 @@ TOLD = (TypeError, ValueError)  # InputError is a ValueError
 # What takes objects of other packages, and has tests with these; what takes none of what is tried here.
 OTHERS = {"from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_pyvista", "from_trimesh", "to_xarray", "denoise",
           "formats", "shape_types", "devices", "set_log_level", "load_film"}
+PACKAGES = {"from_neuroml": ("neuroml",), "from_sonata": ("libsonata", "morphio", "h5py")}  # of entries that take files
 RECORDS = np.zeros(4, dtype=[("tag", "u1"), ("at", "f8", (3,))])
 
 
@@ -127,7 +128,9 @@ OF = {  # where the same name is something else
     ("add_disks", "transform"): [np.eye(4)] * 3, ("add_mesh", "color"): [0.1, 0.2, 0.3], ("set", "p0"): THREE[:2], ("set", "p1"): np.add(THREE[:2], 1),
     ("set", "radius"): [0.1, 0.2], ("resume", "image"): None, ("film", "type"): "rgb", ("filter", "type"): "box", ("sampler", "type"): "independent",
     ("integrator", "type"): "path", ("set_material", "material"): materials.diffuse(), ("add_many", "type"): "sphere", ("shape_parameters", "type"): "sphere",
-    ("from_nibabel", "radius"): 0.1, ("add", "radius"): 0.5, ("add_many", "radius"): 0.5,
+    ("from_nibabel", "radius"): 0.1, ("from_sonata", "radius"): 0.1, ("from_neuroml", "radius"): 0.1, ("from_neuroml", "cell"): "c",
+    ("from_sonata", "ids"): [0, 1], ("from_sonata", "color"): [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9]],
+    ("add", "radius"): 0.5, ("add_many", "radius"): 0.5,
 }
 # Of entries that take more by **options: what of it holds numbers.
 MORE = {"add_spheres": ("color", "transform"), "add_cylinders": ("color", "transform"), "add_cones": ("color", "transform"), "add_boxes": ("color", "transform"),
@@ -166,6 +169,24 @@ def good(entry, name):
     return value() if name == "scene" else value
 
 
+def file_for(entry, folder):
+    """A file that it reads."""
+    if entry == "from_neuroml":
+        (folder / "cell.nml").write_text('<neuroml xmlns="http://www.neuroml.org/schema/neuroml2"><cell id="c"><morphology id="m"><segment id="0"><proximal x="0" y="0" '
+                                         'z="0" diameter="1"/><distal x="0" y="1" z="0" diameter="1"/></segment></morphology></cell><izhikevichCell id="i"/><network id="n"><population id="p" component="i" size="1">'
+                                         '<instance id="0"><location x="0" y="0" z="0"/></instance></population><population id="q" component="c" size="1"/></network></neuroml>')
+        return str(folder / "cell.nml")
+    if entry == "from_sonata":
+        import h5py
+        with h5py.File(folder / "nodes.h5", "w") as file:
+            file["nodes/A/node_type_id"] = [0, 0, 0]
+            for name in "xyz":
+                file[f"nodes/A/0/{name}"] = [0.0, 1, 2]
+        return str(folder / "nodes.h5")
+    row().save(folder / "scene.pbrt")
+    return str(folder / "scene.pbrt")
+
+
 def trial(scene, call, given):
     """Calls it. Where it is told that something is wrong, the scene is as it was."""
     held = len(scene.shapes), scene.instances, scene._native.lights
@@ -190,8 +211,9 @@ def test_every_entry(entry, tmp_path):
     call, parameters = ENTRIES[entry]
     short = entry.split(".")[-1]
     named = {name: one for name, one in parameters.items() if one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)}
-    VALUES["path"] = str(tmp_path / "scene.pbrt")
-    row().save(VALUES["path"])
+    for package in PACKAGES.get(entry, ()):
+        pytest.importorskip(package)
+    VALUES["path"] = file_for(entry, tmp_path)
     needed = {name for name, one in named.items() if one.default is one.empty}
     quick = {name for name in named if entry in SLOW and name in ("scene", "spp", "rays", "size")}
     unknown = [name for name in needed if name != "to" and name not in VALUES and (short, name) not in OF]

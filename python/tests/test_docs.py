@@ -21,6 +21,13 @@ def test_the_page(tmp_path, monkeypatch):
     assert (tmp_path / "dust.exr").exists() and (tmp_path / "scene.pbrt").exists()
 
 
+def test_the_page_of_circuits():
+    for package in ("libsonata", "morphio", "h5py", "neuroml"):
+        pytest.importorskip(package)
+    result = doctest.testfile(str(SOURCE / "docs/formats/circuits.md"), module_relative=False)
+    assert result.attempted > 15 and result.failed == 0
+
+
 @pytest.mark.parametrize("name", ["scene", "rendering", "colors"])
 def test_docstrings(name):
     result = doctest.testmod(importlib.import_module(f"caplet.{name}"))

@@ -269,7 +269,10 @@ struct Written {
   std::string columns;
 };
 const Written written[] = {
-    {"scalars.trk", "columns"}, {"scalars.trx", "columns"}, {"scalars.vtk", "three columns"}, {"old.vtk", "three columns"}};
+    {"scalars.trk", "columns"},          {"scalars.trx", "columns"},        {"scalars.vtk", "three columns"},
+    {"old.vtk", "three columns"},        {"text.vtp", "three columns"},     {"packed.vtp", "three columns"},
+    {"plain.vtp", "three columns"},      {"appended.vtp", "three columns"}, {"raw.vtp", "three columns"},
+    {"raw_packed.vtp", "three columns"}, {"big.vtp", "three columns"}};
 
 std::filesystem::path file_of(const Written& one) { return test::source_folder() / "tests/fibres/files" / one.file; }
 
@@ -281,6 +284,7 @@ FibreScalars scalars_of(const Written& one, const std::string& wanted) {
   const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   const Fibres fibres = path.extension() == ".trx"   ? read_trx(path, &out)
                         : path.extension() == ".trk" ? read_trk(bytes, one.file, &out)
+                        : path.extension() == ".vtp" ? read_vtp(bytes, one.file, &out)
                                                      : read_vtk(bytes, one.file, &out);
   EXPECT_EQ(fibres.ends, (std::vector<std::uint64_t>{3, 5})) << one.file;
   EXPECT_EQ(fibres.points.at(4), glm::vec3(0, 3, 5)) << one.file;
@@ -308,6 +312,116 @@ TEST(Scalars, OfFilesOfOtherPrograms) {
   EXPECT_EQ(scalars_of(written[0], "").name, "columns[0]");
   EXPECT_EQ(scalars_of(written[1], "").name, "columns[0]");
   EXPECT_EQ(scalars_of(written[2], "").name, "weight");  // VTK writes those of cells first
+}
+
+// --- VTK's XML ---
+
+std::string vtp(const std::string& piece, const std::string& attributes = "type='PolyData'", const std::string& more = "") {
+  return "<VTKFile " + attributes + ">\n<PolyData>\n" + piece + "\n</PolyData>" + more + "</VTKFile>";
+}
+std::string vtp_lines(const std::string& connectivity, const std::string& offsets,
+                      const std::string& points = "0 0 0 1 0 0 1 1 0", const std::string& more = "") {
+  return "<Piece NumberOfPoints='3' NumberOfLines='1'>" + more + "<Points><DataArray type='Float32' format='ascii'>" + points +
+         "</DataArray></Points>\n<Lines><DataArray Name='connectivity' type='Int32' format='ascii'>" + connectivity +
+         "</DataArray><DataArray Name='offsets' type='Int32' format='ascii'>" + offsets + "</DataArray></Lines></Piece>";
+}
+
+TEST(Vtp, LinesAreThoseOfTheirOffsets) {
+  const Fibres fibres = read_vtp(vtp(vtp_lines("2 0 1", "3")), "a.vtp");
+  EXPECT_EQ(fibres.points, (std::vector<glm::vec3>{{1, 1, 0}, {0, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(fibres.ends, (std::vector<std::uint64_t>{3}));
+}
+
+// VTK writes what it cannot part into each piece.
+TEST(Vtp, PiecesAreJoined) {
+  std::ifstream stream(test::source_folder() / "tests/fibres/files/pieces.vtp", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  FibreScalars weight;
+  weight.wanted = "weight";
+  const Fibres fibres = read_vtp(bytes, "pieces.vtp", &weight);
+  EXPECT_EQ(fibres.ends, (std::vector<std::uint64_t>{3, 5, 8, 10}));
+  EXPECT_EQ(fibres.points.at(9), glm::vec3(0, 3, 5));
+  EXPECT_EQ(weight.values, (std::vector<float>{5, -2, 5, -2}));
+  std::string other = bytes;  // the second piece calls it otherwise
+  other.replace(other.rfind("Name=\"weight\""), 13, "Name=\"height\"");
+  FibreScalars again;
+  again.wanted = "weight";
+  EXPECT_THAT(complaint([&] { read_vtp(other, "pieces.vtp", &again); }), HasSubstr("without the numbers 'weight'"));
+}
+
+TEST(Vtp, BadInput) {
+  const auto said = [](const std::string& text, FibreScalars* scalars = nullptr) {
+    return complaint([&] { read_vtp(text, "x.vtp", scalars); });
+  };
+  EXPECT_THAT(said("# vtk DataFile"), HasSubstr("x.vtp:1:"));
+  EXPECT_THAT(said("<Vtk/>"), HasSubstr("is no XML file of VTK"));
+  EXPECT_THAT(said(vtp("", "type='UnstructuredGrid'")), HasSubstr("only PolyData is read, not 'UnstructuredGrid'"));
+  EXPECT_THAT(said(vtp("", "type='PolyData' byte_order='Middle'")), HasSubstr("'Middle' is no order"));
+  EXPECT_THAT(said(vtp("", "type='PolyData' header_type='UInt8'")), HasSubstr("'UInt8'"));
+  EXPECT_THAT(said(vtp("", "type='PolyData' compressor='vtkLZ4DataCompressor'")),
+              HasSubstr("'vtkLZ4DataCompressor' packed is not read"));
+  EXPECT_THAT(said(vtp("")), HasSubstr("x.vtp: holds no lines"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1 3", "3"))), AllOf(HasSubstr("x.vtp:4:"), HasSubstr("point 3: there are 3")));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1 -1", "3"))), HasSubstr("point -1"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "3"))), HasSubstr("from 0 to 3 of 2"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "2 1"))), HasSubstr("2 offsets of 1 lines"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "nan"))), HasSubstr("of 2 indices"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "2", "0 0 0"))), HasSubstr("3 numbers are no 3 points"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "2", "0 0 0 1 0 0 1 inf 0"))), HasSubstr("point 2 is not finite"));
+  EXPECT_THAT(said(vtp(vtp_lines("0 x", "2"))), HasSubstr("'x' is not a number"));
+  EXPECT_THAT(said(vtp("<Piece NumberOfLines='1'/>")), HasSubstr("<Piece> without points"));
+  const auto points = [&](const std::string& array, const std::string& attributes = "", const std::string& appended = "") {
+    return said(vtp("<Piece NumberOfPoints='1' NumberOfLines='1'><Points><DataArray " + array + "</DataArray></Points></Piece>",
+                    "type='PolyData' " + attributes, appended));
+  };
+  EXPECT_THAT(points("format='hex'>"), HasSubstr("'hex' is no format"));
+  EXPECT_THAT(points("format='binary' type='String'>DAAAAA=="), HasSubstr("'String' is no type"));
+  EXPECT_THAT(points("format='binary' type='Float32'>DA"), HasSubstr("announced"));
+  EXPECT_THAT(points("format='binary' type='Float32'>DAAAAA==AAAA"), HasSubstr("16 bytes are announced, and 12 are there"));
+  EXPECT_THAT(points("format='binary' type='Float32'>////////AAAA"), HasSubstr("4294967295 bytes are announced"));
+  EXPECT_THAT(points("format='binary' type='Float32'>D-AAAA=="), HasSubstr("none of base64"));
+  EXPECT_THAT(points("format='appended' type='Float32' offset='9'>", "", "<AppendedData encoding='base64'>_AAAA</AppendedData>"),
+              HasSubstr("begins at byte 9 of 4"));
+  const std::string packed = "compressor='vtkZLibDataCompressor'";
+  EXPECT_THAT(points("format='binary' type='Float32'>AACAfwAAAAAAAAAA", packed), HasSubstr("blocks are announced"));
+  // One block of 2^30 bytes, packed into 8; and one of 12 that is no deflate.
+  EXPECT_THAT(points("format='binary' type='Float32'>AQAAAAAAAEAAAAAACAAAAA==AAAAAAAAAAA=", packed),
+              HasSubstr("cannot be packed into 8"));
+  EXPECT_THAT(points("format='binary' type='Float32'>AQAAAAwAAAAAAAAACAAAAA==AAAAAAAAAAA=", packed),
+              HasSubstr("block 1 is broken"));
+  EXPECT_THAT(points("format='binary' type='Float32'>AQAAAAwAAAAAAAAA/////w==AAAAAAAAAAA=", packed),
+              HasSubstr("longer than the file"));
+  FibreScalars first;
+  EXPECT_THAT(said(vtp(vtp_lines("0 1", "2", "0 0 0 1 0 0 1 1 0",
+                                 "<PointData><DataArray Name='a' type='Int8' format='ascii'>1 2</DataArray></PointData>")),
+                   &first),
+              HasSubstr("2 rows of 1 numbers are too few"));
+}
+
+// Files that end early, or of which a byte is another: read, or refused.
+TEST(Vtp, ChangedFilesAreReadOrRefused) {
+  std::size_t refused = 0;
+  for (const Written& one : written) {
+    if (!std::string_view(one.file).ends_with(".vtp")) continue;
+    std::ifstream stream(file_of(one), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    const auto read = [&](const std::string& changed) {
+      FibreScalars scalars;
+      try {
+        const Fibres fibres = read_vtp(changed, "x.vtp", &scalars);
+        EXPECT_EQ(fibres.ends.back(), fibres.points.size());
+      } catch (const InputError&) {
+        ++refused;
+      }
+    };
+    for (std::size_t i = 0; i < bytes.size(); i += 7) {
+      read(bytes.substr(0, i));
+      std::string changed = bytes;
+      changed[i] = static_cast<char>(changed[i] ^ (1 << i % 8));
+      read(changed);
+    }
+  }
+  EXPECT_GT(refused, 3000U);
 }
 
 /// Linear sRGB of the first and last colours of matplotlib's viridis, (68, 1, 84) and (253, 231, 37) of 255.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <random>
 
 #include "import/detail/mesh_file.h"
 #include "import/import.h"
@@ -116,6 +117,16 @@ TEST(Polygons, AreFansWhereNothingElseIsThere) {
   EXPECT_EQ(cut({{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}}), quad);  // the other way around
   EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}), quad);  // of no area as a whole
   EXPECT_EQ(cut({{2, 2, 2}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2}}), quad);
+}
+
+// Whatever it is, also what crosses itself after some ears were cut: two fewer triangles than corners.
+TEST(Polygons, HaveTwoTrianglesFewerThanCorners) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<glm::vec3> corners(3 + random() % 7);
+    for (glm::vec3& corner : corners) corner = {static_cast<float>(random() % 8), static_cast<float>(random() % 8), 0};
+    ASSERT_EQ(triangles_of(corners).size(), corners.size() - 2);
+  }
 }
 
 TEST(Obj, FacesOfFewerThanThreeCornersAreLeftOut) {

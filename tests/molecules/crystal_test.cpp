@@ -166,7 +166,10 @@ X1 0 0 0 . . dum
   EXPECT_THAT(names({}), testing::ElementsAre("CL1", "H1", "O1A"));
   EXPECT_THAT(names({{{"altloc", "2"}}}), testing::ElementsAre("CL1", "H1", "O1B"));
   EXPECT_THAT(names({{{"altloc", "all"}, {"hydrogens", "no"}}}), testing::ElementsAre("CL1", "O1A", "O1B"));
+  // Places that shut each other out are not bound, however near (1 angstrom).
+  for (const auto& [a, b] : all_bonds(crystal(text, {{{"altloc", "all"}}}), "")) EXPECT_FALSE(a == 2 && b == 3);
   const Molecule molecule = crystal(text);
+  EXPECT_EQ(molecule.chains.size(), 1U);
   EXPECT_EQ(molecule.atoms[0].element, 17);
   EXPECT_FLOAT_EQ(molecule.atoms[0].b_factor, 2.5F);
   EXPECT_TRUE(molecule.has_b_factors);

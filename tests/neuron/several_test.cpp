@@ -171,8 +171,13 @@ TEST(SeveralFiles, OptionsGoToThoseThatKnowThem) {
 }
 
 TEST(SeveralFiles, OfFormatsThatAreNotReadSayWhatHelps) {
-  for (const char* name : {"cell.nml", "cells.h5", "cell.asc"})
-    EXPECT_THAT(complaint([&] { several({write_file(name, "x")}); }), testing::AllOf(HasSubstr("not read"), HasSubstr("SWC")));
+  using Row = std::pair<const char*, const char*>;
+  for (const Row& row :
+       {Row{"cell.nml", "caplet.from_neuroml"}, Row{"cell.nml", "as SWC"}, Row{"cells.h5", "caplet.from_sonata"},
+        Row{"cells.h5", "caplet.from_morphio"}, Row{"cells.h5", "as SWC"}, Row{"cell.asc", "caplet.from_morphio"},
+        Row{"cell.asc", "as SWC"}, Row{"circuit_config.json", "caplet.from_sonata"}})
+    EXPECT_THAT(complaint([&] { several({write_file(row.first, "x")}); }),
+                testing::AllOf(HasSubstr("not read"), HasSubstr(row.second)));
 }
 
 // --- Colours of neurons ---

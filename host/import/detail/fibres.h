@@ -43,5 +43,7 @@ Fibres read_tck(std::string_view bytes, const std::string& path);               
 Fibres read_trx(const std::filesystem::path& path, FibreScalars* scalars = nullptr);  // TRX, an archive
 Fibres read_vtk(std::string_view bytes, const std::string& path,
                 FibreScalars* scalars = nullptr);  // legacy VTK, POLYDATA with LINES
+Fibres read_vtp(std::string_view bytes, const std::string& path,
+                FibreScalars* scalars = nullptr);  // VTK's XML, PolyData with Lines
 
 }  // namespace caplet

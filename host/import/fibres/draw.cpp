@@ -257,5 +257,10 @@ Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const Im
   const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
   return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
+Scene import_vtp(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+  std::optional<FibreScalars> scalars = scalars_asked(options);
+  const Fibres fibres = read_vtp(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
+}
 
 }  // namespace caplet

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "import/detail/base64.h"
 #include "import/detail/gltf.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/text_file.h"
@@ -23,13 +24,6 @@ std::uint32_t word(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
-}
-
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
 const nlohmann::json& nothing() {
@@ -175,18 +169,8 @@ std::optional<std::string> File::data_uri(const std::string& uri) const {
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos)
     fail("a data address is not of base64");
-  std::string out;
-  std::uint32_t bits = 0;
-  int have = 0;
-  for (std::size_t i = comma + 1; i < uri.size() && uri[i] != '='; ++i) {
-    const int digit = base64_digit(uri[i]);
-    if (digit < 0) fail("a data address has a letter that is none of base64");
-    bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffU;
-    have += 6;
-    if (have < 8) continue;
-    have -= 8;
-    out += static_cast<char>(bits >> have & 0xffU);
-  }
+  std::optional<std::string> out = bytes_of_base64(std::string_view(uri).substr(comma + 1));
+  if (!out) fail("a data address has a letter that is none of base64");
   return out;
 }
 

@@ -6,9 +6,11 @@ from .images import denoise, to_xarray
 from .lidar import lidar
 from .meshes import from_meshio, from_trimesh
 from .mujoco import from_mujoco, update_mujoco
+from .neuroml import from_neuroml
 from .neurons import from_morphio
 from .pyvista import from_pyvista
+from .sonata import from_sonata
 from .streamlines import from_nibabel
 
-__all__ = ["denoise", "from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_nibabel", "from_pyvista", "from_trimesh", "lidar", "to_xarray",
-           "update_mujoco"]
+__all__ = ["denoise", "from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_neuroml", "from_nibabel", "from_pyvista", "from_sonata",
+           "from_trimesh", "lidar", "to_xarray", "update_mujoco"]

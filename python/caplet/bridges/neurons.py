@@ -6,13 +6,10 @@ import numpy as np
 from .. import materials
 from ..errors import InputError
 from ..scene import Scene
-
-# As of files that the program reads (docs/formats/swc.md).
-_COLORS = {1: (0.86, 0.62, 0.22), 2: (0.20, 0.62, 0.95), 3: (0.95, 0.36, 0.18), 4: (0.66, 0.22, 0.66)}
-_OTHER = (0.55, 0.56, 0.52)
+from .cells import OTHER_COLOR, TYPE_COLORS
 
 
-def _soma(soma):
+def soma_of(soma):
     """Spheres: centers (n, 3) and radii (n,)."""
     points = np.asarray(soma.points, dtype=np.float64).reshape(-1, 3)
     radii = np.asarray(soma.diameters, dtype=np.float64) / 2
@@ -26,14 +23,9 @@ def _soma(soma):
     return points[:1], radii[:1]
 
 
-def from_morphio(morphology):
-    """A scene of a morphio.Morphology, in its units (micrometres): shapes "soma" (spheres) and "neurites" (tapered capsules, one a
-    segment), coloured by type as files of neurons are.
-
-    A soma of one point or three is a sphere, an outline the sphere of its mean distance, a chain of cylinders a sphere a point.
-    scene.info: "section" and "type" of each capsule of the neurites. Segments of no radius at both ends are left out.
-    """
-    p0, p1, radii, sections, types = [], [], [], [], []
+def neurites(morphology):
+    """Segments of all sections, as (p0, p1, radii, sections, types)."""
+    p0, p1, radii, sections, types = [np.empty((0, 3))], [np.empty((0, 3))], [np.empty((0, 2))], [np.empty(0, int)], [np.empty(0, int)]
     for section in morphology.iter():
         points = np.asarray(section.points, dtype=np.float64)
         ends = np.asarray(section.diameters, dtype=np.float64) / 2
@@ -42,21 +34,28 @@ def from_morphio(morphology):
         radii.append(np.stack([ends[:-1], ends[1:]], 1))
         sections.append(np.full(len(points) - 1, section.id))
         types.append(np.full(len(points) - 1, int(section.type)))
+    return tuple(map(np.concatenate, (p0, p1, radii, sections, types)))
+
+
+def from_morphio(morphology):
+    """A scene of a morphio.Morphology, in its units (micrometres): shapes "soma" (spheres) and "neurites" (tapered capsules, one a
+    segment), coloured by type as files of neurons are.
+
+    A soma of one point or three is a sphere, an outline the sphere of its mean distance, a chain of cylinders a sphere a point.
+    scene.info: "section" and "type" of each capsule of the neurites. Segments of no radius at both ends are left out.
+    """
     scene = Scene()
-    centers, balls = _soma(morphology.soma)
+    centers, balls = soma_of(morphology.soma)
     shown = balls > 0
     if shown.any():
-        scene.add_spheres(centers[shown], balls[shown], color=_COLORS[1], name="soma")
-    if p0:
-        radii = np.concatenate(radii)
-        kept = radii.max(axis=1) > 0
-        types, sections = np.concatenate(types)[kept], np.concatenate(sections)[kept]
-        kinds, which = np.unique(types, return_inverse=True)
-        colors = np.array([_COLORS.get(int(kind), _OTHER) for kind in kinds])
-        if kept.any():
-            scene.add_capsules(np.concatenate(p0)[kept], np.concatenate(p1)[kept], radii[kept], color=colors[which],
-                               material=materials.diffuse(), name="neurites")
-            scene.info.update(section=sections, type=types)
+        scene.add_spheres(centers[shown], balls[shown], color=TYPE_COLORS[1], name="soma")
+    p0, p1, radii, sections, types = neurites(morphology)
+    kept = radii.max(axis=1) > 0
+    if kept.any():
+        kinds, which = np.unique(types[kept], return_inverse=True)
+        colors = np.array([TYPE_COLORS.get(int(kind), OTHER_COLOR) for kind in kinds])
+        scene.add_capsules(p0[kept], p1[kept], radii[kept], color=colors[which], material=materials.diffuse(), name="neurites")
+        scene.info.update(section=sections[kept], type=types[kept])
     if not scene.shapes:
         raise InputError("the morphology has nothing to show")
     return scene

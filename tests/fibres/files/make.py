@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Writes the files beside it by other programs: scalars.trk (nibabel), scalars.trx (trx-python), scalars.vtk and old.vtk (VTK).
+"""Writes the files beside it by other programs: scalars.trk (nibabel), scalars.trx (trx-python), scalars.vtk, old.vtk and all .vtp (VTK).
 
 usage: make.py    needs the packages nibabel, trx-python and vtk of the package index
 
@@ -77,7 +77,26 @@ def vtk_file(name, version, is_binary):
     writer.Write()
 
 
+def vtp_file(name, mode, *settings, pieces=1):
+    writer = vtk.vtkXMLPolyDataWriter()
+    writer.SetFileName(str(HERE / name))
+    writer.SetInputData(polydata())
+    getattr(writer, f"SetDataModeTo{mode}")()
+    writer.SetNumberOfPieces(pieces)
+    for setting in settings:
+        setting(writer)
+    writer.Write()
+
+
 trk()
 trx()
 vtk_file("scalars.vtk", vtk.vtkPolyDataWriter.VTK_LEGACY_READER_VERSION_5_1, True)
 vtk_file("old.vtk", vtk.vtkPolyDataWriter.VTK_LEGACY_READER_VERSION_4_2, False)
+vtp_file("text.vtp", "Ascii")
+vtp_file("packed.vtp", "Binary", lambda w: w.SetCompressorTypeToZLib(), lambda w: w.SetHeaderTypeToUInt32())
+vtp_file("plain.vtp", "Binary", lambda w: w.SetCompressorTypeToNone(), lambda w: w.SetHeaderTypeToUInt64())
+vtp_file("appended.vtp", "Appended", lambda w: w.SetCompressorTypeToZLib(), lambda w: w.SetBlockSize(48))
+vtp_file("raw.vtp", "Appended", lambda w: w.SetCompressorTypeToNone(), lambda w: w.EncodeAppendedDataOff())
+vtp_file("raw_packed.vtp", "Appended", lambda w: w.SetCompressorTypeToZLib(), lambda w: w.EncodeAppendedDataOff(), lambda w: w.SetHeaderTypeToUInt64())
+vtp_file("big.vtp", "Appended", lambda w: w.SetCompressorTypeToZLib(), lambda w: w.SetByteOrderToBigEndian())
+vtp_file("pieces.vtp", "Appended", lambda w: w.SetCompressorTypeToNone(), pieces=2)
