@@ -26,7 +26,7 @@ seeds() {
 dictionary() {
   local kind=${1#fuzz_} to=$folder/seeds/$1.dict
   local words=("$root/tests/fuzz/words/all" "$root/tests/fuzz/words/$kind")
-  case $kind in 3mf | mjcf | urdf) words+=("$root/tests/fuzz/words/xml") ;; esac
+  case $kind in 3mf | dae | embree | mjcf | urdf | vtp) words+=("$root/tests/fuzz/words/xml") ;; esac
   mkdir -p "$folder/seeds"
   {
     # Literals that are one word, or a list of words between blanks.

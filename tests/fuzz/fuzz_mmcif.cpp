@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Any bytes as a molecule of the format mmcif.
+// Any bytes as a molecule of the format mmcif, and as a crystal whose whole cell is drawn.
 #include "import/detail/importers.h"
 #include "importer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return caplet::test::fuzz_importer(caplet::import_mmcif, data, size);
+  caplet::test::fuzz_importer(caplet::import_mmcif, data, size);
+  return caplet::test::fuzz_importer(caplet::import_mmcif, data, size, {{{"assembly", "cell"}}});
 }

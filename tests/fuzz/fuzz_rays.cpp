@@ -14,8 +14,9 @@ constexpr std::size_t piece = 7;  // rays read at a time
 void read_text(const std::filesystem::path& path) {
   caplet::RayFile file(path);
   for (;;) {
-    const std::vector<caplet::RayNumbers> rays = file.next(piece);
-    for (const caplet::RayNumbers& ray : rays) {
+    const std::vector<caplet::ListedRay> rays = file.next(piece);
+    for (const auto& [ray, t_min, t_max] : rays) {
+      require(t_min >= 0 && t_max > t_min);
       for (const float number : ray) require(std::abs(number) <= caplet::largest_ray_number);
       const float squared = ray[3] * ray[3] + ray[4] * ray[4] + ray[5] * ray[5];
       require(squared > 0 && std::isfinite(squared));
@@ -25,10 +26,11 @@ void read_text(const std::filesystem::path& path) {
 }
 
 void read_array(const std::filesystem::path& path) {
-  caplet::NpyReader file(path, 6);
+  caplet::NpyReader file(path, {6, 8});
+  const std::size_t columns = file.columns();
   std::vector<double> numbers;
-  for (std::uint64_t left = file.rows(); left > 0; left -= numbers.size() / 6) {
-    numbers.resize(6 * std::min<std::uint64_t>(left, piece));
+  for (std::uint64_t left = file.rows(); left > 0; left -= numbers.size() / columns) {
+    numbers.resize(columns * std::min<std::uint64_t>(left, piece));
     file.read(numbers);
   }
 }
