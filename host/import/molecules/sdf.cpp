@@ -27,7 +27,8 @@ class Reader {
     const std::uint32_t wanted = options_.number("model", 1);
     skip_records(wanted);
     if (trimmed(text_).starts_with('<'))
-      throw InputError({path_, 1, 0}, "is XML: simulators' SDFormat is not read, which has the same ending as molecules' SD files");
+      throw InputError({path_, 1, 0},
+                       "is XML: simulators' SDFormat is not read, which has the same ending as molecules' SD files");
     out_.chains = {""};
     out_.name = std::string(trimmed(line()));
     line();  // program and date
