@@ -330,6 +330,12 @@ class DaeReader {
 
   // --- Nodes ---
 
+  /// The first rows of a matrix, of numbers row by row.
+  static void fill_rows(const std::vector<double>& v, int rows, glm::dmat4& m) {
+    std::size_t at = 0;
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < 4; ++column) m[column][row] = v[at++];
+  }
   glm::dmat4 transform_of(pugi::xml_node node) {
     glm::dmat4 out(1);
     for (const pugi::xml_node part : node.children()) {
@@ -340,8 +346,7 @@ class DaeReader {
       if (kind == "matrix") {
         const std::vector<double> v = values(16);
         glm::dmat4 m(1);
-        for (int row = 0; row < 4; ++row)
-          for (int column = 0; column < 4; ++column) m[column][row] = v[static_cast<std::size_t>(4 * row + column)];
+        fill_rows(v, 4, m);
         if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) fail(part, "the last row of a matrix is not 0 0 0 1");
         out = out * m;
       } else if (kind == "translate") {
@@ -390,8 +395,7 @@ class DaeReader {
         glm::dmat4 bound(1);
         if (const pugi::xml_node shape = skin.child("bind_shape_matrix")) {
           const std::vector<double> v = numbers_of(shape.child_value(), 16, 16, file_.place(shape), shape.name());
-          for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column) bound[column][row] = v[static_cast<std::size_t>(4 * row + column)];
+          fill_rows(v, 3, bound);
         }
         place_geometry(target(skin, "geometry", "source"), child, here * bound, name);
       }
