@@ -295,7 +295,8 @@ double mean_of(const EnvironmentImage& image) {
   double sum = 0, weight = 0;
   const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    const double across = std::sin(std::numbers::pi * (static_cast<double>(i / 3 / width) + 0.5) / image.height);
+    const std::size_t row = i / 3 / width;
+    const double across = std::sin(std::numbers::pi * (static_cast<double>(row) + 0.5) / image.height);
     sum += across * static_cast<double>(image.rgb[i]);
     weight += across;
   }
