@@ -7,6 +7,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <map>
@@ -192,6 +193,11 @@ Pixels around(const Cube& cube, int height);
 /// rows from below by that around z; `width` columns.
 Pixels by_angles(const Cube& cube, int width);
 std::shared_ptr<const TextureImage> texture_image(const Pixels& pixels);
+
+/// A skin as a mesh, where the bodies that it goes with are (`body`: one's place by its name, or none). Where one is not there,
+/// of a model that is attached in part (not `is_whole`), nothing is drawn.
+void read_skin(const Model& model, pugi::xml_node node, const std::function<const glm::dmat4*(const std::string&)>& body,
+               bool is_whole, Robot& robot, Assets& assets);
 
 /// Everything of a model's bodies, in the pose.
 void read_bodies(const Model& model, const Pose& pose, Robot& robot, Assets& assets);

@@ -100,7 +100,7 @@ class Reader {
   void read() {
     const Scope scope{&model_, model_.root_class(), {}, {}, 0};
     const std::vector<pugi::xml_node> worlds = model_.sections("worldbody");
-    bodies_["world"] = glm::dvec3(0);
+    bodies_["world"] = glm::dmat4(1);
     contents(worlds, scope, glm::dmat4(1));
     values_.finish();
     if (robot_.geoms.empty())
@@ -109,6 +109,8 @@ class Reader {
     for (const auto& [camera, target] : watching_) look(robot_.cameras[camera].world, target);
     tendons(scope);
     for (const Scope& other : attached_) tendons(other);
+    skins(scope);
+    for (const Scope& other : attached_) skins(other);
   }
 
  private:
@@ -250,7 +252,7 @@ class Reader {
       const std::string_view kind = child.name();
       if (kind == "freejoint" || kind == "joint") joint(child, at, frame, world);
     });
-    bodies_.try_emplace(scope.name(node.attribute("name").value()), glm::dvec3(world[3]));
+    bodies_.try_emplace(scope.name(node.attribute("name").value()), world);
     contents({node}, scope, world);
   }
 
@@ -442,7 +444,9 @@ class Reader {
 
   void aim(glm::dvec3& direction, const glm::dvec3& from, const std::string& target) const {
     const auto body = bodies_.find(target);
-    if (body != bodies_.end() && glm::length(body->second - from) > 1e-9) direction = glm::normalize(body->second - from);
+    if (body == bodies_.end()) return;
+    const glm::dvec3 way = glm::dvec3(body->second[3]) - from;
+    if (glm::length(way) > 1e-9) direction = glm::normalize(way);
   }
   void look(glm::dmat4& world, const std::string& target) const {
     glm::dvec3 forward = -glm::dvec3(world[2]);
@@ -453,7 +457,22 @@ class Reader {
     world = glm::dmat4({x, 0}, {glm::cross(x, forward), 0}, {-forward, 0}, world[3]);
   }
 
-  // --- Tendons ---
+  // --- Skins and tendons ---
+
+  void skins(const Scope& scope) {
+    const Model& model = *scope.model;
+    const auto draw = [&](pugi::xml_node node) {
+      if (std::string_view(node.name()) == "flex") Diagnostics().warning(model.place(node), "<flex> is left out: it is not read");
+      if (std::string_view(node.name()) != "skin") return;
+      const auto body = [&](const std::string& name) -> const glm::dmat4* {
+        const auto found = bodies_.find(scope.name(name.c_str()));
+        return found == bodies_.end() ? nullptr : &found->second;
+      };
+      read_skin(model, node, body, &model == &model_, robot_, assets_);
+    };
+    for (const char* section : {"asset", "deformable"})
+      for (const pugi::xml_node of : model.sections(section)) model.each(of, draw);
+  }
 
   /// Those that go straight from site to site, as capsules.
   void tendons(const Scope& scope) {
@@ -510,7 +529,8 @@ class Reader {
   Robot& robot_;
   Assets& assets_;
   std::size_t elements_ = 0, geoms_ = 0;
-  std::map<std::string, glm::dvec3> bodies_, sites_;
+  std::map<std::string, glm::dmat4> bodies_;
+  std::map<std::string, glm::dvec3> sites_;
   std::map<std::string, std::size_t> named_;
   std::set<std::pair<const void*, std::string>> used_;
   std::vector<Scope> attached_;
