@@ -110,7 +110,7 @@ class SkinFile {
 /// What stands in the model itself.
 Skin written_skin(const Model& model, const Element& of) {
   const auto numbers = [](const Element& from, const char* name, std::size_t of_each) {
-    const std::vector<double> v = numbers_of(from.text(name), 0, kMany, from.where(), name);
+    std::vector<double> v = numbers_of(from.text(name), 0, kMany, from.where(), name);
     if (v.size() % of_each != 0) from.fail(fmt::format("{}: a multiple of {} numbers is needed", name, of_each));
     return v;
   };
