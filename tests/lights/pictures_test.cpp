@@ -270,8 +270,8 @@ TEST(TexturedArea, OfAlphaZeroShinesUnseen) {
   }
 }
 
-// Each point of an unseen tube that shines to both sides gives light, through the near side too. The sum over z and phi of the cosines
-// over the squared distance is exact to 1e-6 by the midpoint rule of 2,000 by 400 points.
+// Each point of an unseen tube that shines to both sides gives light, through the near side too. The sum over z and phi of the
+// cosines over the squared distance is exact to 1e-6 by the midpoint rule of 2,000 by 400 points.
 TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
   constexpr double r = 0.3, z_min = -1, z_max = 2;
   const dvec3 p(1, 0.5, 0.25), n(-1, 0, 0);
@@ -298,6 +298,12 @@ TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
     const Estimate found = irradiance(bench, p, n);
     EXPECT_NEAR(found.mean, expected, 4 * found.error);
     EXPECT_LT(found.error, 0.01 * expected);
+    // Shadow rays go to both sides: what lies within the tube shades the far one alone.
+    int near = 0, far = 0;
+    for (const SampledLight& s : bench.sample(p, 20000))
+      if (s.pdf > 0) ++(s.target.x * (p.x - s.target.x) + s.target.y * (p.y - s.target.y) > 0 ? near : far);
+    EXPECT_GT(near, 300);
+    EXPECT_GT(far, 300);
   }
 }
 

@@ -144,6 +144,7 @@ std::vector<Case> cases() {
       {"onesided_pipe_turned", floor + turned + "Scale 1 1 0.5\n" + with(pipe, unseen), beside_it, 2048},
       {"onesided_pipe_both_sides", floor + lamp_both + with(pipe, unseen), beside_it},
       {"onesided_tube_both_sides", floor + lamp_both + with(tube, unseen), beside_it},
+      {"open_tube_both_sides", floor + lamp_both + open_tube, beside_it},
       {"onesided_open_tube_turned", floor + turned + with(open_tube, unseen), beside_it, 2048},
       {"onesided_open_tube_both_sides", floor + lamp_both + with(open_tube, unseen), beside_it, 2048},
       {"onesided_capsule_both_sides", floor + lamp_both + with(capsule, unseen), beside_it},
