@@ -9,7 +9,7 @@
 #ifndef CAPLET_TRACE_SHADOW_CL
 #define CAPLET_TRACE_SHADOW_CL
 
-#include "shared/records.h"
+#include "groups.cl"
 
 // `hit`: the nearest one, or one that is nearer than target.enough. A ray that rounding leads past the light's silhouette meets nothing.
 static inline int shadow_is_free(const HitRecord* hit, ShadowTarget target) {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lower/detail/lights.h"
+#include "lower/detail/emitter.h"
 #include "lower/flat_scene.h"
 
 namespace caplet {

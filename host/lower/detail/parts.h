@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lower/detail/images.h"
-#include "lower/detail/lights.h"
+#include "lower/detail/emitter.h"
 #include "lower/encode.h"
 #include "lower/flat_primitive.h"
 #include "lower/flat_scene.h"
