@@ -150,7 +150,7 @@ TEST(Uv, OfScenes) {
   SceneHit hit;
   const auto expect = [&](std::size_t index, const dvec3& point, const dvec2& expected) {
     hit.index = index;
-    const dvec2 found = witness.uv(hit, point);
+    const dvec2 found = witness.uv(hit, point, {});
     EXPECT_NEAR(found.x, expected.x, 1e-12);
     EXPECT_NEAR(found.y, expected.y, 1e-12);
   };
@@ -158,7 +158,7 @@ TEST(Uv, OfScenes) {
   expect(1, {0.5, 0.25, 0}, {1.5, 1.25});
   expect(2, {0, 0, 6}, {0.25, 0.5});  // its y axis is up, its z axis is -y
   hit.index = 2;
-  EXPECT_NEAR(witness.uv(hit, {0, -1, 5}).y, 1, 1e-12);
+  EXPECT_NEAR(witness.uv(hit, {0, -1, 5}, {}).y, 1, 1e-12);
 }
 
 }  // namespace

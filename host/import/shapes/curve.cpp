@@ -117,7 +117,7 @@ CapsulesShape make_curve(Parameters& parameters) {
     const Cubic cubic = bezier ? of_bezier(points, i, order) : of_b_spline(points, i, order);
     const CubicTube tube = tube_of(cubic, radius(i), radius(i + 1));
     if (i == 0) out.start(tube[0]);
-    out.add(tube, tolerance);
+    out.add(tube, tolerance, 0, 1);  // pbrt-v4 makes a curve of each cubic
   }
   if (widths[0] == widths[1]) chain.radius1.clear();
   return chain;
