@@ -51,7 +51,10 @@ CapsulesShape ring() {
 // Rays towards the ring's centre, from outside, meet a chord's tube at a distance of h + r from the middle of the chord's plane, or a ball
 // at a joint, where u is the joint's.
 TEST(Chains, UOfARingIsThatOfItsChordsAndJoints) {
-  const FlatScene scene = lower_shapes({shape_of(ring())});
+  // Behind other shapes, of which one has numbers in the same list.
+  CapsulesShape before;
+  push(before, {0, 0, 50}, {0, 0, 51}, 0.1, 0.1, 8, 9);
+  const FlatScene scene = lower_shapes({shape_of(SphereShape{0.1}), shape_of(before), shape_of(ring())});
   EXPECT_TRUE(scene.has_chains);
   std::vector<RayRecord> rays;
   std::vector<double> expected;
@@ -237,18 +240,20 @@ TEST(Chains, UvBelongToTheirOwnSpace) {
 }
 
 TEST(Chains, OperandsOfCsgKeepTheirU) {
-  CapsulesShape first, second;
+  CapsulesShape first, second, third;
   push(first, {-1, 0, 0}, {1, 0, 0}, 0.2, 0.2, 0, 1);
+  push(third, {-1, -3, 0}, {1, -3, 0}, 0.2, 0.2, 10, 20);
   push(second, {0, -1, 0}, {0, 1, 0}, 0.2, 0.1, 5, 7);
   CapsulesShape without{{{0, 0, -1}}, {{0, 0, 1}}, {0.15f}, {}, {}};
   const auto operand = [](Geometry geometry, const dmat4& m = dmat4(1)) { return std::make_shared<const Shape>(shape_of(std::move(geometry), m)); };
   // A capsule without u, of the same kind as the first, and the second squeezed: it is placed in a space of its own.
   const CsgShape csg{CsgShape::Operation::set_union,
-                     {operand(without), operand(first), operand(second, glm::scale(dmat4(1), dvec3(1, 1, 0.5)))}};
+                     {operand(without), operand(first), operand(second, glm::scale(dmat4(1), dvec3(1, 1, 0.5))), operand(third)}};
   const FlatScene scene = lower_shapes({shape_of(csg)});
   EXPECT_TRUE(scene.has_chains);
   const std::vector<SceneHit> hits =
-      trace(scene, {ray_of({0.5, 0.1, 3}, {0, 0, -1}), ray_of({0.05, 0.5, 3}, {0, 0, -1}), ray_of({3, 0, 0.7}, {-1, 0, 0})});
+      trace(scene, {ray_of({0.5, 0.1, 3}, {0, 0, -1}), ray_of({0.05, 0.5, 3}, {0, 0, -1}), ray_of({3, 0, 0.7}, {-1, 0, 0}),
+                    ray_of({0.5, -3, 3}, {0, 0, -1})});
   for (const SceneHit& hit : hits) ASSERT_EQ(hit.found, 1u);
   EXPECT_EQ(hits[0].surface, 1u);
   EXPECT_NEAR(hits[0].u, 0.75, 1e-6);
@@ -260,6 +265,7 @@ TEST(Chains, OperandsOfCsgKeepTheirU) {
   EXPECT_NEAR(hits[1].v, 0.5 + 0.05 / (2 * across), 1e-5);
   EXPECT_EQ(hits[2].surface, 0u);  // around z, from +x
   EXPECT_NEAR(hits[2].u, 0, 1e-6);
+  EXPECT_NEAR(hits[3].u, 17.5, 1e-5);  // in a row with the first
 }
 
 // A ball has u of p0; one that holds the other, that of its end.
