@@ -60,7 +60,8 @@ Shape random_capsules(Random& random, std::size_t count, double reach) {
   for (std::size_t i = 0; i < count; ++i) {
     if (i % 4 != 3) last = random_capsule(random, reach);
     add(capsules, last, static_cast<std::uint32_t>(i % 3));
-    capsules.u.emplace_back(random.uniform(0, 1), random.uniform(0, 2));
+    const double u0 = random.uniform(0, 1), u1 = random.uniform(0, 2);
+    capsules.u.emplace_back(u0, u1);
   }
   Shape shape;
   shape.geometry = std::move(capsules);

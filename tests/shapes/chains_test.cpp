@@ -64,6 +64,9 @@ TEST(Chains, UOfARingIsThatOfItsChordsAndJoints) {
     const double angle = 2 * pi * (i + 0.5) / steps, width = 2 * pi / chords;
     const int chord = static_cast<int>(angle / width);
     const double along = std::tan(angle - (chord + 0.5) * width) * (std::cos(width / 2) + tube), half = std::sin(width / 2);
+    // Where the ball of the next chord rises above the tube by less than rounding, some 8 eps of 3, either is met: x^2 / (2 r) for a way x.
+    // Where the ring closes, u is 0 and 1.
+    if (std::abs(std::abs(along) - half) < 6e-4 || (std::abs(along) > half && std::abs(angle - pi) > 3)) continue;
     joints += std::abs(along) > half;
     expected.push_back((chord + std::clamp(0.5 + along / (2 * half), 0.0, 1.0)) / chords);
     rays.push_back(ray_of(dvec3(3 * std::cos(angle), 3 * std::sin(angle), 0), -dvec3(std::cos(angle), std::sin(angle), 0)));
@@ -126,7 +129,7 @@ TEST(Chains, UvOfAStraightTubeAreThoseOfPbrtsCurve) {
   std::vector<RayRecord> rays;
   for (int i = 0; i < 4000; ++i) {
     const dvec3 from = 4.0 * glm::normalize(dvec3(normal(random), normal(random), normal(random)));
-    const dvec3 to = begin + (0.3 + 2.4 * uniform(random)) * axis + 0.19 * glm::normalize(glm::cross(axis, from));
+    const dvec3 to = begin + (0.3 + 2.4 * uniform(random)) * axis + 0.19 * (2 * uniform(random) - 1) * glm::normalize(glm::cross(axis, from));
     rays.push_back(ray_of(from, (to - from) * (0.1 + uniform(random))));
   }
   const FlatScene flat = lower_shapes({shape_of(chain)});
@@ -212,6 +215,9 @@ void expect_same_uv(const Scene& moved, const dmat4& world_from_chain, unsigned 
       continue;
     const dvec3 axis = glm::normalize(vec(a[i].dpdu));
     if (glm::length(glm::cross(d, axis)) < 0.1) continue;
+    // Balls at joints belong to both chords, which have the same u there; v and dp/du are those of either.
+    const double of_chord = double(a[i].u) * chords;
+    if (std::abs(of_chord - std::round(of_chord)) < 1e-3) continue;
     ++met;
     EXPECT_NEAR(a[i].u, b[i].u, 1e-4) << i;
     EXPECT_NEAR(a[i].v, b[i].v, 2e-3) << i;

@@ -124,7 +124,9 @@ CapsulesShape drawn(std::type_identity<CapsulesShape>, Draws& draws) {
     out.p1.push_back(draws.one_in(6) ? out.p0.back() : draws.point());
     out.radius0.push_back(static_cast<float>(draws.thin()));
     out.radius1.push_back(draws.one_in(2) ? out.radius0.back() : static_cast<float>(draws.thin()));
-    if (draws.sort == 1) out.u.emplace_back(draws.uniform(-1, 2), draws.one_in(6) ? 1 : draws.uniform(-1, 2));
+    if (draws.sort == 0) continue;
+    const double u0 = draws.uniform(-1, 2), u1 = draws.one_in(6) ? u0 : draws.uniform(-1, 2);
+    out.u.emplace_back(u0, u1);
   }
   return out;
 }
