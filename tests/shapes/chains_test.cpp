@@ -259,7 +259,7 @@ TEST(Chains, OperandsOfCsgKeepTheirU) {
   EXPECT_TRUE(scene.has_chains);
   const std::vector<SceneHit> hits =
       trace(scene, {ray_of({0.5, 0.1, 3}, {0, 0, -1}), ray_of({0.05, 0.5, 3}, {0, 0, -1}), ray_of({3, 0, 0.7}, {-1, 0, 0}),
-                    ray_of({0.5, -3, 3}, {0, 0, -1})});
+                    ray_of({0.5, -3, 3}, {0, 0, -1}), ray_of({-1.47, 0.5, 3}, {0.5, 0, -1})});
   for (const SceneHit& hit : hits) ASSERT_EQ(hit.found, 1u);
   EXPECT_EQ(hits[0].surface, 1u);
   EXPECT_NEAR(hits[0].u, 0.75, 1e-6);
@@ -272,6 +272,9 @@ TEST(Chains, OperandsOfCsgKeepTheirU) {
   EXPECT_EQ(hits[2].surface, 0u);  // around z, from +x
   EXPECT_NEAR(hits[2].u, 0, 1e-6);
   EXPECT_NEAR(hits[3].u, 17.5, 1e-5);  // in a row with the first
+  // Slanted, in the operand's own space twice as steep.
+  EXPECT_EQ(hits[4].surface, 2u);
+  EXPECT_NEAR(hits[4].v, v_of_pbrt({-1.47, 0.5, 6}, {0.5, 0, -2}, {0, 0, 0}, {0, 1, 0}, across), 1e-5);
 }
 
 // A ball has u of p0; one that holds the other, that of its end.
