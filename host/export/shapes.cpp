@@ -142,7 +142,8 @@ struct GeometryWriter {
     return out;
   }
   static void chain(Statement& to, const CapsulesShape& of) {
-    to.list("float", "u", 2 * of.u.size(), [&of](Text& text, std::size_t i) { text << (i % 2 == 0 ? of.u[i / 2].x : of.u[i / 2].y); });
+    to.list("float", "u", 2 * of.u.size(),
+            [&of](Text& text, std::size_t i) { text << (i % 2 == 0 ? of.u[i / 2].x : of.u[i / 2].y); });
   }
   template <class Part>
   static void part(Statement& to, const Part& of) {

@@ -219,7 +219,8 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::normal, off, allowed, 0x1p-23);
 
   const auto uv_there = [&](const dvec3& there) {
-    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)), ray.direction);
+    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)),
+                       ray.direction);
   };
   const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
   const auto apart_by = [](const dvec2& a, const dvec2& b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };

@@ -142,7 +142,8 @@ TEST(EmbreeCurves, UGoesOverStrands) {
   }
   EXPECT_EQ(lines.u[3], glm::vec2(0, 1));
   // Two strands of two and one curves, by the points at which the curves of each basis go on.
-  for (const auto& [basis, indices] : {std::pair("bezier", "0 3 5"), std::pair("bspline", "0 1 5"), std::pair("catmull_rom", "0 1 5")}) {
+  for (const auto& [basis, indices] :
+       {std::pair("bezier", "0 3 5"), std::pair("bspline", "0 1 5"), std::pair("catmull_rom", "0 1 5")}) {
     const CapsulesShape all = of(basis, indices);
     ASSERT_EQ(all.u.size(), all.p0.size());
     std::vector<float> begins;

@@ -315,7 +315,8 @@ Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
 }
 
 TEST(OurStatements, OneCapsuleOfAChain) {
-  const Scene scene = scene_of(world + "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 1 0] \"float radius\" 0.1 \"float u\" [0.1 0.7]");
+  const Scene scene = scene_of(
+      world + "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 1 0] \"float radius\" 0.1 \"float u\" [0.1 0.7]");
   EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).u, (std::vector<glm::vec2>{{0.1f, 0.7f}}));
   EXPECT_THAT(text_of(scene, "/tmp"), HasSubstr("\"float u\" [0.1 0.7]"));
 }

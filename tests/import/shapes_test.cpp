@@ -476,13 +476,16 @@ TEST(Curves, TypesAreAllRoundTubes) {
 }
 
 TEST(Curves, UGoesOverAllPiecesWhereThatIsAskedFor) {
-  const std::string curve = "Shape \"curve\" \"string urange\" \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 0 0 7 0 0 8 0 0 9 0 0]";
+  const std::string curve =
+      "Shape \"curve\" \"string urange\" \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 0 0 7 0 0 8 0 0 9 0 0]";
   const Scene scene = world_of(curve);
   const auto& chain = geometry_of<CapsulesShape>(scene);
   // Three straight pieces of even speed.
   EXPECT_EQ(chain.u, (std::vector<glm::vec2>{{0, 1.0f / 3}, {1.0f / 3, 2.0f / 3}, {2.0f / 3, 1}}));
-  EXPECT_THAT(complaints("Camera \"perspective\"\nWorldBegin\nShape \"curve\" \"string urange\" \"all\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]"),
-              testing::ElementsAre(testing::HasSubstr("\"urange\" must be \"piece\" or \"curve\", not \"all\"")));
+  EXPECT_THAT(
+      complaints(
+          "Camera \"perspective\"\nWorldBegin\nShape \"curve\" \"string urange\" \"all\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]"),
+      testing::ElementsAre(testing::HasSubstr("\"urange\" must be \"piece\" or \"curve\", not \"all\"")));
 }
 
 TEST(Curves, OfOnePointAreSpheres) {

@@ -133,8 +133,7 @@ Program& program_of(const Device& device, const RowMasks& rows, const FlatScene&
   const auto found = built.find({rows, options});
   if (found != built.end()) return found->second;
   return built
-      .emplace(std::pair(rows, options),
-               Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows), options))
+      .emplace(std::pair(rows, options), Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows), options))
       .first->second;
 }
 

@@ -222,7 +222,8 @@ TEST(TexturedArea, IsItsImageOverUv) {
 // Over a capsule of a chain the image lies as over pbrt's curve: u from end to end, v by where the ray passes the axis.
 TEST(TexturedArea, OfAChainIsItsImageAlongIt) {
   constexpr double r = 0.3, height = 0.6;
-  CapsulesShape capsule{{{-1, 0, static_cast<float>(height)}}, {{1, 0, static_cast<float>(height)}}, {static_cast<float>(r)}, {}, {}, {{0, 1}}};
+  CapsulesShape capsule{
+      {{-1, 0, static_cast<float>(height)}}, {{1, 0, static_cast<float>(height)}}, {static_cast<float>(r)}, {}, {}, {{0, 1}}};
   Shape shape;
   shape.geometry = capsule;
   shape.emission = AreaEmission{};

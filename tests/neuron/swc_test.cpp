@@ -190,8 +190,8 @@ TEST(SwcSegments, UIsTheLengthAlongEachBranch) {
     }
   };
   // From the soma 2, 1 and 3 long to a fork; from there 1, and 1 and 2.
-  const CapsulesShape capsules = capsules_of(
-      import_text("1 1 0 0 0 1 -1\n2 3 2 0 0 .2 1\n3 3 3 0 0 .2 2\n4 3 6 0 0 .2 3\n5 3 6 1 0 .2 4\n6 3 7 0 0 .2 4\n7 3 9 0 0 .2 6\n"));
+  const CapsulesShape capsules = capsules_of(import_text(
+      "1 1 0 0 0 1 -1\n2 3 2 0 0 .2 1\n3 3 3 0 0 .2 2\n4 3 6 0 0 .2 3\n5 3 6 1 0 .2 4\n6 3 7 0 0 .2 4\n7 3 9 0 0 .2 6\n"));
   near(capsules.u, {{0, 1.0F / 3}, {1.0F / 3, 0.5F}, {0.5F, 1}, {0, 1}, {0, 1.0F / 3}, {1.0F / 3, 1}});
   EXPECT_EQ(capsules.u[1].x, capsules.u[0].y);
   // A soma of two segments and one neurite that goes on from it, children before parents.

@@ -48,8 +48,8 @@ CapsulesShape ring() {
   return out;
 }
 
-// Rays towards the ring's centre, from outside, meet a chord's tube at a distance of h + r from the middle of the chord's plane, or a ball
-// at a joint, where u is the joint's.
+// Rays towards the ring's centre, from outside, meet a chord's tube at a distance of h + r from the middle of the chord's plane,
+// or a ball at a joint, where u is the joint's.
 TEST(Chains, UOfARingIsThatOfItsChordsAndJoints) {
   // Behind other shapes, of which one has numbers in the same list.
   CapsulesShape before;
@@ -64,8 +64,8 @@ TEST(Chains, UOfARingIsThatOfItsChordsAndJoints) {
     const double angle = 2 * pi * (i + 0.5) / steps, width = 2 * pi / chords;
     const int chord = static_cast<int>(angle / width);
     const double along = std::tan(angle - (chord + 0.5) * width) * (std::cos(width / 2) + tube), half = std::sin(width / 2);
-    // Where the ball of the next chord rises above the tube by less than rounding, some 8 eps of 3, either is met: x^2 / (2 r) for a way x.
-    // Where the ring closes, u is 0 and 1.
+    // Where the ball of the next chord rises above the tube by less than rounding, some 8 eps of 3, either is met: x^2 / (2 r)
+    // for a way x. Where the ring closes, u is 0 and 1.
     if (std::abs(std::abs(along) - half) < 6e-4 || (std::abs(along) > half && std::abs(angle - pi) > 3)) continue;
     joints += std::abs(along) > half;
     expected.push_back((chord + std::clamp(0.5 + along / (2 * half), 0.0, 1.0)) / chords);
@@ -129,7 +129,8 @@ TEST(Chains, UvOfAStraightTubeAreThoseOfPbrtsCurve) {
   std::vector<RayRecord> rays;
   for (int i = 0; i < 4000; ++i) {
     const dvec3 from = 4.0 * glm::normalize(dvec3(normal(random), normal(random), normal(random)));
-    const dvec3 to = begin + (0.3 + 2.4 * uniform(random)) * axis + 0.19 * (2 * uniform(random) - 1) * glm::normalize(glm::cross(axis, from));
+    const dvec3 to =
+        begin + (0.3 + 2.4 * uniform(random)) * axis + 0.19 * (2 * uniform(random) - 1) * glm::normalize(glm::cross(axis, from));
     rays.push_back(ray_of(from, (to - from) * (0.1 + uniform(random))));
   }
   const FlatScene flat = lower_shapes({shape_of(chain)});
@@ -144,8 +145,8 @@ TEST(Chains, UvOfAStraightTubeAreThoseOfPbrtsCurve) {
     ++met;
     // Ends are rounded to floats: by eps of 3 at most over a length of 0.5.
     EXPECT_NEAR(hits[i].u, along / 3, double(hits[i].error) + 8 * eps) << i;
-    // The ray's distance from the axis is off by eps of some 4 to a side, which is 10 of the tube; where it touches the tube, the point's
-    // own distance from the axis counts.
+    // The ray's distance from the axis is off by eps of some 4 to a side, which is 10 of the tube; where it touches the tube, the
+    // point's own distance from the axis counts.
     EXPECT_NEAR(hits[i].v, v_of_pbrt(o, d, begin, axis, 0.2), (double(hits[i].error) + 16 * eps) / 0.2 / sine) << i;
     least = std::min(least, double(hits[i].v));
     most = std::max(most, double(hits[i].v));
@@ -165,7 +166,8 @@ TEST(Chains, DerivativesMatchDifferences) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<RayRecord> rays;
   for (int i = 0; i < 500; ++i) {
-    const dvec3 d = glm::normalize(dvec3(-2, uniform(random), uniform(random))), to(0, 0.35 * uniform(random), 1 + 0.6 * uniform(random));
+    const dvec3 d = glm::normalize(dvec3(-2, uniform(random), uniform(random))),
+                to(0, 0.35 * uniform(random), 1 + 0.6 * uniform(random));
     for (const dvec3& by : {dvec3(0), dvec3(0, h, 0), dvec3(0, 0, h)}) rays.push_back(ray_of(to - 2.0 * d + by, d));
   }
   const std::vector<SceneHit> hits = trace(flat, rays);
@@ -175,8 +177,8 @@ TEST(Chains, DerivativesMatchDifferences) {
       ASSERT_TRUE(a.found == 1 && b.found == 1);
       const double du = double(b.u) - double(a.u), dv = double(b.v) - double(a.v);
       const dvec3 moved = vec(b.p) - vec(a.p), predicted = du * vec(a.dpdu) + dv * vec(a.dpdv);
-      // A way of w along the tube of radius r, seen under the cosine c, bends away from its tangent by w^2 / (2 r), and v by as much more as
-      // the cosine changes: w^2 / (2 r c).
+      // A way of w along the tube of radius r, seen under the cosine c, bends away from its tangent by w^2 / (2 r), and v by as
+      // much more as the cosine changes: w^2 / (2 r c).
       const double way = glm::length(moved), cosine = std::abs(glm::dot(vec(a.ng), direction(rays[i])));
       EXPECT_LE(glm::length(moved - predicted), way * way / (0.3 * cosine) + 1e-5) << i << " " << k;
       EXPECT_GT(way, 0.9 * h);
@@ -204,14 +206,17 @@ void expect_same_uv(const Scene& moved, const dmat4& world_from_chain, unsigned 
   const FlatScene there = lower(moved), here = lower_shapes({shape_of(ring())});
   std::vector<RayRecord> rays = rays_at(dvec3(0), 1.2, 3000, seed), in_world;
   for (const RayRecord& ray : rays)
-    in_world.push_back(ray_of(dvec3(world_from_chain * glm::dvec4(origin(ray), 1)), dvec3(world_from_chain * glm::dvec4(direction(ray), 0))));
+    in_world.push_back(
+        ray_of(dvec3(world_from_chain * glm::dvec4(origin(ray), 1)), dvec3(world_from_chain * glm::dvec4(direction(ray), 0))));
   const std::vector<SceneHit> a = trace(here, rays), b = trace(there, in_world);
   int met = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (a[i].found == 0 || b[i].found == 0) continue;
     const dvec3 d = glm::normalize(direction(rays[i])), n = vec(a[i].ng);
-    // Not where they graze: their points may be far apart there. Rounding of the matrices and rays is some 100 eps of the ring's size.
-    if (std::abs(glm::dot(d, n)) < 0.1 || glm::length(vec(a[i].p) - dvec3(glm::inverse(world_from_chain) * glm::dvec4(vec(b[i].p), 1))) > 1e-4)
+    // Not where they graze: their points may be far apart there. Rounding of the matrices and rays is some 100 eps of the ring's
+    // size.
+    if (std::abs(glm::dot(d, n)) < 0.1 ||
+        glm::length(vec(a[i].p) - dvec3(glm::inverse(world_from_chain) * glm::dvec4(vec(b[i].p), 1))) > 1e-4)
       continue;
     const dvec3 axis = glm::normalize(vec(a[i].dpdu));
     if (glm::length(glm::cross(d, axis)) < 0.1) continue;
@@ -251,7 +256,9 @@ TEST(Chains, OperandsOfCsgKeepTheirU) {
   push(third, {-1, -3, 0}, {1, -3, 0}, 0.2, 0.2, 10, 20);
   push(second, {0, -1, 0}, {0, 1, 0}, 0.2, 0.1, 5, 7);
   CapsulesShape without{{{0, 0, -1}}, {{0, 0, 1}}, {0.15f}, {}, {}};
-  const auto operand = [](Geometry geometry, const dmat4& m = dmat4(1)) { return std::make_shared<const Shape>(shape_of(std::move(geometry), m)); };
+  const auto operand = [](Geometry geometry, const dmat4& m = dmat4(1)) {
+    return std::make_shared<const Shape>(shape_of(std::move(geometry), m));
+  };
   // A capsule without u, of the same kind as the first, and the second squeezed: it is placed in a space of its own.
   const CsgShape csg{CsgShape::Operation::set_union,
                      {operand(without), operand(first), operand(second, glm::scale(dmat4(1), dvec3(1, 1, 0.5))), operand(third)}};
@@ -265,7 +272,8 @@ TEST(Chains, OperandsOfCsgKeepTheirU) {
   EXPECT_NEAR(hits[0].u, 0.75, 1e-6);
   EXPECT_NEAR(hits[0].v, v_of_pbrt({0.5, 0.1, 3}, {0, 0, -1}, {0, 0, 0}, {1, 0, 0}, 0.2), 1e-6);
   EXPECT_EQ(hits[1].surface, 2u);
-  // The ball at s, of radius r = 0.2 - 0.1 s, touches the cone k r further on, k = 0.05: -1 + 2 s + k r = 0.5; r sqrt(1 - k k) from the axis.
+  // The ball at s, of radius r = 0.2 - 0.1 s, touches the cone k r further on, k = 0.05: -1 + 2 s + k r = 0.5; r sqrt(1 - k k)
+  // from the axis.
   const double k = 0.05, s = (1.5 - 0.2 * k) / (2 - 0.1 * k), across = (0.2 - 0.1 * s) * std::sqrt(1 - k * k);
   EXPECT_NEAR(hits[1].u, 5 + 2 * s, 1e-5);
   EXPECT_NEAR(hits[1].v, 0.5 + 0.05 / (2 * across), 1e-5);
@@ -283,8 +291,9 @@ TEST(Chains, OfBalls) {
   push(balls, {0, 0, 0}, {0, 0, 0}, 0.5, 0.5, 0.25, 0.5);
   push(balls, {3, 0, 0}, {3.1, 0, 0}, 0.5, 0.2, 0.25, 0.5);
   push(balls, {6, 0, 0}, {6.1, 0, 0}, 0.2, 0.5, 0.25, 0.5);
-  const std::vector<SceneHit> hits = trace(lower_shapes({shape_of(balls)}), {ray_of({0, 0.2, 3}, {0, 0, -1}), ray_of({3, 0.2, 3}, {0, 0, -1}),
-                                                                             ray_of({6, 0.2, 3}, {0, 0, -1}), ray_of({9, 0, 0.1}, {-1, 0, 0})});
+  const std::vector<SceneHit> hits =
+      trace(lower_shapes({shape_of(balls)}), {ray_of({0, 0.2, 3}, {0, 0, -1}), ray_of({3, 0.2, 3}, {0, 0, -1}),
+                                              ray_of({6, 0.2, 3}, {0, 0, -1}), ray_of({9, 0, 0.1}, {-1, 0, 0})});
   EXPECT_EQ(hits[0].u, 0.25f);
   EXPECT_EQ(hits[1].u, 0.25f);
   EXPECT_EQ(hits[2].u, 0.5f);

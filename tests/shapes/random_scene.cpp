@@ -38,7 +38,11 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
       return SphereShape{r};
     case 1:
       // Of chains, half of them.
-      return CapsulesShape{{a, b}, {b, c}, {0.3f * f, 0.2f * f}, {0.3f * f, 0.4f * f}, {},
+      return CapsulesShape{{a, b},
+                           {b, c},
+                           {0.3f * f, 0.2f * f},
+                           {0.3f * f, 0.4f * f},
+                           {},
                            r < 0.6 ? std::vector<glm::vec2>{} : std::vector<glm::vec2>{{-0.5f, f}, {f, 3}}};
     case 2:
       return TriangleMeshShape{{a, b, c, -a}, {{0, 1, 2}, {1, 2, 3}}, {}, own_uvs(r)};

@@ -25,7 +25,8 @@ std::string from_above(const std::string& world) {
 }
 
 const std::string ramp =
-    "Texture \"ramp\" \"spectrum\" \"bilerp\" \"rgb v00\" [.1 .1 .1] \"rgb v10\" [.5 .5 .5] \"rgb v01\" [.3 .3 .3] \"rgb v11\" [.7 .7 .7]\n"
+    "Texture \"ramp\" \"spectrum\" \"bilerp\" \"rgb v00\" [.1 .1 .1] \"rgb v10\" [.5 .5 .5] \"rgb v01\" [.3 .3 .3] \"rgb v11\" "
+    "[.7 .7 .7]\n"
     "Material \"diffuse\" \"texture reflectance\" \"ramp\"\n";
 
 /// The albedo is 0.1 + 0.4 u + 0.2 v on the curve along x from `begin` to `end`, y = 0, of this width. mirrored: its space is.
@@ -47,10 +48,13 @@ void expect_ramp(const Scene& scene, double begin, double end, double width, boo
 }
 
 TEST(TexturedCurves, AreColouredByPbrtsUAndV) {
-  const std::string straight = ramp + "Shape \"curve\" \"string type\" \"{}\" \"point3 P\" [{} 0 0 {} 0 0 {} 0 0 {} 0 0] \"float width\" .8 {}\n";
+  const std::string straight =
+      ramp + "Shape \"curve\" \"string type\" \"{}\" \"point3 P\" [{} 0 0 {} 0 0 {} 0 0 {} 0 0] \"float width\" .8 {}\n";
   for (const char* more : {"", "\"integer splitdepth\" 5"}) {
-    expect_ramp(scene_of_text(from_above(fmt::format(fmt::runtime(straight), "flat", -1, -1 / 3.0, 1 / 3.0, 1, more))), -1, 1, 0.8);
-    expect_ramp(scene_of_text(from_above(fmt::format(fmt::runtime(straight), "cylinder", 1, 1 / 3.0, -1 / 3.0, -1, more))), 1, -1, 0.8);
+    expect_ramp(scene_of_text(from_above(fmt::format(fmt::runtime(straight), "flat", -1, -1 / 3.0, 1 / 3.0, 1, more))), -1, 1,
+                0.8);
+    expect_ramp(scene_of_text(from_above(fmt::format(fmt::runtime(straight), "cylinder", 1, 1 / 3.0, -1 / 3.0, -1, more))), 1, -1,
+                0.8);
   }
 }
 
@@ -59,7 +63,9 @@ TEST(TexturedCurves, OfInstancesKeepTheirOwn) {
   const std::string object =
       ramp + "ObjectBegin \"o\"\nShape \"curve\" \"point3 P\" [0 -3 0 0 -1 0 0 1 0 0 3 0] \"float width\" .4\nObjectEnd\n";
   // The curve's +y goes to +x; its own x to +y or -y. From above a ray runs down in it as well.
-  const auto placed = [&](const char* matrix) { return scene_of_text(from_above(object + "Transform [" + matrix + "]\nObjectInstance \"o\"\n")); };
+  const auto placed = [&](const char* matrix) {
+    return scene_of_text(from_above(object + "Transform [" + matrix + "]\nObjectInstance \"o\"\n"));
+  };
   // y -> x / 3, x -> -2 y (a rotation and a stretch): the world's ends -1 and 1, width 0.8.
   expect_ramp(placed("0 -2 0 0  0.333333333 0 0 0  0 0 1 0  0 0 0 1"), -1, 1, 0.8);
   expect_ramp(placed("0 2 0 0  0.333333333 0 0 0  0 0 1 0  0 0 0 1"), -1, 1, 0.8, true);
@@ -70,7 +76,9 @@ TEST(TexturedCurves, OfInstancesKeepTheirOwn) {
 
 // A glowing curve seen directly: its image over u and v.
 TEST(TexturedCurves, GlowAlongThem) {
-  Scene scene = scene_of_text(from_above("Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nAreaLightSource \"diffuse\"\nShape \"curve\" \"point3 P\" [-1 0 0 -.333333 0 0 .333333 0 0 1 0 0] \"float width\" .8\n"));
+  Scene scene =
+      scene_of_text(from_above("Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nAreaLightSource \"diffuse\"\nShape \"curve\" "
+                               "\"point3 P\" [-1 0 0 -.333333 0 0 .333333 0 0 1 0 0] \"float width\" .8\n"));
   auto image = std::make_shared<EnvironmentImage>();
   image->width = 2;
   image->height = 1;
@@ -101,7 +109,8 @@ TEST(TexturedCurves, LetRaysThroughAlongThem) {
   }
 }
 
-// Hair lies along its chain as along a capsule: the same light comes from it, and another where u, and with it the scales, runs back.
+// Hair lies along its chain as along a capsule: the same light comes from it, and another where u, and with it the scales, runs
+// back.
 TEST(TexturedCurves, OfHairLieAlongThem) {
   const auto mean = [](const std::string& u) {
     const Scene scene = scene_of_text(

@@ -199,7 +199,8 @@ class CurveSet {
     chain.start(c[0]);
     chain.add(c, std::max(2e-3 * widest, 1e-5 * glm::length(high - low)), u0, u0 + 1);
     for (std::size_t i = 0; i < chords.p0.size(); ++i)
-      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]), chords.u[i]);
+      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]),
+              chords.u[i]);
   }
 
   /// Bits of flags: a neighbour at the first, and at the second end, where there is no cap then.

@@ -60,7 +60,8 @@ std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules) {
   if (!given) return {};
   const std::vector<double>& numbers = given->numbers;
   if (numbers.size() != 2 * capsules) {
-    parameters.error("u", "takes two values a capsule, " + std::to_string(2 * capsules) + ", not " + std::to_string(numbers.size()));
+    parameters.error("u",
+                     "takes two values a capsule, " + std::to_string(2 * capsules) + ", not " + std::to_string(numbers.size()));
     return {};
   }
   std::vector<glm::vec2> out;

@@ -152,7 +152,8 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
   out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
   out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
-  if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry); capsules && !capsules->u.empty()) out.u = capsules->u[0];
+  if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry); capsules && !capsules->u.empty())
+    out.u = capsules->u[0];
   out.grown = grown_by(out.flat, error, leaves);
   out.error = error * scale;
   out.surface = solid.surface_begin | (solid.subtracted ? CAPLET_CSG_SUBTRACTED : 0u);

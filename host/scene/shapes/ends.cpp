@@ -104,7 +104,8 @@ void check(const CapsulesShape& capsules, ShapeCheck& report) {
     if (!is_finite(capsules.p0[i]) || !is_finite(capsules.p1[i]) || !std::isfinite(r0) || !std::isfinite(r1))
       return report.error(capsule() + " is not finite");
     if (r0 < 0 || r1 < 0) return report.error(capsule() + " has a negative radius");
-    if (!capsules.u.empty() && !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f && std::abs(capsules.u[i].y) <= 1e18f))
+    if (!capsules.u.empty() &&
+        !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f && std::abs(capsules.u[i].y) <= 1e18f))
       return report.error(capsule() + "'s u is not finite or beyond 1e18");
     if (!capsules.materials.empty() && capsules.materials[i] >= report.materials())
       return report.error(capsule() + " has a material that does not exist");
