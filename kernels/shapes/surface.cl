@@ -53,10 +53,13 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
+  // u at both ends of a capsule of a chain.
+  __global const float* chain_u = 0;
+  if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
+    chain_u = surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin);
   const SurfaceQuery query = {
       surfaces, tree->leaves, &geometry, primitive, surface, lane_data(tree->leaves, hit->slot), o + hit->t * d,
-      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0, d,
-      any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN) ? surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin) : 0};
+      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0, d, chain_u};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;
