@@ -20,11 +20,14 @@ std::vector<glm::vec2> own_uvs(double r) {
 }
 
 void keep_first(CapsulesShape& capsules) {
-  capsules.p0.resize(1);
-  capsules.p1.resize(1);
-  capsules.radius0.resize(1);
-  capsules.radius1.resize(1);
-  if (!capsules.u.empty()) capsules.u.resize(1);
+  const auto keep = [](auto& values) {
+    if (values.size() > 1) values.erase(values.begin() + 1, values.end());
+  };
+  keep(capsules.p0);
+  keep(capsules.p1);
+  keep(capsules.radius0);
+  keep(capsules.radius1);
+  keep(capsules.u);
 }
 
 }  // namespace
