@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "device/forked.h"
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
 #include "library/detail/sessions.h"
@@ -18,6 +19,7 @@ namespace caplet::v0 {
 namespace {
 
 std::vector<caplet::Device> inner(std::span<const Device> devices) {
+  begin_opencl();
   std::vector<caplet::Device> out;
   for (const Device& device : devices) out.push_back(Inside::device(device));
   if (out.empty()) throw InputError("a session needs a device");
@@ -72,6 +74,7 @@ struct Session::Data {
   }
 
   Questions questions() {
+    begin_opencl();
     if (const auto scene = session.scene_on(0); scene != asked) {  // another one, where the first device is gone
       query.emplace(*scene);
       asked = scene;
@@ -96,6 +99,7 @@ Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
 
 void Session::update(const Scene& scene) {
+  begin_opencl();
   Data& d = *data_;
   const Inside::SceneData& now = Inside::data(scene);
   auto next = now.edits.begin();
@@ -122,15 +126,22 @@ void Session::update(const Scene& scene) {
 }
 
 int Session::render(int samples, const RenderOptions& options) {
+  begin_opencl();
   check_range("samples", samples, 1, 1 << 24);
   return static_cast<int>(data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
 }
 
 void Session::cancel() { data_->session.cancel(); }
 
-Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene()); }
+Film Session::film() const {
+  begin_opencl();
+  return data_->runs.film(data_->session, data_->live.scene());
+}
 
-void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
+void Session::resume(const Film& film) {
+  begin_opencl();
+  data_->session.resume(Inside::film(film));
+}
 
 std::optional<Hit> Session::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Session::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
