@@ -5,6 +5,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <set>
 
@@ -23,10 +25,20 @@ struct UnderWay {
 std::atomic<UnderWay*> under_way = new UnderWay;
 std::atomic<int> forks = 0;  // since the process with the first ancestor that has this module
 
+/// Ends the process without what libraries of the parent do at an exit. Some wait there for threads that a child does not have:
+/// log4cplus, which Debian 12's OpenImageIO brings by way of OpenVDB. Python itself has ended before.
+void leave(int status, void*) {
+  std::fflush(nullptr);
+  ::_exit(status);
+}
+
 /// The parent's threads are not here, but may hold the mutex.
 void in_child() {
   ++forks;
   under_way = new UnderWay;
+#ifdef __GLIBC__
+  ::on_exit(leave, nullptr);
+#endif
 }
 
 [[maybe_unused]] const int registered = ::pthread_atfork(nullptr, nullptr, in_child);

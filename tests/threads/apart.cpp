@@ -51,7 +51,7 @@ std::string apart(const std::function<void()>& work, double seconds) {
       const std::string text = error.what();
       ::_exit(::write(ends[1], text.data(), text.size()) < 0 ? 3 : 2);
     }
-    std::exit(0);
+    ::_exit(0);
   }
   const std::string end = end_of(child, seconds);
   std::array<char, 4096> text{};

@@ -4,6 +4,7 @@
 // Processes in which no OpenCL has been used, and what is rendered there.
 #pragma once
 
+#include <caplet/device.h>
 #include <caplet/film.h>
 #include <caplet/scene.h>
 #include <gtest/gtest.h>
@@ -14,8 +15,9 @@
 
 namespace caplet::test {
 
-/// Calls `work` in a forked process, which then ends as programs do, destructors of static objects included. Empty when that goes
-/// well; else what `work` threw, or how the process ended, or that it took more than `seconds`.
+/// Calls `work` in a forked process, which then ends by _exit: at an exit log4cplus, which Debian 12's OpenImageIO brings, waits
+/// for threads that a child does not have. Empty when that goes well; else what `work` threw, or how the process ended, or that
+/// it took more than `seconds`.
 std::string apart(const std::function<void()>& work, double seconds = 120);
 
 /// How a child process ends: empty when it ends by itself with exit code 0. Kills it when it takes more than `seconds`.

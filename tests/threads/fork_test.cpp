@@ -13,7 +13,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -64,7 +63,7 @@ void all_that_need_a_device() {
   require(picker->pixel(12, 8).has_value(), "nothing is there");
   const std::string child = apart(
       [&] {
-        const Ray ray{{0, 0, 9}, 0, {0, 0, -1}, 100};
+        const Ray ray{{0, 0, 9}, {0, 0, -1}};
         Crossing crossing;
         refused("check_process", [] { check_process(); });
         refused("devices", [] { devices(); });
@@ -171,11 +170,11 @@ TEST(Fork, WithinARenderEndsItInTheChild) {
                 std::string said;
                 std::optional<Film> film;
                 try {
-                  film = render(scene, on, {.progress = progress});
+                  film = render(scene, on, {{}, progress});
                 } catch (const RunError& error) {
                   said = error.what();
                 }
-                if (child == 0) std::exit(said.find("spawn") == std::string::npos ? 1 : 0);
+                if (child == 0) ::_exit(said.find("spawn") == std::string::npos ? 1 : 0);
                 require(child > 0 && end_of(child, plenty).empty(), "the child does not end with an error");
                 require(film && equal(*film, alone), "the parent's picture is wrong");
               }),

@@ -100,7 +100,7 @@ TEST(Threads, ShareADeviceAndAScene) {
                           }});
                 require(equal(*one, alone) && equal(*other, alone), "a picture differs from that of one thread");
                 require(hits > 4, "no hits");
-                require(verify(scene, std::vector{on}, {.rays = 1000}).agrees(), "verify disagrees");
+                require(verify(scene, std::vector{on}, {1000, 0, {}}).agrees(), "verify disagrees");
               }),
               "");
 }
@@ -112,7 +112,9 @@ TEST(Threads, CancelASessionAndReadItsFilms) {
                 session.render(1);
                 std::atomic<bool> is_begun = false;
                 int done = 0;
-                together({[&] { done = session.render(1 << 24, {.progress = [&](const RenderProgress&) { is_begun = true; }}); },
+                together({[&] {
+                            done = session.render(1 << 24, {{}, [&](const RenderProgress&) { is_begun = true; }});
+                          },
                           [&] {
                             while (!is_begun) std::this_thread::yield();
                             session.cancel();
