@@ -79,7 +79,11 @@ def run(script, *arguments, exit=0, environment=(), say=""):
     """Runs it; it must end by itself with this exit status, and say nothing else."""
     done = subprocess.run([sys.executable, "-c", BEGIN + script, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, timeout=SECONDS, env={**os.environ, **dict(environment)})
-    assert (done.returncode, done.stdout, done.stderr) == (exit, say, "")
+    check(done, exit, say)
+
+
+def check(done, exit=0, say=""):
+    assert (done.returncode, done.stdout, done.stderr) == (exit, say, ""), f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
 
 
 def often(script, *arguments, times=TIMES, **given):
@@ -184,7 +188,7 @@ for thread in threads:
     thread.start()
 for thread in threads:
     thread.join()
-assert sorted(one.__name__ for one in told) == ["InputError", "ZeroDivisionError"], told
+assert sorted(one.__name__ for one in told) == ["InputError", "SystemExit", "ZeroDivisionError"], told
 with concurrent.futures.ThreadPoolExecutor(3) as pool:
     alone = picture()
     assert all(equal(one, alone) for one in pool.map(lambda i: picture(), range(6)))
@@ -251,7 +255,7 @@ def child():
     assert np.isfinite(alone.rgb).all()
     scene.add_spheres((0, 3, 0), 1)
     scene.save("child.pbrt")
-    assert caplet.load("child.pbrt").primitives["sphere"] == 3
+    assert sum(caplet.load("child.pbrt").primitives.values()) == 4
     assert forked(lambda: refused("a grandchild", caplet.devices)) == 0
 assert forked(child) == 0
 assert session.render(2) == 2 and session.spp == 4 and equal(picture(), alone)
@@ -275,7 +279,7 @@ if __name__ == "__main__":
     print("done")
 """)
     done = subprocess.run([sys.executable, "job.py"], capture_output=True, text=True, timeout=SECONDS)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
+    check(done, say="done\n")
 
 
 def test_a_fork_while_another_thread_renders():
@@ -415,7 +419,7 @@ time.sleep(0.05)
 """
     for _ in range(TIMES):
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=SECONDS)
-        assert (done.returncode, done.stdout, done.stderr) == (0, "True 2 True\n", "")
+        check(done, say="True 2 True\n")
 
 
 def test_an_interrupt_ends_a_program_of_threads():
@@ -437,17 +441,18 @@ picture(spp=1 << 24)
 
 
 def test_a_second_interpreter_of_the_process_is_refused():
-    """One that would share this one's OpenCL: by an ImportError, in whatever words NumPy or nanobind has."""
     run("""
 try:
     import _xxsubinterpreters as interpreters
 except ImportError:
     import _interpreters as interpreters
-picture()
+first = picture()
 one = interpreters.create()
-try:
-    interpreters.run_string(one, "import caplet\\ncaplet.devices()")
-except Exception as error:
-    assert "ImportError" in str(error), error
-picture()
+for _ in range(2):
+    try:
+        told = interpreters.run_string(one, "import caplet")
+    except interpreters.RunFailedError as error:  # raised before Python 3.13, then returned
+        told = error
+    assert "caplet works in the main interpreter" in str(told), told
+assert equal(picture(), first)
 """)
