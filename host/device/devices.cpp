@@ -144,7 +144,6 @@ Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding e
   out.profile_ = profile_of(info);
   out.device_ = device;
   cl_call("opening the device", info.name, [&] {
-    const std::lock_guard lock(first_use);
     out.context_ = cl::Context(device);
     out.queue_ = std::make_shared<cl::CommandQueue>(out.context_, device);
   });

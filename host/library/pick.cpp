@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "device/forked.h"
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
 #include "lower/camera.h"
@@ -155,10 +154,7 @@ std::vector<Crossing> Questions::crossings(std::span<const Ray> rays, std::size_
 struct Picker::Data {
   Data(std::shared_ptr<const caplet::Scene> model, const FlatScene& flat, const caplet::Device& on)
       : scene(std::move(model)), shapes(flat.shapes), device(on), query(flat, on) {}
-  Questions questions() {
-    begin_opencl();
-    return {query, *scene, shapes, device};
-  }
+  Questions questions() { return {query, *scene, shapes, device}; }
 
   std::shared_ptr<const caplet::Scene> scene;
   std::uint64_t shapes;
@@ -167,8 +163,8 @@ struct Picker::Data {
 };
 
 Picker::Picker(const Scene& scene, const Device& device) {
-  begin_opencl();
-  data_ = std::make_unique<Data>(Inside::model(scene), lower(*Inside::model(scene)), Inside::device(device));
+  const caplet::Device& on = Inside::device(device);
+  data_ = std::make_unique<Data>(Inside::model(scene), lower(*Inside::model(scene)), on);
 }
 Picker::Picker(Picker&&) noexcept = default;
 Picker& Picker::operator=(Picker&&) noexcept = default;

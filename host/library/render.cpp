@@ -2,7 +2,6 @@
 // Copyright Caplet authors
 #include "caplet/render.h"
 
-#include "device/forked.h"
 #include "library/detail/inside.h"
 #include "library/detail/sessions.h"
 #include "lower/lower.h"
@@ -11,7 +10,6 @@
 namespace caplet::v0 {
 
 Film render(const Scene& scene, const Device& device, const RenderOptions& options) {
-  begin_opencl();
   Scene drawn = scene;
   drawn.widen_to_least();
   const caplet::Scene& model = *Inside::model(drawn);

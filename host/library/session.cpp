@@ -19,7 +19,6 @@ namespace caplet::v0 {
 namespace {
 
 std::vector<caplet::Device> inner(std::span<const Device> devices) {
-  begin_opencl();
   std::vector<caplet::Device> out;
   for (const Device& device : devices) out.push_back(Inside::device(device));
   if (out.empty()) throw InputError("a session needs a device");
@@ -74,7 +73,6 @@ struct Session::Data {
   }
 
   Questions questions() {
-    begin_opencl();
     if (const auto scene = session.scene_on(0); scene != asked) {  // another one, where the first device is gone
       query.emplace(*scene);
       asked = scene;
@@ -126,22 +124,15 @@ void Session::update(const Scene& scene) {
 }
 
 int Session::render(int samples, const RenderOptions& options) {
-  begin_opencl();
   check_range("samples", samples, 1, 1 << 24);
   return static_cast<int>(data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
 }
 
 void Session::cancel() { data_->session.cancel(); }
 
-Film Session::film() const {
-  begin_opencl();
-  return data_->runs.film(data_->session, data_->live.scene());
-}
+Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene()); }
 
-void Session::resume(const Film& film) {
-  begin_opencl();
-  data_->session.resume(Inside::film(film));
-}
+void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
 
 std::optional<Hit> Session::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Session::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "device/forked.h"
 #include "library/detail/inside.h"
 #include "report/verify_report.h"
 #include "verify/verify.h"
@@ -14,7 +13,6 @@ namespace caplet::v0 {
 namespace {
 
 VerifyReport verified(const caplet::Scene* scene, std::span<const Device> devices, const VerifyOptions& options) {
-  begin_opencl();
   std::vector<caplet::Device> on;
   for (const Device& device : devices) on.push_back(Inside::device(device));
   if (on.empty()) throw InputError("nothing to verify: no device is given");
