@@ -305,12 +305,11 @@ def child():
         other.bounds
     except caplet.RunError as error:  # the other thread had it
         assert "forked" in str(error), error
-for _ in range(3):
-    status = forked(child)
-    assert status == 0, status
+ends = [forked(child) for _ in range(3)]
 stop.set()
 for thread in threads:
     thread.join()
+assert ends == [0, 0, 0], ends
 assert equal(picture(), alone)
 """)
 
