@@ -143,13 +143,14 @@ def test_a_scene_is_built_by_several_threads():
     often("""
 big = caplet.Scene()
 def add(at):
+    p0 = np.full((5000, 3), at, np.float32)
     def add():
-        for i in range(20):
-            big.add_capsules(np.full((1000, 3), at), np.full((1000, 3), at + 1.0), 0.1)
-            big.bounds, big.primitives, big.shapes
+        for i in range(30):
+            before = big.copy()  # the next one has to copy what both share
+            big.add_capsules(p0, p0 + 1, 0.1)
     return add
 together(add(0), add(10), add(20))
-assert big.primitives == {"capsule": 60000}, big.primitives
+assert big.primitives == {"capsule": 450000}, big.primitives
 assert np.allclose(big.bounds, [[-0.1] * 3, [21.1] * 3], atol=1e-5), big.bounds
 """)
 
