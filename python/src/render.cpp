@@ -63,8 +63,13 @@ caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const s
 
 void bind_render(nb::module_& m) {
   m.def("devices", [] {
+    std::vector<caplet::DeviceInfo> found;
+    {
+      const Released released;
+      found = caplet::devices();
+    }
     nb::list out;
-    for (const caplet::DeviceInfo& info : caplet::devices()) out.append(told(info));
+    for (const caplet::DeviceInfo& info : found) out.append(told(info));
     return out;
   });
   m.def(
