@@ -18,6 +18,7 @@ std::string cl_error_name(cl_int code);
 /// Calls `function`; a cl::Error becomes a RunError "PLACE: CALL: NAME (device 'DEVICE')".
 template <class Function>
 auto cl_call(const std::string& place, const std::string& device_name, Function&& function) {
+  begin_opencl();
   try {
     return function();
   } catch (const cl::Error& error) {

@@ -5,10 +5,6 @@
 // Every error carries the call, the place and, for programs, the build log.
 #pragma once
 
-#define CL_HPP_TARGET_OPENCL_VERSION 120
-#define CL_HPP_MINIMUM_OPENCL_VERSION 120
-#define CL_HPP_ENABLE_EXCEPTIONS
-#include <CL/opencl.hpp>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -19,6 +15,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "device/opencl.h"
 #include "device/row_masks.h"
 
 namespace caplet {
@@ -54,7 +51,8 @@ struct DeviceInfo {
   std::uint64_t global_bytes = 0, max_allocation_bytes = 0;
 };
 
-/// All OpenCL devices; empty when there is no platform (never throws for that).
+/// All OpenCL devices; empty when there is no platform (never throws for that). From any thread. Throws RunError in a process
+/// that was forked after OpenCL was used, as all does that needs a device (forked.h).
 std::vector<DeviceInfo> list_devices();
 
 /// How kernels go through trees and leaf blocks: eight boxes or primitives at a time in vectors of floats, or one after the

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 
 #include "base/check.h"
 #include "device/cl_error.h"
@@ -29,8 +30,13 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
+/// PoCL 3.1 sets its devices up at the first question. A thread that asks meanwhile is told that there are none.
+std::mutex first_use;
+
 /// A platform or device that cannot be asked is left out: it could not be used either.
 std::vector<Found> find_devices() {
+  begin_opencl();
+  const std::lock_guard lock(first_use);
   std::vector<Found> found;
   std::vector<cl::Platform> platforms;
   try {

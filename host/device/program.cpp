@@ -93,6 +93,7 @@ Program::Program(const Device& device, const std::string& name, const std::strin
 
 Program Program::from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
                              BinaryCache cache) {
+  begin_opencl();
   const auto start = Clock::now();
   const std::string all_options = options.empty() ? "-cl-std=CL1.2" : "-cl-std=CL1.2 " + options;
   const bool keeps_binary = cache == BinaryCache::always || !device.is_pocl();

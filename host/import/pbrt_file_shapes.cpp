@@ -48,13 +48,13 @@ void Parser::shapes_of_file(const std::string& type, Parameters& given) {
   std::optional<Imported> file;
   bool own_materials = false;
   if (!path.empty()) try {
-      const Format& format = type == "file" ? format_of(path) : format_named(type);
-      if (format.name == "pbrt-v4") throw InputError("a pbrt scene is read by Include or Import");
+      const Format* format = type == "file" ? &format_of(path) : &format_named(type);
+      if (format->name == "pbrt-v4") throw InputError("a pbrt scene is read by Include or Import");
       ImportOptions options;
-      for (const std::string& option : format.options)
+      for (const std::string& option : format->options)
         if (given.has(option)) options.set(option, given.text(option, ""));
       own_materials = given.boolean("ownmaterials", options.text("color").has_value());
-      file = read_scene(path, images_, options, &format);
+      file = read_scene(path, images_, options, format);
     } catch (const InputError& problem) {
       add_errors(problem, given.where("filename"), diagnostics_);
     }

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "caplet/device.h"
 
+#include "device/forked.h"
 #include "library/detail/inside.h"
 
 namespace caplet::v0 {
@@ -9,6 +10,10 @@ namespace caplet::v0 {
 DeviceInfo to_public(const caplet::DeviceInfo& info) {
   return {info.index,    info.name, info.vendor,        info.driver,      info.version,
           info.platform, info.type, info.compute_units, info.global_bytes};
+}
+
+void check_process() {
+  if (forked_after_opencl()) begin_opencl();
 }
 
 std::vector<DeviceInfo> devices() {

@@ -162,8 +162,10 @@ struct Picker::Data {
   Query query;
 };
 
-Picker::Picker(const Scene& scene, const Device& device)
-    : data_(std::make_unique<Data>(Inside::model(scene), lower(*Inside::model(scene)), Inside::device(device))) {}
+Picker::Picker(const Scene& scene, const Device& device) {
+  const caplet::Device& on = Inside::device(device);
+  data_ = std::make_unique<Data>(Inside::model(scene), lower(*Inside::model(scene)), on);
+}
 Picker::Picker(Picker&&) noexcept = default;
 Picker& Picker::operator=(Picker&&) noexcept = default;
 Picker::~Picker() = default;

@@ -77,6 +77,7 @@ Scene::~Scene() = default;
 
 Scene::Data& Scene::changed() {
   if (data_.use_count() > 1) data_ = std::make_shared<Data>(*data_);
+  std::atomic_thread_fence(std::memory_order_acquire);  // what another thread did with a copy that is gone comes before
   return *data_;
 }
 

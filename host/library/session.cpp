@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "device/forked.h"
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
 #include "library/detail/sessions.h"
@@ -96,6 +97,7 @@ Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
 
 void Session::update(const Scene& scene) {
+  begin_opencl();
   Data& d = *data_;
   const Inside::SceneData& now = Inside::data(scene);
   auto next = now.edits.begin();

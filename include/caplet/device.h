@@ -22,6 +22,11 @@ struct DeviceInfo {
   std::uint64_t global_bytes = 0;  // memory
 };
 
+/// OpenCL does not work in a process that was forked from one that had used it. There every call that needs a device throws this
+/// RunError, and destructors give nothing back to OpenCL. A program with locks of its own around such calls asks before it waits
+/// for them.
+CAPLET_API void check_process();
+
 /// All of them; empty when there is none.
 CAPLET_API std::vector<DeviceInfo> devices();
 

@@ -9,6 +9,23 @@
 
 docs/python.md has more.
 """
+
+
+def _check_interpreter():
+    """The binding is of one interpreter of a process: a second one would take it away from the first."""
+    import importlib
+    for name in ("_interpreters", "_xxsubinterpreters"):  # since Python 3.13, and before
+        try:
+            interpreters = importlib.import_module(name)
+        except ImportError:
+            continue
+        if interpreters.get_current() != interpreters.get_main():
+            raise ImportError("caplet works in the main interpreter of a process alone")
+        return
+
+
+_check_interpreter()
+
 from . import errors
 from .errors import Error, InputError, RunError
 from . import _caplet, bridges, cameras, lights, materials, media, textures

@@ -182,9 +182,11 @@ CROSSING = np.dtype({"names": [name for name, _, _, _ in _caplet.crossing_layout
 def _picker(scene, device):
     key = str(device)
     _scene(scene)
-    if key not in scene._pickers:
-        scene._pickers[key] = _caplet.Picker(scene._native, _devices(device)[0])
-    return scene._pickers[key]
+    pickers = scene._pickers
+    picker = pickers.get(key)
+    if picker is None:
+        picker = pickers[key] = _caplet.Picker(scene._native, _devices(device)[0])
+    return picker
 
 
 def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, most=256, device=None):

@@ -164,7 +164,7 @@ class Scene:
         self.info = {}  # for bridges: what its numbers are where it came from
 
     def _changed(self):
-        self._pickers.clear()
+        self._pickers = {}  # a new one: another thread may be about to add what it has made of the scene as it was
 
     def copy(self):
         """Another one, which shares memory with this until one of them is changed."""

@@ -11,19 +11,14 @@
 #include <nanobind/ndarray.h>
 
 #include <array>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <exception>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-namespace caplet_python {
+#include "threads.h"
 
-namespace nb = nanobind;
+namespace caplet_python {
 
 using Array = nb::ndarray<nb::ro, nb::device::cpu>;
 
@@ -81,46 +76,18 @@ nb::ndarray<nb::numpy, T, nb::ndim<N>> array_of(std::vector<T> values, const std
   return nb::ndarray<nb::numpy, T, nb::ndim<N>>(held->data(), N, shape.data(), owner);
 }
 
-/// Runs `work` on a thread of its own, the interpreter's lock released, and looks 20 times a second for signals: one that raises
-/// calls `stop`, and is raised when the work has ended. `tick` is called with the lock as often.
-template <class Work, class Stop, class Tick>
-void run_interruptibly(Work&& work, Stop&& stop, Tick&& tick) {
-  std::mutex mutex;
-  std::condition_variable ended;
-  bool is_done = false;
-  std::exception_ptr failure;
-  std::exception_ptr raised;
-  {
-    nb::gil_scoped_release released;
-    std::thread worker([&] {
-      try {
-        work();
-      } catch (...) {
-        failure = std::current_exception();
-      }
-      const std::lock_guard lock(mutex);
-      is_done = true;
-      ended.notify_all();
-    });
-    for (;;) {
-      {
-        std::unique_lock lock(mutex);
-        if (ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return is_done; })) break;
-      }
-      if (raised) continue;
-      const nb::gil_scoped_acquire acquired;
-      try {
-        if (PyErr_CheckSignals() != 0) throw nb::python_error();
-        tick();
-      } catch (...) {
-        raised = std::current_exception();
-        stop();
-      }
-    }
-    worker.join();
+/// A scene, and whose turn it is with it.
+struct HeldScene {
+  HeldScene() = default;
+  explicit HeldScene(caplet::Scene of) : scene(std::move(of)) {}
+  HeldScene(HeldScene&& other) noexcept : scene(std::move(other.scene)) {}
+  /// As it is now, for other threads.
+  caplet::Scene now() {
+    const Turn turn(lock);
+    return scene;
   }
-  if (raised) std::rethrow_exception(raised);
-  if (failure) std::rethrow_exception(failure);
-}
+  caplet::Scene scene;
+  Lock lock;
+};
 
 }  // namespace caplet_python

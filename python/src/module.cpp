@@ -52,6 +52,7 @@ void bind_errors(nb::module_& m) {
 }  // namespace caplet_python
 
 NB_MODULE(_caplet, m) {
+  caplet_python::bind_threads(m);
   caplet_python::bind_errors(m);
   caplet_python::bind_scene(m);
   caplet_python::bind_render(m);

@@ -63,14 +63,19 @@ caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const s
 
 void bind_render(nb::module_& m) {
   m.def("devices", [] {
+    std::vector<caplet::DeviceInfo> found;
+    {
+      const Released released;
+      found = caplet::devices();
+    }
     nb::list out;
-    for (const caplet::DeviceInfo& info : caplet::devices()) out.append(told(info));
+    for (const caplet::DeviceInfo& info : found) out.append(told(info));
     return out;
   });
   m.def(
       "verify",
-      [](const std::optional<caplet::Scene>& scene, const std::string& devices, std::uint64_t rays, std::uint64_t seed) {
-        const caplet::VerifyReport report = verified(scene, devices, rays, seed);
+      [](HeldScene* scene, const std::string& devices, std::uint64_t rays, std::uint64_t seed) {
+        const caplet::VerifyReport report = verified(scene ? std::optional(scene->now()) : std::nullopt, devices, rays, seed);
         nb::list of_devices;
         for (const auto& one : report.devices) {
           nb::dict row = told(one.device);
@@ -87,7 +92,7 @@ void bind_render(nb::module_& m) {
 
   nb::class_<caplet::Device>(m, "Device").def_prop_ro("info", [](const caplet::Device& device) { return told(device.info()); });
   m.def("choose_devices", [](const std::string& choice) {
-    const nb::gil_scoped_release released;
+    const Released released;
     return choice.empty() ? std::vector{caplet::choose_device()} : caplet::choose_devices(choice);
   });
 
@@ -105,24 +110,25 @@ void bind_render(nb::module_& m) {
              return out;
            })
       .def("copy", [](const Film& film) { return Film(film); })
-      .def("add", &Film::add, nb::call_guard<nb::gil_scoped_release>())
+      .def("add", &Film::add, nb::call_guard<Released>())
       .def("save",
            [](const Film& film, const std::string& file) {
-             const nb::gil_scoped_release released;
+             const Released released;
              film.save(file);
            })
       .def_static("load",
-                  [](const std::string& file, const caplet::Scene& scene) {
-                    const nb::gil_scoped_release released;
+                  [](const std::string& file, HeldScene& of) {
+                    const caplet::Scene scene = of.now();
+                    const Released released;
                     return Film::load(file, scene);
                   })
-      .def("channels", &Film::channels, nb::call_guard<nb::gil_scoped_release>())
+      .def("channels", &Film::channels, nb::call_guard<Released>())
       .def("values",
            [](const Film& film, const std::string& channel) {
              const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
              std::vector<float> values;
              {
-               const nb::gil_scoped_release released;
+               const Released released;
                values = film.values(channel);
              }
              return array_of<float, 2>(std::move(values), shape);
@@ -132,18 +138,18 @@ void bind_render(nb::module_& m) {
              const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
              std::vector<std::uint32_t> ids;
              {
-               const nb::gil_scoped_release released;
+               const Released released;
                ids = film.ids(channel);
              }
              return array_of<std::uint32_t, 2>(std::move(ids), shape);
            })
       .def("write_exr",
            [](const Film& film, const std::string& file) {
-             const nb::gil_scoped_release released;
+             const Released released;
              film.write_exr(file);
            })
       .def("write_preview", [](const Film& film, const std::string& file, const caplet::OverlayOptions& drawn) {
-        const nb::gil_scoped_release released;
+        const Released released;
         film.write_preview(file, drawn);
       });
   m.def("overlays", [] {
@@ -154,16 +160,18 @@ void bind_render(nb::module_& m) {
 
   nb::class_<HeldSession>(m, "Session")
       .def("__init__",
-           [](HeldSession* self, const caplet::Scene& scene, const std::vector<caplet::Device>& devices) {
+           [](HeldSession* self, HeldScene& of, const std::vector<caplet::Device>& devices) {
+             const caplet::Scene scene = of.now();
              std::optional<caplet::Session> session;
              run_interruptibly([&] { session.emplace(scene, devices); }, [] {}, [] {});
              new (self) HeldSession(*std::move(session));
            })
       .def("update",
-           [](HeldSession& held, const caplet::Scene& scene) {
+           [](HeldSession& held, HeldScene& of) {
+             const caplet::Scene scene = of.now();
              run_interruptibly(
                  [&] {
-                   const std::lock_guard lock(held.mutex);
+                   const auto turn = turn_of(held);
                    held.session.update(scene);
                  },
                  [] {}, [] {});
@@ -173,11 +181,17 @@ void bind_render(nb::module_& m) {
           [](HeldSession& held, int samples, std::optional<double> time_limit, const nb::object& progress) {
             int done = 0;
             std::atomic<double> fraction = 0, speed = 0;
-            std::atomic<bool> under_way = false;
+            std::mutex mutex;  // of these two
+            bool is_stopped = false, is_under_way = false;
+            const auto now_under_way = [&](bool is) {
+              const std::lock_guard lock(mutex);
+              is_under_way = is;
+              return !is_stopped;
+            };
             run_interruptibly(
                 [&] {
-                  const std::lock_guard lock(held.mutex);
-                  under_way = true;
+                  const auto turn = turn_of(held);
+                  if (!now_under_way(true)) return;
                   caplet::RenderOptions options;
                   options.time_limit = time_limit;
                   options.progress = [&](const caplet::RenderProgress& now) {
@@ -185,9 +199,13 @@ void bind_render(nb::module_& m) {
                     speed = now.samples_per_second;
                   };
                   done = held.session.render(samples, options);
-                  under_way = false;
+                  now_under_way(false);
                 },
-                [&] { held.session.cancel(); },
+                [&] {  // the render of another thread, which this one waits for, goes on
+                  const std::lock_guard lock(mutex);
+                  is_stopped = true;
+                  if (is_under_way) held.session.cancel();
+                },
                 [&] {
                   if (!progress.is_none()) progress(fraction.load(), speed.load());
                 });
@@ -197,13 +215,13 @@ void bind_render(nb::module_& m) {
       .def("cancel", [](HeldSession& held) { held.session.cancel(); })
       .def("film",
            [](HeldSession& held) {
-             const nb::gil_scoped_release released;
-             const std::lock_guard lock(held.mutex);
+             const Released released;
+             const auto turn = turn_of(held);
              return held.session.film();
            })
       .def("resume", [](HeldSession& held, const Film& film) {
-        const nb::gil_scoped_release released;
-        const std::lock_guard lock(held.mutex);
+        const Released released;
+        const auto turn = turn_of(held);
         held.session.resume(film);
       });
 }

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "binding.h"
 
@@ -148,6 +150,32 @@ caplet::Statement statement_named(const std::string& name) {
   throw nb::value_error("no such kind of statement");
 }
 
+/// The same for a HeldScene, when it is this thread's turn.
+template <class Use, class Return, class Self, class... Arguments>
+auto in_turn(const Use& use, Return (Use::*)(Self&, Arguments...) const) {
+  static_assert(!std::is_reference_v<Return>, "it would point into what other threads change");
+  return [use](HeldScene& held, Arguments... arguments) -> Return {
+    const Turn turn(held.lock);
+    return use(held.scene, std::forward<Arguments>(arguments)...);
+  };
+}
+template <class Use>
+auto in_turn(const Use& use) {
+  return in_turn(use, &Use::operator());
+}
+template <class Return, class... Arguments>
+auto in_turn(Return (caplet::Scene::*use)(Arguments...)) {
+  return in_turn([use](caplet::Scene& scene, Arguments... arguments) -> Return {
+    return (scene.*use)(std::forward<Arguments>(arguments)...);
+  });
+}
+template <class Return, class... Arguments>
+auto in_turn(Return (caplet::Scene::*use)(Arguments...) const) {
+  return in_turn([use](caplet::Scene& scene, Arguments... arguments) -> Return {
+    return (scene.*use)(std::forward<Arguments>(arguments)...);
+  });
+}
+
 nb::object triple(const std::array<double, 3>& v) { return nb::make_tuple(v[0], v[1], v[2]); }
 
 }  // namespace
@@ -214,136 +242,131 @@ void bind_scene(nb::module_& m) {
       [](const std::string& file, const std::map<std::string, std::string>& options) {
         std::optional<Scene> scene;
         run_interruptibly([&] { scene = caplet::import_scene(file, options); }, [] {}, [] {});
-        return *std::move(scene);
+        return HeldScene(*std::move(scene));
       },
       nb::arg("file"), nb::arg("options") = std::map<std::string, std::string>(), "Reads a scene of any known format.");
 
-  nb::class_<Scene>(m, "Scene")
+  nb::class_<HeldScene>(m, "Scene")
       .def(nb::init<>())
-      .def("copy", [](const Scene& scene) { return Scene(scene); })
+      .def("copy", [](HeldScene& held) { return HeldScene(held.now()); })
       .def("save",
-           [](const Scene& scene, const std::string& file) {
-             const nb::gil_scoped_release released;
+           [](HeldScene& held, const std::string& file) {
+             const Scene scene = held.now();
+             const Released released;
              caplet::write_scene(scene, file);
            })
-      .def("bounds",
-           [](const Scene& scene) {
+      .def("bounds", in_turn([](const Scene& scene) {
              const caplet::Bounds bounds = scene.bounds();
              return nb::make_tuple(triple(bounds.min), triple(bounds.max));
-           })
-      .def("primitives", &Scene::primitives)
-      .def("materials", &Scene::materials)
-      .def("media", &Scene::media)
-      .def("objects", &Scene::objects)
-      .def("shapes", &Scene::shapes)
-      .def("shape", &Scene::shape)
-      .def("shape_in", &Scene::shape_in)
-      .def("place", &Scene::place)
-      .def_prop_ro("width", &Scene::width)
-      .def_prop_ro("height", &Scene::height)
-      .def("set_size", &Scene::set_size)
-      .def("set_crop", &Scene::set_crop)
-      .def("widen_to_least", &Scene::widen_to_least)
-      .def_prop_rw("spp", &Scene::samples_per_pixel, &Scene::set_samples_per_pixel)
-      .def_prop_rw("max_depth", &Scene::max_depth, &Scene::set_max_depth)
-      .def_prop_rw("seed", &Scene::seed, &Scene::set_seed)
-      .def_prop_ro("lights", &Scene::lights)
-      .def_prop_ro("instances", &Scene::instances)
-      .def("capsules", &Scene::capsules)
-      .def("present",
-           [](Scene& scene) {
-             const nb::gil_scoped_release released;
+           }))
+      .def("primitives", in_turn(&Scene::primitives))
+      .def("materials", in_turn(&Scene::materials))
+      .def("media", in_turn(&Scene::media))
+      .def("objects", in_turn(&Scene::objects))
+      .def("shapes", in_turn(&Scene::shapes))
+      .def("shape", in_turn(&Scene::shape))
+      .def("shape_in", in_turn(&Scene::shape_in))
+      .def("place", in_turn(&Scene::place))
+      .def_prop_ro("width", in_turn(&Scene::width))
+      .def_prop_ro("height", in_turn(&Scene::height))
+      .def("set_size", in_turn(&Scene::set_size))
+      .def("set_crop", in_turn(&Scene::set_crop))
+      .def("widen_to_least", in_turn(&Scene::widen_to_least))
+      .def_prop_rw("spp", in_turn(&Scene::samples_per_pixel), in_turn(&Scene::set_samples_per_pixel))
+      .def_prop_rw("max_depth", in_turn(&Scene::max_depth), in_turn(&Scene::set_max_depth))
+      .def_prop_rw("seed", in_turn(&Scene::seed), in_turn(&Scene::set_seed))
+      .def_prop_ro("lights", in_turn(&Scene::lights))
+      .def_prop_ro("instances", in_turn(&Scene::instances))
+      .def("capsules", in_turn(&Scene::capsules))
+      .def("present", in_turn([](Scene& scene) {
+             const Released released;
              scene.present();
-           })
-      .def("look_at", &Scene::look_at)
-      .def_prop_ro("fov", &Scene::fov)
-      .def("set_fov", &Scene::set_fov)
-      .def("camera", [](const Scene& scene) { return transform_array(scene.camera()); })
-      .def("set_camera", [](Scene& scene, const std::string& type, const nb::dict& given,
-                            const Array& transform) { scene.set_camera(type, parameters_of(given), transform_of(transform)); })
-      .def_prop_rw("unit", &Scene::unit, &Scene::set_unit)
-      .def("set_color_bar", &Scene::set_color_bar)
-      .def("set_camera_medium", &Scene::set_camera_medium, nb::arg("medium").none())
-      .def("set_option", [](Scene& scene, const std::string& kind, const std::string& type,
-                            const nb::dict& given) { scene.set_option(statement_named(kind), type, parameters_of(given)); })
-      .def("transform", [](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); })
+           }))
+      .def("look_at", in_turn(&Scene::look_at))
+      .def_prop_ro("fov", in_turn(&Scene::fov))
+      .def("set_fov", in_turn(&Scene::set_fov))
+      .def("camera", in_turn([](const Scene& scene) { return transform_array(scene.camera()); }))
+      .def("set_camera", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
+             scene.set_camera(type, parameters_of(given), transform_of(transform));
+           }))
+      .def_prop_rw("unit", in_turn(&Scene::unit), in_turn(&Scene::set_unit))
+      .def("set_color_bar", in_turn(&Scene::set_color_bar))
+      .def("set_camera_medium", in_turn(&Scene::set_camera_medium), nb::arg("medium").none())
+      .def("set_option", in_turn([](Scene& scene, const std::string& kind, const std::string& type, const nb::dict& given) {
+             scene.set_option(statement_named(kind), type, parameters_of(given));
+           }))
+      .def("transform", in_turn([](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); }))
       .def("set_transform",
-           [](Scene& scene, std::uint32_t shape, const Array& to) { scene.set_transform(shape, transform_of(to)); })
-      .def("instance", [](const Scene& scene, std::uint32_t number) { return transform_array(scene.instance(number)); })
+           in_turn([](Scene& scene, std::uint32_t shape, const Array& to) { scene.set_transform(shape, transform_of(to)); }))
+      .def("instance", in_turn([](const Scene& scene, std::uint32_t number) { return transform_array(scene.instance(number)); }))
       .def("set_instance",
-           [](Scene& scene, std::uint32_t number, const Array& to) { scene.set_instance(number, transform_of(to)); })
-      .def("add_instances", [](Scene& scene, const std::string& object,
-                               const Array& transforms) { return scene.add_instances(object, transforms_of(transforms)); })
-      .def("add_material",
-           [](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given) {
+           in_turn([](Scene& scene, std::uint32_t number, const Array& to) { scene.set_instance(number, transform_of(to)); }))
+      .def("add_instances", in_turn([](Scene& scene, const std::string& object, const Array& transforms) {
+             return scene.add_instances(object, transforms_of(transforms));
+           }))
+      .def("add_material", in_turn([](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given) {
              return scene.add_material(name, caplet::NamedMaterial{type, parameters_of(given)});
-           })
-      .def("set_material",
-           [](Scene& scene, std::uint32_t number, const std::string& type, const nb::dict& given) {
+           }))
+      .def("set_material", in_turn([](Scene& scene, std::uint32_t number, const std::string& type, const nb::dict& given) {
              scene.set_material(number, caplet::NamedMaterial{type, parameters_of(given)});
-           })
+           }))
       .def("add_texture",
-           [](Scene& scene, const std::string& type, bool is_float, const nb::dict& given, const Array& transform) {
+           in_turn([](Scene& scene, const std::string& type, bool is_float, const nb::dict& given, const Array& transform) {
              return scene.add_texture({type, is_float, parameters_of(given), transform_of(transform)}).number;
-           })
-      .def("add_medium",
-           [](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given, const Array& transform) {
+           }))
+      .def("add_medium", in_turn([](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given,
+                                    const Array& transform) {
              return scene.add_medium(name, type, parameters_of(given), transform_of(transform));
-           })
-      .def("add_light",
-           [](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
+           }))
+      .def("add_light", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
              return scene.add_light(type, parameters_of(given), transform_of(transform));
-           })
-      .def("remove_lights", &Scene::remove_lights)
-      .def("light_scale", &Scene::light_scale)
-      .def("set_light",
-           [](Scene& scene, std::uint32_t light, const std::array<double, 3>& rgb, double scale) {
+           }))
+      .def("remove_lights", in_turn(&Scene::remove_lights))
+      .def("light_scale", in_turn(&Scene::light_scale))
+      .def("set_light", in_turn([](Scene& scene, std::uint32_t light, const std::array<double, 3>& rgb, double scale) {
              scene.set_light(light, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
-           })
-      .def("set_emission",
-           [](Scene& scene, std::uint32_t shape, const std::array<double, 3>& rgb, double scale) {
+           }))
+      .def("set_emission", in_turn([](Scene& scene, std::uint32_t shape, const std::array<double, 3>& rgb, double scale) {
              scene.set_emission(shape, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
-           })
-      .def("set_shape_materials", &Scene::set_shape_materials)
-      .def("add_shape", [](Scene& scene, const std::string& type, const nb::dict& given,
-                           const nb::dict& options) { return scene.add_shape(type, parameters_of(given), options_of(options)); })
-      .def(
-          "add_shapes",
-          [](Scene& scene, const std::string& type, std::size_t count, const nb::dict& shared, const nb::dict& each,
-             const std::optional<Array>& transforms, const std::optional<Array>& materials, const nb::dict& options) {
-            const caplet::Parameters of_all = parameters_of(shared), of_each = each_of(each);
-            const caplet::ShapeOptions given = options_of(options);
-            std::vector<caplet::Transform> places;
-            if (transforms) places = transforms_of(*transforms);
-            std::vector<std::uint32_t> numbers;
-            if (materials) numbers = numbers_of(*materials);
-            const nb::gil_scoped_release released;
-            return scene.add_shapes(type, count, of_all, of_each, places, numbers, given);
-          },
-          nb::arg("type"), nb::arg("count"), nb::arg("shared"), nb::arg("each"), nb::arg("transforms").none(),
-          nb::arg("materials").none(), nb::arg("options"))
-      .def(
-          "add_capsules",
-          [](Scene& scene, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-             const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u,
-             const nb::dict& options) {
-            const caplet::ShapeOptions given = options_of(options);
-            const nb::gil_scoped_release released;
-            return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, u, count), given);
-          },
-          nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
-          nb::arg("materials").none(), nb::arg("u").none(), nb::arg("options"))
+           }))
+      .def("set_shape_materials", in_turn(&Scene::set_shape_materials))
+      .def("add_shape", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const nb::dict& options) {
+             return scene.add_shape(type, parameters_of(given), options_of(options));
+           }))
+      .def("add_shapes",
+           in_turn([](Scene& scene, const std::string& type, std::size_t count, const nb::dict& shared, const nb::dict& each,
+                      const std::optional<Array>& transforms, const std::optional<Array>& materials, const nb::dict& options) {
+             const caplet::Parameters of_all = parameters_of(shared), of_each = each_of(each);
+             const caplet::ShapeOptions given = options_of(options);
+             std::vector<caplet::Transform> places;
+             if (transforms) places = transforms_of(*transforms);
+             std::vector<std::uint32_t> numbers;
+             if (materials) numbers = numbers_of(*materials);
+             const Released released;
+             return scene.add_shapes(type, count, of_all, of_each, places, numbers, given);
+           }),
+           nb::arg("type"), nb::arg("count"), nb::arg("shared"), nb::arg("each"), nb::arg("transforms").none(),
+           nb::arg("materials").none(), nb::arg("options"))
+      .def("add_capsules",
+           in_turn([](Scene& scene, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
+                      const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u,
+                      const nb::dict& options) {
+             const caplet::ShapeOptions given = options_of(options);
+             const Released released;
+             return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, u, count), given);
+           }),
+           nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
+           nb::arg("materials").none(), nb::arg("u").none(), nb::arg("options"))
       .def(
           "set_capsules",
-          [](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-             const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u) {
-            const nb::gil_scoped_release released;
+          in_turn([](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
+                     const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u) {
+            const Released released;
             scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, u, count));
-          },
+          }),
           nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
           nb::arg("materials").none(), nb::arg("u").none())
-      .def("capsule_arrays",
-           [](const Scene& scene, std::uint32_t shape) {
+      .def("capsule_arrays", in_turn([](const Scene& scene, std::uint32_t shape) {
              caplet::CapsuleArrays arrays = scene.capsule_arrays(shape);
              if (arrays.radius1.empty()) arrays.radius1 = arrays.radius0;
              const std::size_t count = arrays.p0.size(), named = arrays.materials.size();
@@ -351,23 +374,22 @@ void bind_scene(nb::module_& m) {
                                    array_of<float, 1>(std::move(arrays.radius0), {count}),
                                    array_of<float, 1>(std::move(arrays.radius1), {count}),
                                    array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}), rows_array(arrays.u));
-           })
-      .def(
-          "add_mesh",
-          [](Scene& scene, const Array& positions, const Array& triangles, const std::optional<Array>& normals,
-             const std::optional<Array>& uvs, const nb::dict& options) {
-            const caplet::ShapeOptions given = options_of(options);
-            caplet::MeshArrays mesh;
-            mesh.positions = rows_of<3>(positions, positions.shape(0));
-            if (normals) mesh.normals = rows_of<3>(*normals, normals->shape(0));
-            if (uvs) mesh.uvs = rows_of<2>(*uvs, uvs->shape(0));
-            const std::vector<std::uint32_t> corners = numbers_of(triangles);
-            for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-              mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-            const nb::gil_scoped_release released;
-            return scene.add_mesh(mesh, given);
-          },
-          nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("options"));
+           }))
+      .def("add_mesh",
+           in_turn([](Scene& scene, const Array& positions, const Array& triangles, const std::optional<Array>& normals,
+                      const std::optional<Array>& uvs, const nb::dict& options) {
+             const caplet::ShapeOptions given = options_of(options);
+             caplet::MeshArrays mesh;
+             mesh.positions = rows_of<3>(positions, positions.shape(0));
+             if (normals) mesh.normals = rows_of<3>(*normals, normals->shape(0));
+             if (uvs) mesh.uvs = rows_of<2>(*uvs, uvs->shape(0));
+             const std::vector<std::uint32_t> corners = numbers_of(triangles);
+             for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+               mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+             const Released released;
+             return scene.add_mesh(mesh, given);
+           }),
+           nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("options"));
 }
 
 }  // namespace caplet_python

@@ -10,11 +10,18 @@
 
 namespace caplet_python {
 
-/// A session, and whose turn it is: threads of Python wait for each other. The lock is taken without the interpreter's.
+/// A session, and whose turn it is: threads of Python wait for each other. Both are used without the interpreter's lock.
 struct HeldSession {
   explicit HeldSession(caplet::Session of) : session(std::move(of)) {}
   caplet::Session session;
-  std::mutex mutex;
+  Lock lock;
 };
+
+/// Its turn, of a session or a picker. Throws RunError where this process was forked, before it waits.
+template <class Held>
+std::unique_lock<Lock> turn_of(Held& held) {
+  caplet::check_process();
+  return std::unique_lock(held.lock);
+}
 
 }  // namespace caplet_python

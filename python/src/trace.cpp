@@ -27,7 +27,7 @@ using caplet::Ray;
 struct HeldPicker {
   explicit HeldPicker(caplet::Picker of) : session(std::move(of)) {}
   caplet::Picker session;  // by the name that HeldSession has for what answers
-  std::mutex mutex;
+  Lock lock;
 };
 
 constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
@@ -72,11 +72,6 @@ class Rays {
   Array origins_, directions_, t_min_, t_max_;
 };
 
-void check_signals() {
-  const nb::gil_scoped_acquire acquired;
-  if (PyErr_CheckSignals() != 0) throw nb::python_error();
-}
-
 /// `out`: bytes of as many crossings, which a structured array lends.
 template <class Held>
 void nearest(Held& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min, const Array& t_max,
@@ -84,12 +79,12 @@ void nearest(Held& held, std::size_t count, const Array& origins, const Array& d
   const Rays rays(count, origins, directions, t_min, t_max);
   if (out.shape(0) != count * sizeof(Crossing)) throw nb::value_error("room for other rays");
   std::uint8_t* const to = out.data();
-  const nb::gil_scoped_release released;
-  const std::lock_guard lock(held.mutex);
+  Released released;
+  const auto turn = turn_of(held);
   std::vector<Ray> chunk;
   std::vector<Crossing> hits;
   for (std::size_t first = 0; first < count; first += rays_in_a_chunk) {
-    if (first > 0) check_signals();
+    if (first > 0) released.check_signals();
     chunk.resize(std::min(rays_in_a_chunk, count - first));
     rays.read(first, chunk);
     hits.resize(chunk.size());
@@ -105,13 +100,13 @@ auto crossings(Held& held, std::size_t count, const Array& origins, const Array&
   const Rays rays(count, origins, directions, t_min, t_max);
   std::vector<std::uint8_t> bytes;
   {
-    const nb::gil_scoped_release released;
-    const std::lock_guard lock(held.mutex);
+    Released released;
+    const auto turn = turn_of(held);
     std::vector<Ray> chunk;
     const std::size_t at_once =
         std::clamp<std::size_t>((std::size_t{1} << 22) / std::max<std::size_t>(most, 1), 1, rays_in_a_chunk);
     for (std::size_t first = 0; first < count; first += at_once) {
-      if (first > 0) check_signals();
+      if (first > 0) released.check_signals();
       chunk.resize(std::min(at_once, count - first));
       rays.read(first, chunk);
       std::vector<Crossing> hits = held.session.crossings(chunk, most);
@@ -153,7 +148,8 @@ void bind_trace(nb::module_& m) {
   });
   nb::class_<HeldPicker>(m, "Picker")
       .def("__init__",
-           [](HeldPicker* self, const caplet::Scene& scene, const caplet::Device& device) {
+           [](HeldPicker* self, HeldScene& of, const caplet::Device& device) {
+             const caplet::Scene scene = of.now();
              std::optional<caplet::Picker> picker;
              run_interruptibly([&] { picker.emplace(scene, device); }, [] {}, [] {});
              new (self) HeldPicker(*std::move(picker));
@@ -163,8 +159,8 @@ void bind_trace(nb::module_& m) {
       .def("pixel", [](HeldPicker& held, int x, int y) -> nb::object {
         std::optional<caplet::Hit> hit;
         {
-          const nb::gil_scoped_release released;
-          const std::lock_guard lock(held.mutex);
+          const Released released;
+          const auto turn = turn_of(held);
           hit = held.session.pixel(x, y);
         }
         if (!hit) return nb::none();

@@ -286,7 +286,7 @@ void compare_columns(const std::vector<GridBox>& boxes, const std::string& light
   const std::string away = "AttributeBegin Translate 500 0 0 Shape \"sphere\" AttributeEnd\n";
   const LayeredImage empty = picture(view + three_media() + away + wall);
   const LayeredImage image = picture(view + three_media() + wall + shapes);
-  const Channel &dark = channel(image, "G"), &bright = channel(empty, "G");
+  const Channel dark = channel(image, "G"), bright = channel(empty, "G");
   int wrong = 0;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {

@@ -15,6 +15,7 @@
 #include <gemmi/resinfo.hpp>
 #include <gemmi/select.hpp>
 #include <unordered_map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/spelling.h"
@@ -370,9 +371,11 @@ Molecule read_mmcif(std::string_view text, const std::string& path, const Import
       mend_charges(block);
       add_columns(block);
     }
-    gemmi::Structure structure = gemmi::make_structure_from_doc(document, true);
+    ComponentBonds components;
+    for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, components);
+    gemmi::Structure structure = gemmi::make_structure_from_doc(std::move(document), true);  // const& before gemmi 0.6, then &&
     Molecule out = Builder(structure, path, options).build();
-    for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, out.components);
+    out.components = std::move(components);
     return out;
   });
 }

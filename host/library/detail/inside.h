@@ -17,6 +17,7 @@
 #include "caplet/film.h"
 #include "caplet/scene.h"
 #include "device/device.h"
+#include "device/forked.h"
 #include "film/film.h"
 #include "film/image.h"
 #include "post/scale_bar.h"
@@ -75,7 +76,11 @@ struct Inside {
   static Device device(caplet::Device device, DeviceInfo info) {
     return Device(std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
   }
-  static const caplet::Device& device(const Device& device) { return device.data_->device; }
+  /// Throws RunError in a forked process (check_process): before a scene is lowered for it, which takes time.
+  static const caplet::Device& device(const Device& device) {
+    begin_opencl();
+    return device.data_->device;
+  }
   static Film film(caplet::Film film, std::shared_ptr<const post::Sight> sight, std::map<std::string, std::string> notes,
                    double render_seconds) {
     return Film(

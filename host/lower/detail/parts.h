@@ -11,8 +11,8 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
-#include "lower/detail/images.h"
 #include "lower/detail/emitter.h"
+#include "lower/detail/images.h"
 #include "lower/encode.h"
 #include "lower/flat_primitive.h"
 #include "lower/flat_scene.h"
