@@ -19,6 +19,7 @@
 #include "present/lights.h"
 #include "present/present.h"
 #include "scene/append.h"
+#include "scene/names.h"
 
 namespace caplet {
 
@@ -285,6 +286,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
   apply_look(scene, images, options,
              std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
+  make_names_valid(scene);
   return validated(std::move(scene));
 }
 
