@@ -59,13 +59,13 @@ void open_browser(const std::string& address) {
 /// What an address that others reach lets them do.
 std::string opened_to(const Options& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
-  for (const std::string& address : view::addresses_reached(options.host))
-    where.push_back(fmt::format(address.find(':') == std::string::npos ? "{}:{}" : "[{}]:{}", address, port));
+  for (const std::string& address : view::addresses_reached(options.host)) where.push_back(view::authority_of(address, port));
   const char* what = options.read_only ? "can look at the scene"
                      : saves           ? "can look at the scene, change it, and save it as files in its folder"
                                        : "can look at the scene and change it";
-  return fmt::format("--host {}: every machine that reaches this one at {} and knows the page's address {}{}; nothing is encrypted",
-                     options.host, fmt::join(where, ", "), what, options.read_only ? "" : " (--read-only: look alone)");
+  return fmt::format(
+      "--host {}: every machine that reaches this one at {} and knows the page's address {}{}; nothing is encrypted",
+      options.host, fmt::join(where, ", "), what, options.read_only ? "" : " (--read-only: look alone)");
 }
 
 void run_view(const Options& options) {
@@ -114,7 +114,8 @@ void add_view(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
   add_scene_files(*command, o->scenes);
-  command->add_option("--host", o->host, "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it")
+  command
+      ->add_option("--host", o->host, "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it")
       ->capture_default_str()
       ->type_name("ADDRESS");
   command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");

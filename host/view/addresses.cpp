@@ -3,6 +3,7 @@
 #include "view/addresses.h"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
@@ -46,6 +47,10 @@ std::vector<std::string> addresses_reached(const std::string& host) {
   }
   if (out.empty()) out.emplace_back(all_v6 ? "::1" : "127.0.0.1");
   return out;
+}
+
+std::string authority_of(const std::string& host, std::uint16_t port) {
+  return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port) : fmt::format("[{}]:{}", host, port);
 }
 
 }  // namespace caplet::view

@@ -86,8 +86,7 @@ bool is_written_by_caplet(const fs::path& file) {
 
 }  // namespace
 
-Keeper::Keeper(const fs::path& scene, const ReadAs& read_as)
-    : scene_(fs::absolute(scene).lexically_normal()) {
+Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolute(scene).lexically_normal()) {
   for (const auto& [name, value] : read_as) read_as_.emplace(name, valid_utf8(value));  // as the journal gives it back
   const std::string known_as = fs::weakly_canonical(scene_).string();
   const fs::path folder = scene_.parent_path(), name = scene_.filename();

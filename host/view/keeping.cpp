@@ -57,6 +57,7 @@ bool Keeping::make_line(const std::string& line) try {
   if (!is_mark(line)) return change(parse_message(line));
   const Json text = Json::parse(line);
   saved_ = editor_.state();
+  editor_.end_gesture();
   if (const auto camera = text.find("camera"); camera != text.end()) {
     Json look = *camera;
     look["type"] = "look";
@@ -139,6 +140,7 @@ Json Keeping::save(const Save& save, const Look& look, const std::function<bool(
   own_ = own;
   own_is_new_ = camera_is_new;
   saved_ = editor_.state();
+  editor_.end_gesture();
   restored_ = 0;
   log::info("wrote {}", target.string());
   return {{"type", "saved"}, {"name", target.filename().string()}, {"file", target.string()}};
