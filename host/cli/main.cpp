@@ -29,9 +29,7 @@ namespace {
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
 /// Prints one line. Control characters in names and files would break the line, or the terminal: they become blanks.
-void print_error(const std::string& message) {
-  std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str());
-}
+void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str()); }
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();

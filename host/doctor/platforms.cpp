@@ -12,6 +12,7 @@
 #include "base/utf8.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
+#include "device/pocl_needs.h"
 
 namespace caplet {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units,
@@ -125,6 +126,7 @@ Answer ask_driver(const Driver& driver, const Loader& loader, double seconds) {
           return json_dump(Json(error ? error : "unknown error"));
         }
         set(only(driver.library, loader));
+        prepare_for_pocl();
         return json_dump(Json(platforms_here()));
       },
       seconds));
@@ -134,6 +136,7 @@ Answer ask_all(const Variables& variables, double seconds) {
   return read_answer(in_child(
       [&] {
         set(variables);
+        prepare_for_pocl();
         return json_dump(Json(platforms_here()));
       },
       seconds));
