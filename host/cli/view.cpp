@@ -56,6 +56,16 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&silent);
 }
 
+/// What makes another scene of the same file.
+view::Keeper::ReadAs read_as(const ImportOptions& options) {
+  view::Keeper::ReadAs out = options.values();
+  std::erase_if(out, [](const auto& value) {
+    const auto row = std::ranges::find(import_option_rows(), value.first, &ImportOptionRow::name);
+    return row != import_option_rows().end() && row->of == ImportOptionRow::Of::reading;
+  });
+  return out;
+}
+
 /// What an address that others reach lets them do.
 std::string opened_to(const Options& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
@@ -78,7 +88,7 @@ void run_view(const Options& options) {
   std::unique_ptr<view::Keeper> keeper;
   // Of several files that make one scene, none is where changes of it could be kept.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
-    keeper = std::make_unique<view::Keeper>(name, options.import_options.values());
+    keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
   Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);
   if (keeper) {
     scene.source = name;

@@ -51,6 +51,7 @@ void Parser::shapes_of_file(const std::string& type, Parameters& given) {
       const Format& format = type == "file" ? format_of(path) : format_named(type);
       if (format.name == "pbrt-v4") throw InputError("a pbrt scene is read by Include or Import");
       ImportOptions options;
+      options.are_of_scene = true;
       for (const std::string& option : format.options)
         if (given.has(option)) options.set(option, given.text(option, ""));
       own_materials = given.boolean("ownmaterials", options.text("color").has_value());

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "base/log.h"
+#include "base/quotes.h"
 #include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/pbrt_names.h"
@@ -100,12 +101,16 @@ Imported Parser::parse(std::string text) {
 void Parser::parse_file(const std::string& file, std::string text, Lexer* behind) {
   Lexer lexer(file, std::move(text), behind);
   Lexer* const outer = std::exchange(lexer_, &lexer);
+  Unproven in_file;
   for (bool more = true; more;) {
+    const std::size_t errors = diagnostics_.error_count();
     try {
       more = lexer.peek().kind != Token::Kind::end;
       if (more) parse_statement();
+      if (more && diagnostics_.error_count() == errors) in_file.prove();
     } catch (const SyntaxError& error) {
       diagnostics_.error(error.where, error.message, error.kind);
+      if (outer && !in_file.is_proven()) break;  // a file that another one names, and that is no scene
       skip_to_directive();
     }
   }

@@ -13,7 +13,10 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/quotes.h"
+#include "base/reading.h"
 #include "import/color_map.h"
+#include "import/detail/option_files.h"
 #include "import/detail/text_file.h"
 #include "present/present.h"
 
@@ -76,6 +79,7 @@ struct Row {
 std::vector<Row> rows_of(std::string_view text, const std::string& file, std::string& name) {
   std::vector<Row> rows;
   Diagnostics diagnostics;
+  Unproven in_file;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   for (int line = 1; !text.empty(); ++line) {
     std::string_view one = take_line(text);
@@ -99,6 +103,7 @@ std::vector<Row> rows_of(std::string_view text, const std::string& file, std::st
                         caplet::quoted(number) + " is not a number (a line is a value, or an id or a file's name and a value)");
     if (!rows.empty() && row.key.empty() != rows.front().key.empty())
       diagnostics.error({file, line, 0}, "lines of one column and of two are mixed");
+    if (!diagnostics.has_errors()) in_file.prove();
     rows.push_back(row);
   }
   diagnostics.finish();
@@ -192,8 +197,8 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
   } else {
     std::string file = by;
     if (const std::size_t hole = file.find("{}"); hole != std::string::npos) file.replace(hole, 2, file_name_);
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    const OptionFiles may_be_read(options);
+    if (!is_there(file, {"--color"}))
       throw InputError({"--color"}, fmt::format("'{}' is none of type, file, order and depth, and no file of values", file));
     what_.clear();
     values_ = read_values(file, samples, path, options, what_);

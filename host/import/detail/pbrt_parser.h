@@ -119,7 +119,7 @@ class Parser {
   glm::dmat4 matrix_argument();
   std::vector<Parameter> own_parameters();
   Parameters parameters(const std::string& owner, const char* attribute_target = nullptr);
-  std::string owner(const std::string& type) const { return directive_ + " \"" + type + "\""; }
+  std::string owner(const std::string& type) const { return directive_ + " " + in_quotes(type); }
 
   // Directives
   void accelerator();
