@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "base/log.h"
 #include "support/broken_utf8.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace {
@@ -84,6 +86,12 @@ TEST(OneLine, HasBlanksForControlCharacters) {
                      "31m\xc2\x80\xc2\xa0"),
             " 31m \xc2\xa0");  // CSI of one character
   EXPECT_EQ(one_line("\x9b"), "\xef\xbf\xbd");
+}
+
+TEST(Log, IsOneLineOfUtf8) {
+  test::LogOf log;
+  log::warn("{}", "a\x1b[2J\nb\xff");
+  EXPECT_EQ(log.text(), "caplet: warning: a [2J b\xef\xbf\xbd\n");
 }
 
 }  // namespace
