@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/reading.h"
 #include "import/detail/pbrt_parser.h"
 #include "scene/append.h"
 
@@ -28,6 +29,14 @@ void take_off_materials(Scene& scene) {
   };
   std::ranges::for_each(scene.shapes, visit);
   for (Object& object : scene.objects) std::ranges::for_each(object.shapes, visit);
+}
+
+/// What a statement says of an option. Files that it names lie where the scene's other files do.
+std::string value_of(Parameters& given, const std::string& option) {
+  std::string value = given.text(option, "");
+  if (option != "color" && option != "positions" && option != "components") return value;
+  std::string file = resolve_file(value, given.where(option), given.main_file());
+  return option != "color" || is_there(file, given.where(option)) ? file : value;  // most colours are words
 }
 
 }  // namespace
@@ -53,7 +62,7 @@ void Parser::shapes_of_file(const std::string& type, Parameters& given) {
       ImportOptions options;
       options.are_of_scene = true;
       for (const std::string& option : format.options)
-        if (given.has(option)) options.set(option, given.text(option, ""));
+        if (given.has(option)) options.set(option, value_of(given, option));
       own_materials = given.boolean("ownmaterials", options.text("color").has_value());
       file = read_scene(path, images_, options, &format);
     } catch (const InputError& problem) {

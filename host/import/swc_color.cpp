@@ -79,7 +79,6 @@ struct Row {
 std::vector<Row> rows_of(std::string_view text, const std::string& file, std::string& name) {
   std::vector<Row> rows;
   Diagnostics diagnostics;
-  Unproven in_file;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   for (int line = 1; !text.empty(); ++line) {
     std::string_view one = take_line(text);
@@ -103,7 +102,6 @@ std::vector<Row> rows_of(std::string_view text, const std::string& file, std::st
                         caplet::quoted(number) + " is not a number (a line is a value, or an id or a file's name and a value)");
     if (!rows.empty() && row.key.empty() != rows.front().key.empty())
       diagnostics.error({file, line, 0}, "lines of one column and of two are mixed");
-    if (!diagnostics.has_errors()) in_file.prove();
     rows.push_back(row);
   }
   diagnostics.finish();
@@ -157,6 +155,8 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
                                 const std::filesystem::path& neuron, const ImportOptions& options, std::string& name) {
   const std::string file = path.string();
   const TextFile text(path);
+  Unproven in_file;  // a number is no sign of what it is
+  if (!options.are_of_scene) in_file.prove();
   const std::vector<Row> rows = rows_of(text.text(), file, name);
   if (name.empty()) name = path.filename().string();
   std::int64_t id = 0;
@@ -198,7 +198,7 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
     std::string file = by;
     if (const std::size_t hole = file.find("{}"); hole != std::string::npos) file.replace(hole, 2, file_name_);
     const OptionFiles may_be_read(options);
-    if (!is_there(file, {"--color"}))
+    if (!may_read(file) || !is_there(file, {"--color"}))
       throw InputError({"--color"}, fmt::format("'{}' is none of type, file, order and depth, and no file of values", file));
     what_.clear();
     values_ = read_values(file, samples, path, options, what_);

@@ -41,7 +41,7 @@ ObjectBegin "{0}"
 Shape "sphere" "string name" "{0}"
 ObjectEnd
 ObjectBegin "part"
-Shape "box" "string name" "{0}"
+Shape "box" "point3 p0" [ 0 0 0 ] "point3 p1" [ 1 1 1 ] "string name" "{0}"
 ObjectEnd
 Shape "csg" "string operation" "difference" "string operands" [ "part" "{0}" ]
 ObjectInstance "{0}"
