@@ -106,7 +106,7 @@ void Parser::parse_file(const std::string& file, std::string text, Lexer* behind
     const std::size_t errors = diagnostics_.error_count();
     try {
       more = lexer.peek().kind != Token::Kind::end;
-      if (more) parse_statement();
+      if (more) parse_statement(in_file);
       if (more && diagnostics_.error_count() == errors) in_file.prove();
     } catch (const SyntaxError& error) {
       diagnostics_.error(error.where, error.message, error.kind);
@@ -117,7 +117,7 @@ void Parser::parse_file(const std::string& file, std::string text, Lexer* behind
   lexer_ = outer;
 }
 
-void Parser::parse_statement() {
+void Parser::parse_statement(Unproven& in_file) {
   static const auto by_name = [] {
     std::unordered_map<std::string_view, const Handler*> map;
     for (const Handler& row : handlers()) map.emplace(row.name, &row);
@@ -144,6 +144,9 @@ void Parser::parse_statement() {
                       directive_ + (directive_ == "WorldBegin" ? " is given twice" : " is only allowed before WorldBegin")};
   if (handler.allowed == Handler::Allowed::world && !in_world_)
     throw SyntaxError{where_, directive_ + " is only allowed after WorldBegin"};
+  // A type that there is, too: whatever is wrong with the rest, this is a scene.
+  if (const Token& type = lexer_->peek(); type.kind == Token::Kind::string)
+    if (is_known_name(directive_, std::string(type.text)) || !v3_name(directive_, type.text).empty()) in_file.prove();
   (this->*handler.run)();
 }
 
