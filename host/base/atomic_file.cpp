@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/log.h"
 
 namespace caplet {
 
@@ -198,17 +200,14 @@ void write_through(const Place& place, const fs::path& target, const std::functi
   if (to.close() != 0) fail(target, "cannot be written", errno);
 }
 
-/// Creates a file with the mode and, where allowed, the owner of the one it is to replace.
-void create(const fs::path& temporary, const Place& place, const fs::path& target) {
-  const bool fresh = place.kind == Kind::fresh;
-  const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, fresh ? 0666 : 0600));
-  if (file() < 0) fail(target, "cannot be written", errno);
-  if (fresh) return;
+/// The mode and, where allowed, the owner of the file that it is to replace.
+void set_owner_and_mode(int file, const Place& place) {
+  if (place.kind == Kind::fresh) return;
   // Users who may not change the owner keep the file. The mode comes last: a change of the owner clears bits of it.
-  if (::fchown(file(), place.status.st_uid, place.status.st_gid) != 0 &&
-      ::fchown(file(), static_cast<uid_t>(-1), place.status.st_gid) != 0)
+  if (::fchown(file, place.status.st_uid, place.status.st_gid) != 0 &&
+      ::fchown(file, static_cast<uid_t>(-1), place.status.st_gid) != 0)
     errno = 0;
-  ::fchmod(file(), place.status.st_mode & 07777);
+  ::fchmod(file, place.status.st_mode & 07777);
 }
 
 /// For targets that no file can be renamed to, such as mount points.
@@ -252,13 +251,108 @@ class Listed {
   Slot* slot_ = nullptr;
 };
 
-/// A name for a temporary file in the target's folder, short enough for its file system.
-fs::path temporary_beside(const fs::path& path) {
-  static std::atomic<int> serial = 0;
-  constexpr std::size_t longest = 100;
-  return folder_of(path) / fmt::format(".{}.{}.{}.part{}", path.stem().string().substr(0, longest), ::getpid(), serial++,
-                                       path.extension().string().substr(0, longest));
+// --- Temporary files, .STEM.PID.NUMBER.partEXTENSION, and those that killed processes left ---
+
+struct TemporaryName {
+  explicit TemporaryName(const fs::path& path)
+      : before("." + path.stem().string().substr(0, longest) + "."),
+        after(".part" + path.extension().string().substr(0, longest)) {}
+
+  std::string next() const {
+    static std::atomic<int> serial = 0;
+    return fmt::format("{}{}.{}{}", before, ::getpid(), serial++, after);
+  }
+  /// Whether it is a name for the same target in any process.
+  bool is_one(std::string_view name) const {
+    if (name.size() < before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return false;
+    return are_numbers(name.substr(before.size(), name.size() - before.size() - after.size()));
+  }
+  /// Whether it is such a name for whatever target.
+  static bool is_any(std::string_view name) {
+    const std::size_t part = name.rfind(".part");
+    if (!name.starts_with('.') || part == std::string_view::npos) return false;
+    const std::size_t second = name.rfind('.', part - 1), first = second == 0 ? second : name.rfind('.', second - 1);
+    return part > 0 && second != std::string_view::npos && first != std::string_view::npos && first > 0 &&
+           are_numbers(name.substr(first + 1, part - first - 1));
+  }
+
+ private:
+  static constexpr std::size_t longest = 100;  // file systems have limits
+
+  /// "PID.NUMBER"
+  static bool are_numbers(std::string_view text) {
+    const std::size_t point = text.find('.');
+    const auto is_number = [](std::string_view one) {
+      return !one.empty() && std::ranges::all_of(one, [](char c) { return c >= '0' && c <= '9'; });
+    };
+    return point != std::string_view::npos && is_number(text.substr(0, point)) && is_number(text.substr(point + 1));
+  }
+
+  std::string before, after;
+};
+
+/// Temporary files that lie in a folder when this process first writes there: what is newer is of processes that live, or died
+/// since, and is for the next run.
+std::vector<std::string>& found_in(const fs::path& folder) {
+  static std::map<fs::path, std::vector<std::string>> all;
+  const auto [at, is_new] = all.try_emplace(folder);
+  std::error_code error;
+  if (is_new)
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+      if (std::string name = entry->path().filename().string(); TemporaryName::is_any(name))
+        at->second.push_back(std::move(name));
+  return at->second;
 }
+
+/// Removes this user's temporary file if nobody holds its lock: its process is gone.
+void remove_if_left(const fs::path& file) {
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  struct stat status {};
+  if (descriptor() < 0 || ::fstat(descriptor(), &status) != 0) return;
+  if (!S_ISREG(status.st_mode) || status.st_uid != ::geteuid()) return;
+  if (::flock(descriptor(), LOCK_EX | LOCK_NB) == 0 && ::unlink(file.c_str()) == 0)
+    log::info("removed {}, which a run that was killed has left", file.string());
+}
+
+void remove_left_of(const fs::path& path) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  const TemporaryName name(path);
+  std::error_code error;
+  std::erase_if(found_in(fs::absolute(folder_of(path), error)), [&](const std::string& left) {
+    if (!name.is_one(left)) return false;
+    remove_if_left(folder_of(path) / left);
+    return true;
+  });
+}
+
+/// A temporary file beside its target, locked for as long as the object lives. The lock goes with the process however it ends.
+class Temporary {
+ public:
+  Temporary(const Place& place, const fs::path& target) {
+    const TemporaryName name(place.path);
+    for (int tries = 0;; ++tries) {
+      path_ = folder_of(place.path) / name.next();
+      descriptor_.emplace(
+          ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, place.kind == Kind::fresh ? 0666 : 0600));
+      if ((*descriptor_)() < 0 && (errno != EEXIST || tries == 100)) fail(target, "cannot be written", errno);
+      if ((*descriptor_)() >= 0 && is_ours()) break;
+    }
+    set_owner_and_mode((*descriptor_)(), place);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  /// False where another process took the file for one that was left, between its making and its lock, and has removed it.
+  bool is_ours() const {
+    if (::flock((*descriptor_)(), LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // file systems without locks
+    struct stat status {};
+    return ::fstat((*descriptor_)(), &status) != 0 || status.st_nlink > 0;
+  }
+
+  fs::path path_;
+  std::optional<Descriptor> descriptor_;
+};
 
 }  // namespace
 
@@ -270,9 +364,10 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
     write_through(place, target, write);
     return;
   }
-  const fs::path temporary = temporary_beside(place.path);
+  remove_left_of(place.path);
+  const Temporary file(place, target);
+  const fs::path& temporary = file.path();
   const Listed listed(temporary);
-  create(temporary, place, target);
   std::error_code error;
   try {
     write(temporary);

@@ -20,7 +20,8 @@ namespace caplet {
 /// - A new or a regular file: a file beside it is renamed over it. A new file's mode is by the umask; an old one's mode stays,
 /// and
 ///   its owner where that is allowed. When `write` throws, the target is as before. Where a rename is refused (a mount point),
-///   the contents are copied into the target.
+///   the contents are copied into the target. A process that is killed meanwhile leaves that file, `.STEM.PID.N.partEXT`: the
+///   next one that writes to the same name removes it, as nobody holds its lock.
 /// - A fifo, a character device or one of this process's standard streams: a temporary file is copied into it.
 /// Throws RunError when that fails, and for a target that is a folder, a block device, a socket or a noted input (NotedInputs).
 void write_atomically(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);

@@ -27,6 +27,7 @@ class Diagnostics {
   void add_more(std::size_t count);
   void warning(const SourceLocation& where, const std::string& message);  // logged at once
   bool has_errors() const { return count_ > 0; }
+  std::size_t error_count() const { return count_; }
   /// True when no further line will be shown, so that no work need go into its text.
   bool is_full() const { return lines_.size() >= limit_; }
   /// Throws InputError with all errors, if there are any.

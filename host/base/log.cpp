@@ -7,6 +7,8 @@
 #include <mutex>
 #include <string>
 
+#include "base/utf8.h"
+
 namespace caplet {
 
 namespace {
@@ -44,7 +46,7 @@ void write(LogLevel level, std::string_view message) {
   if (!is_shown(level)) return;
   const std::lock_guard lock(writing);
   if (sink()) return sink()(level, message);
-  const std::string line = fmt::format("caplet: {}: {}\n", name_of(level), message);
+  const std::string line = fmt::format("caplet: {}: {}\n", name_of(level), one_line(message));
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 #include "cli/commands.h"
 #include "cli/trial.h"
 #include "device/device.h"
@@ -89,7 +90,7 @@ void print_json(const std::vector<Listed>& devices, bool measured) {
     if (device.why_not.empty() && measured) out.back()["rays_per_second"] = device.rays_a_second;
     if (!device.why_not.empty()) out.back()["not_measured"] = device.why_not;
   }
-  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", json_dump(out, 2));
 }
 
 void print_table(const std::vector<Listed>& devices, bool measured) {

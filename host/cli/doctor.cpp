@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/utf8.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "doctor/diagnosis.h"
@@ -19,13 +20,6 @@
 namespace caplet::cli {
 
 namespace {
-
-/// `text` as one line: drivers' messages may have several.
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return text;
-}
 
 void print_line(const doctor::Finding& finding) {
   fmt::print("{:<6} {}: {}\n", doctor::name_of(finding.state), one_line(finding.about), one_line(finding.what));
@@ -46,7 +40,7 @@ void print_json(const doctor::Diagnosis& diagnosis) {
     for (const doctor::DeviceFacts& device : platform.devices) devices.push_back(report::device_json(device.info));
   }
   const nlohmann::ordered_json out{{"findings", findings}, {"platforms", platforms}, {"devices", devices}};
-  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", json_dump(out, 2));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "cli/commands.h"
 #include "device/second_try.h"
 #include "render/session.h"
@@ -28,11 +29,7 @@ namespace {
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
 /// Prints one line. Control characters in names and files would break the line, or the terminal: they become blanks.
-void print_error(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  std::fprintf(stderr, "caplet: error: %s\n", message.c_str());
-}
+void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str()); }
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();

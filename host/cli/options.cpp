@@ -136,7 +136,15 @@ void apply(const Overrides& overrides, Scene& scene) {
 }
 
 void add_import_options(CLI::App& command, ImportOptions& options) {
+  using Of = ImportOptionRow::Of;
   for (const ImportOptionRow& row : import_option_rows()) {
+    if (row.of == Of::reading) {
+      command
+          .add_flag_callback(
+              "--" + row.name, [&options, name = row.name] { options.set(name, "yes"); }, row.help)
+          ->group("Reading");
+      continue;
+    }
     std::string formats_of_it;
     for (const Format& format : formats())
       if (std::ranges::find(format.options, row.name) != format.options.end())
@@ -144,10 +152,10 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
     command
         .add_option_function<std::string>(
             "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
-            row.help + (row.is_look ? "" : " (" + formats_of_it + ")") +
+            row.help + (row.of == Of::picture ? "" : " (" + formats_of_it + ")") +
                 (row.name == "least-width" ? "; unless asked " + usual_least_width() : ""))
         ->type_name(row.values)
-        ->group(row.is_look ? "The picture" : "Files of other fields");
+        ->group(row.of == Of::picture ? "The picture" : "Files of other fields");
   }
   command
       .add_flag_callback(

@@ -400,7 +400,8 @@ FrameSource source_of(const Options& options) {
       refuse("the scene has one frame: several are in files of molecules, in numbered files (####), or in --turntable N");
     ImportOptions of_file;
     for (const auto& [name, value] : options.import_options.values())
-      if (std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end()) of_file.set(name, value);
+      if (name == "no-outside" || std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end())
+        of_file.set(name, value);
     const std::uint32_t count = read_scene(*moves, FileImageReader(), of_file).frames;
     source.range = {1, count, count};
   }

@@ -61,7 +61,11 @@ void try_device_apart(const Device& device, const Trial& trial) {
     end = in_child();
   }
   if (end.finished && end.answer == not_started) return try_device(device, trial);
-  if (end.finished) return;
+  if (end.finished) {
+    // What the child could not keep it could not say either.
+    if (needs_trial(device, trial)) remember_trial(device, trial);
+    return;
+  }
   if (interrupt_requested()) throw RunError("interrupted");
   if (end.exit_code == exit_wrong_device) throw WrongDevice(error_text(end.said));
   if (end.exit_code == 1 || end.exit_code == 2) throw RunError(error_text(end.said));

@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "lower/live_scene.h"
+#include "view/addresses.h"
 
 namespace caplet::cli {
 
@@ -54,6 +56,28 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&silent);
 }
 
+/// What makes another scene of the same file.
+view::Keeper::ReadAs read_as(const ImportOptions& options) {
+  view::Keeper::ReadAs out = options.values();
+  std::erase_if(out, [](const auto& value) {
+    const auto row = std::ranges::find(import_option_rows(), value.first, &ImportOptionRow::name);
+    return row != import_option_rows().end() && row->of == ImportOptionRow::Of::reading;
+  });
+  return out;
+}
+
+/// What an address that others reach lets them do.
+std::string opened_to(const Options& options, bool saves, std::uint16_t port) {
+  std::vector<std::string> where;
+  for (const std::string& address : view::addresses_reached(options.host)) where.push_back(view::authority_of(address, port));
+  const char* what = options.read_only ? "can look at the scene"
+                     : saves           ? "can look at the scene, change it, and save it as files in its folder"
+                                       : "can look at the scene and change it";
+  return fmt::format(
+      "--host {}: every machine that reaches this one at {} and knows the page's address {}{}; nothing is encrypted",
+      options.host, fmt::join(where, ", "), what, options.read_only ? "" : " (--read-only: look alone)");
+}
+
 void run_view(const Options& options) {
   log::set_quiet(options.quiet);
   Overrides overrides;
@@ -64,7 +88,7 @@ void run_view(const Options& options) {
   std::unique_ptr<view::Keeper> keeper;
   // Of several files that make one scene, none is where changes of it could be kept.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
-    keeper = std::make_unique<view::Keeper>(name, options.import_options.values());
+    keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
   Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);
   if (keeper) {
     scene.source = name;
@@ -81,8 +105,10 @@ void run_view(const Options& options) {
   viewer_options.server.token = options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
+  const bool saves = keeper != nullptr;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));
   SecondTry::driver_works();
+  if (!view::is_this_machine_alone(options.host)) log::warn("{}", opened_to(options, saves, viewer.port()));
   fmt::print("{}\n", viewer.address());
   std::fflush(stdout);
   log::info("{} is at the address above, on {}; Ctrl-C ends it", name, device.info().name);
@@ -98,7 +124,8 @@ void add_view(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
   add_scene_files(*command, o->scenes);
-  command->add_option("--host", o->host, "Address to listen at; others than this machine's own are open to its network")
+  command
+      ->add_option("--host", o->host, "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it")
       ->capture_default_str()
       ->type_name("ADDRESS");
   command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");

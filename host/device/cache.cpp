@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/log.h"
 
 namespace caplet {
 
@@ -60,6 +62,8 @@ fs::path cache_file(std::string_view key, std::string_view extension) {
 std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::string_view extension) {
   const fs::path path = cache_file(key, extension);
   if (path.empty()) return std::nullopt;
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;  // a folder would be opened, and throw when it is read
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string file{std::istreambuf_iterator<char>(in), {}};
@@ -79,8 +83,15 @@ bool cache_store(std::string_view key, std::string_view extension, const std::ve
   const std::lock_guard lock(one_writer);
   const fs::path path = cache_file(key, extension);
   if (path.empty()) return false;
+  static std::atomic<bool> is_told = false;
+  const auto tell = [](const std::string& why) {
+    if (!is_told.exchange(true)) log::warn("nothing can be kept in the cache: {} (CAPLET_CACHE names another folder)", why);
+    return false;
+  };
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) return tell(fmt::format("{}: {}", path.parent_path().string(), error.message()));
   try {
-    fs::create_directories(path.parent_path());
     write_atomically(path, [&](const fs::path& temporary) {
       std::ofstream out(temporary, std::ios::binary);
       out << header(key, contents);
@@ -89,8 +100,8 @@ bool cache_store(std::string_view key, std::string_view extension, const std::ve
       if (!out) throw RunError(fmt::format("{}: cannot be written", temporary.string()));
     });
     return true;
-  } catch (const std::exception&) {
-    return false;
+  } catch (const std::exception& refused) {
+    return tell(refused.what());
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cache folder: small files found by a key, checked when read. An unusable folder or a broken file is a miss, never an error.
+// The cache folder: small files found by a key, checked when read. An unusable folder or a broken file is a miss, never an error;
+// the first thing that cannot be stored is warned of.
 #pragma once
 
 #include <cstddef>

@@ -12,6 +12,7 @@
 #include "device/detail/accounting.h"
 #include "device/detail/programs.h"
 #include "device/device.h"
+#include "device/pocl_needs.h"
 #include "device/select.h"
 
 namespace caplet {
@@ -40,6 +41,7 @@ std::vector<Found> find_devices() {
   std::vector<Found> found;
   std::vector<cl::Platform> platforms;
   try {
+    prepare_for_pocl();
     cl::Platform::get(&platforms);
   } catch (const cl::Error&) {
     return found;
@@ -149,6 +151,7 @@ Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding e
   });
   out.accounting_ = std::make_shared<Accounting>();
   out.programs_ = std::make_shared<Programs>();
+  if (out.is_pocl()) tell_of_pocl_cache();
   return out;
 }
 

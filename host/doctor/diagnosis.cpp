@@ -119,6 +119,7 @@ class Examination {
     find_loader();
     ask_drivers();
     add(check_permissions(machine_));
+    add(check_sys(machine_));
     add(check_nvidia(machine_, registry_, loader_, has_nvidia(machine_) && can_load("libnvidia-opencl.so.1", options_.seconds)));
     ask_platforms();
     add(check_unused_gpus(machine_, out_.platforms));

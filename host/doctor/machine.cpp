@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "device/pocl_needs.h"
 #include "device/second_try.h"
 
 namespace caplet::doctor {
@@ -200,7 +201,17 @@ Findings check_cache(const Surroundings& machine, const fs::path& folder) {
 Findings check_pocl_cache(const Surroundings& machine) {
   const fs::path folder = pocl_cache_folder(machine.variable);
   if (folder.empty()) return {};
-  return {check_folder(machine, "PoCL's cache", folder, "POCL_CACHE_DIR", "PoCL then offers no device or cannot compile")};
+  return {check_folder(machine, "PoCL's cache", folder, "POCL_CACHE_DIR",
+                       "PoCL offers no device then or cannot compile; Caplet gives it a temporary folder")};
+}
+
+Findings check_sys(const Surroundings& machine) {
+  if (tells_of_processors(machine.root / "sys")) return {};
+  return {
+      {State::note, (machine.root / "sys").string(),
+       "devices/system/cpu is not there: PoCL finds neither processors nor memory without it, and ends programs (\"Not enough "
+       "memory to run on this device\"); Caplet tells it of them, other programs do not",
+       "sudo mount -t sysfs sysfs /sys, or a container that has it"}};
 }
 
 }  // namespace caplet::doctor

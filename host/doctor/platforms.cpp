@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "base/utf8.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
+#include "device/pocl_needs.h"
 
 namespace caplet {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units,
@@ -26,8 +28,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Loader, name, vendor, version)
 namespace {
 
 using Json = nlohmann::json;
-
-std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 void set(const Variables& variables) {
   for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
@@ -112,7 +112,7 @@ Loader ask_loader() {
           if (!ask || ask(what, out.size() - 1, out.data(), nullptr) != CL_SUCCESS) return std::string();
           return std::string(out.data());
         };
-        return to_text(Loader{text(name), text(vendor), text(version)});
+        return json_dump(Json(Loader{text(name), text(vendor), text(version)}));
       },
       seconds);
   return end.finished ? Json::parse(end.answer).get<Loader>() : Loader();
@@ -123,10 +123,11 @@ Answer ask_driver(const Driver& driver, const Loader& loader, double seconds) {
       [&] {
         if (!::dlopen(driver.library.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
           const char* error = ::dlerror();
-          return to_text(Json(error ? error : "unknown error"));
+          return json_dump(Json(error ? error : "unknown error"));
         }
         set(only(driver.library, loader));
-        return to_text(platforms_here());
+        prepare_for_pocl();
+        return json_dump(Json(platforms_here()));
       },
       seconds));
 }
@@ -135,7 +136,8 @@ Answer ask_all(const Variables& variables, double seconds) {
   return read_answer(in_child(
       [&] {
         set(variables);
-        return to_text(platforms_here());
+        prepare_for_pocl();
+        return json_dump(Json(platforms_here()));
       },
       seconds));
 }

@@ -33,6 +33,7 @@
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
+#include "base/utf8.h"
 #include "film/chromaticities.h"
 #include "film/detail/limits.h"
 #include "film/image.h"
@@ -195,7 +196,8 @@ Imf::Header header_of(const LayeredImage& whole, const std::vector<Channel>& cha
   header.compression() = compression == ExrCompression::zip ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION;
   Imf::addChromaticities(header, to_imf(whole.chromaticities ? *whole.chromaticities : chromaticities_of(whole.space)));
   if (!whole.views.empty()) Imf::addMultiView(header, whole.views);
-  for (const auto& [name, value] : whole.metadata) header.insert(name, Imf::StringAttribute(value));
+  // Readers take texts for UTF-8, and Python's bindings of OpenEXR refuse others.
+  for (const auto& [name, value] : whole.metadata) header.insert(name, Imf::StringAttribute(valid_utf8(value)));
   for (const Channel& channel : channels)
     header.channels().insert(channel.name, Imf::Channel(channel.uints.empty() ? Imf::FLOAT : Imf::UINT));
   return header;

@@ -7,19 +7,19 @@
 
 #include <system_error>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/reading.h"
 
 namespace caplet {
 
 namespace fs = std::filesystem;
 
 std::uintmax_t readable_file_bytes(const fs::path& path) {
+  begin_reading(path);
   std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string() + ": no such file");
-  if (!fs::is_regular_file(path, error)) throw InputError(path.string() + ": not a file");
+  if (!is_there(path, {})) throw InputError(path.string() + ": no such file");
+  if (!is_file(path, {})) throw InputError(path.string() + ": not a file");
   if (::access(path.c_str(), R_OK) != 0) throw InputError(path.string() + ": cannot be read (permission denied)");
-  note_input(path);
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error) throw InputError(fmt::format("{}: {}", path.string(), error.message()));
   return bytes;

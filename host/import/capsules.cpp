@@ -15,6 +15,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/quotes.h"
 #include "import/detail/importers.h"
 #include "import/detail/text_file.h"
 #include "present/present.h"
@@ -164,18 +165,20 @@ std::uint32_t index_of_name(Chunk& chunk, const std::string& name, const Place& 
   return entry->second;
 }
 
-void parse_line(std::string_view text, Chunk& chunk) {
+/// Whether there is a capsule in it.
+bool parse_line(std::string_view text, Chunk& chunk) {
   LineReader line(text, chunk);
-  if (line.at_end()) return;
+  if (line.at_end()) return false;
   glm::vec3 p0, p1;
   float radius0 = 0, radius1 = 0;
-  if (!line.read_point(p0, "the first point") || !line.read_point(p1, "the second point") || !line.read_radius(radius0)) return;
+  if (!line.read_point(p0, "the first point") || !line.read_point(p1, "the second point") || !line.read_radius(radius0))
+    return false;
   radius1 = radius0;
-  if (!line.at_end() && line.at_number() && !line.read_radius(radius1)) return;
+  if (!line.at_end() && line.at_number() && !line.read_radius(radius1)) return false;
   std::string name;
   Place place{chunk.lines, 1};
-  if (!line.at_end() && !line.read_name(name, place)) return;
-  if (!line.expect_end()) return;
+  if (!line.at_end() && !line.read_name(name, place)) return false;
+  if (!line.expect_end()) return false;
   CapsulesShape& out = chunk.capsules;
   out.p0.push_back(p0);
   out.p1.push_back(p1);
@@ -183,6 +186,7 @@ void parse_line(std::string_view text, Chunk& chunk) {
   out.radius1.push_back(radius1);
   out.materials.push_back(index_of_name(chunk, name, place));
   chunk.tapered |= radius0 != radius1;
+  return true;
 }
 
 void parse_chunk(std::string_view text, Chunk& chunk) {
@@ -191,10 +195,11 @@ void parse_chunk(std::string_view text, Chunk& chunk) {
   for (std::vector<glm::vec3>* points : {&out.p0, &out.p1}) points->reserve(text.size() / kUsualLine);
   for (std::vector<float>* radii : {&out.radius0, &out.radius1}) radii->reserve(text.size() / kUsualLine);
   out.materials.reserve(text.size() / kUsualLine);
+  Unproven in_piece;  // each by itself: threads must not make a difference
   while (!text.empty()) {
     const std::string_view line = take_line(text);
     ++chunk.lines;
-    parse_line(line, chunk);
+    if (parse_line(line, chunk)) in_piece.prove();
   }
 }
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "base/atomic_file.h"
+#include "base/reading.h"
 
 namespace caplet {
 
@@ -28,6 +28,7 @@ namespace {
 std::uintmax_t most_unpacked(std::uintmax_t size) { return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size); }
 
 std::string read_file(const fs::path& path, const SourceLocation& where, std::size_t limit) {
+  begin_reading(path, where);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) fail(where, path, "no such file");
@@ -40,7 +41,6 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   const std::unique_ptr<gzFile_s, Close> file(gzopen(path.c_str(), "rb"));
   if (!file) fail(where, path, "cannot be read");
   if (error) fail(where, path, "cannot be read (" + error.message() + ")");
-  note_input(path);
   gzbuffer(file.get(), 1 << 18);
   std::string bytes;
   if (gzdirect(file.get()) && size > limit) fail(where, path, fmt::format("is longer than {} bytes", limit));

@@ -11,12 +11,14 @@
 #include <system_error>
 
 #include "base/log.h"
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/color_map.h"
 #include "import/look.h"
 #include "present/lights.h"
 #include "present/present.h"
 #include "scene/append.h"
+#include "scene/names.h"
 
 namespace caplet {
 
@@ -39,7 +41,8 @@ constexpr std::pair<const char*, const char*> not_read[] = {
 /// The name of the root element of an XML file, as far as its beginning tells; empty: it does not.
 std::string root_element(const fs::path& path) {
   std::string text(1 << 16, '\0');
-  std::ifstream stream(path, std::ios::binary);
+  std::ifstream stream;
+  if (is_file(path, {})) stream.open(path, std::ios::binary);  // a pipe would be waited for
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
@@ -54,6 +57,7 @@ std::string root_element(const fs::path& path) {
 }
 
 void check_readable(const fs::path& path) {
+  check_may_read(path);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throw InputError({path.string()}, "no such file");
@@ -63,10 +67,21 @@ void check_readable(const fs::path& path) {
   if (fs::file_size(path, error) == 0 && !error) throw InputError({path.string()}, "the file is empty");
 }
 
-bool is_look(const std::string& name) {
+bool is_of_all(const std::string& name) {
   const auto found = std::ranges::find(import_option_rows(), name, &ImportOptionRow::name);
-  return found != import_option_rows().end() && found->is_look;
+  return found != import_option_rows().end() && found->of != ImportOptionRow::Of::format;
 }
+
+/// Keeps this thread to the file's own folder where that is asked for.
+class Fence {
+ public:
+  Fence(const fs::path& path, const ImportOptions& options) {
+    if (options.yes("no-outside", false)) beneath_.emplace(path);
+  }
+
+ private:
+  std::optional<ReadingBeneath> beneath_;
+};
 
 bool knows(const Format& format, const std::string& option) {
   return std::ranges::find(format.options, option) != format.options.end();
@@ -86,7 +101,7 @@ bool knows(const Format& format, const std::string& option) {
 /// `formats_of_files`: each of those that are asked about.
 void check_known(const ImportOptions& options, const std::vector<const Format*>& formats_of_files) {
   for (const auto& [name, value] : options.values())
-    if (!is_look(name) &&
+    if (!is_of_all(name) &&
         std::ranges::none_of(formats_of_files, [&name = name](const Format* format) { return knows(*format, name); }))
       refuse_option(name, formats_of_files);
 }
@@ -100,6 +115,7 @@ ImportOptions known_to(const Format& format, const ImportOptions& options) {
   out.file = options.file;
   out.files = options.files;
   out.seen = options.seen;
+  out.are_of_scene = options.are_of_scene;
   return out;
 }
 
@@ -220,6 +236,7 @@ const Format& format_of(const fs::path& path) {
 }
 
 Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options, const Format* format) {
+  const Fence fence(path, options);
   check_readable(path);
   if (!format) format = &format_of(path);
   check_known(options, {format});
@@ -251,6 +268,7 @@ Scene import_scene(const fs::path& path, const ImageReader& images, const Import
 Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, const ImportOptions& options) {
   std::vector<const Format*> formats_of_files;
   for (const fs::path& path : paths) {
+    const Fence fence(path, options);
     check_readable(path);
     formats_of_files.push_back(&format_of(path));
   }
@@ -262,6 +280,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
     of_all.file = i;
     of_all.files = paths.size();
     of_all.seen = std::make_shared<ValueRange>();
+    const Fence fence(paths[i], options);
     Imported file = formats_of_files[i]->import(paths[i], images, known_to(*formats_of_files[i], of_all));
     if (const ValueRange& seen = *of_all.seen; seen.is_there) {
       by_values.push_back(i);
@@ -283,6 +302,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
   apply_look(scene, images, options,
              std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
+  make_names_valid(scene);
   return validated(std::move(scene));
 }
 

@@ -17,7 +17,7 @@ namespace caplet {
 
 struct ImportOptionRow {
   std::string name, values, help;
-  bool is_look;  // of the picture: every format knows it
+  enum class Of { format, picture, reading } of = Of::format;  // of some formats; of all: how it looks, how it is read
 };
 
 const std::vector<ImportOptionRow>& import_option_rows();
@@ -51,6 +51,7 @@ class ImportOptions {
   // Of several files for one picture: which of how many this is, and where what colours tell of it is added.
   std::size_t file = 0, files = 1;
   std::shared_ptr<ValueRange> seen;
+  bool are_of_scene = false;  // a statement of a scene says them, not the user
 
  private:
   std::map<std::string, std::string> values_;

@@ -13,6 +13,8 @@
 #include <fstream>
 #include <map>
 
+#include "base/reading.h"
+
 namespace caplet {
 
 namespace {
@@ -214,8 +216,10 @@ std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, co
 }  // namespace
 
 SparseGridPointer read_nanovdb(const std::string& file, const std::string& name, const SourceLocation& where) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw InputError(where, file + ": cannot be read");
+  begin_reading(file, where);
+  std::ifstream stream;
+  if (is_file(file, where)) stream.open(file, std::ios::binary | std::ios::ate);  // a pipe would be waited for
+  if (!stream.is_open()) throw InputError(where, file + ": cannot be read");
   const auto total = static_cast<std::uint64_t>(stream.tellg());
   std::uint64_t at = 0;
   const std::vector<char> nothing;

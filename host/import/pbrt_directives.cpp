@@ -12,6 +12,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/pbrt_lights.h"
 #include "import/detail/pbrt_materials.h"
@@ -293,7 +294,7 @@ std::shared_ptr<const TextureImage> Parser::texture_image(Parameters& parameters
   const std::string given = parameters.text(name, "");
   const std::string file = resolve_file(given, parameters.where(name), parameters.main_file());
   std::error_code ignored;
-  if (given.empty() || !std::filesystem::is_regular_file(file, ignored)) {
+  if (given.empty() || !is_file(file, parameters.where(name))) {
     problem = "no such file " + in_quotes(file);
     return nullptr;
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/reading.h"
 #include "import/detail/pbrt_parser.h"
 #include "scene/append.h"
 
@@ -30,6 +31,14 @@ void take_off_materials(Scene& scene) {
   for (Object& object : scene.objects) std::ranges::for_each(object.shapes, visit);
 }
 
+/// What a statement says of an option. Files that it names lie where the scene's other files do.
+std::string value_of(Parameters& given, const std::string& option) {
+  std::string value = given.text(option, "");
+  if (option != "color" && option != "positions" && option != "components") return value;
+  std::string file = resolve_file(value, given.where(option), given.main_file());
+  return option != "color" || is_there(file, given.where(option)) ? file : value;  // most colours are words
+}
+
 }  // namespace
 
 void Parser::put_as_stated(Shape& shape, const SourceLocation& where, bool is_instanced) const {
@@ -51,8 +60,9 @@ void Parser::shapes_of_file(const std::string& type, Parameters& given) {
       const Format* format = type == "file" ? &format_of(path) : &format_named(type);
       if (format->name == "pbrt-v4") throw InputError("a pbrt scene is read by Include or Import");
       ImportOptions options;
+      options.are_of_scene = true;
       for (const std::string& option : format->options)
-        if (given.has(option)) options.set(option, given.text(option, ""));
+        if (given.has(option)) options.set(option, value_of(given, option));
       own_materials = given.boolean("ownmaterials", options.text("color").has_value());
       file = read_scene(path, images_, options, format);
     } catch (const InputError& problem) {

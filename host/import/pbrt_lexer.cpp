@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "base/quotes.h"
+
 namespace caplet::pbrt {
 
 namespace {
@@ -24,6 +26,7 @@ std::string_view without_plus(std::string_view text) {
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
+  if (!may_quote()) return std::string("\"") + withheld + "\"";
   std::string out = "\"";
   for (char c : text.substr(0, longest)) out += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
   return out + (text.size() > longest ? "...\"" : "\"");

@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/ies.h"
 #include "present/lights.h"
@@ -148,7 +149,7 @@ std::shared_ptr<const File> LightFiles::file(Parameters& parameters, const char*
   const std::string given = parameters.text(name, "");
   const std::string path = file_of(parameters, name);
   std::error_code ignored;
-  if (given.empty() || !std::filesystem::exists(path, ignored)) {
+  if (given.empty() || !is_there(path, parameters.where(name))) {
     parameters.error(name, "no such file " + in_quotes(path));
     return nullptr;
   }

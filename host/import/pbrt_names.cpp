@@ -151,6 +151,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+bool is_known_name(std::string_view directive, const std::string& name) {
+  return std::ranges::any_of(name_tables(), [&](const NameTable& table) {
+    return table.directive == directive && (contains(table.accepted, name) || contains(table.refused, name));
+  });
+}
+
 Refusal refusal_of(std::string_view directive, const std::string& name) {
   for (const NameTable& table : name_tables()) {
     if (table.directive != directive) continue;

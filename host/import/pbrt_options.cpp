@@ -292,7 +292,7 @@ void check_accelerator(const std::string& type, Parameters& parameters) {
 std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const Lexer& lexer,
                                         Diagnostics& diagnostics) {
   const auto wrong = [&](const std::string& message) {
-    diagnostics.error(lexer.place(value), "Option \"" + name + "\" " + message);
+    diagnostics.error(lexer.place(value), "Option " + in_quotes(name) + " " + message);
   };
   if (name == "seed") return static_cast<std::uint32_t>(parse_integer(value, lexer));
   if (name == "displacementedgescale") {

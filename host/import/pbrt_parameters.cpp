@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/pbrt_names.h"
@@ -105,7 +106,7 @@ void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>
   if (lexer.peek().kind != Token::Kind::open) {
     if (lexer.peek().kind != Token::Kind::word && lexer.peek().kind != Token::Kind::string)
       throw SyntaxError{lexer.place(lexer.peek()),
-                        "the parameter \"" + parameter.type + " " + parameter.name + "\" has no value"};
+                        "the parameter " + in_quotes(parameter.type + " " + parameter.name) + " has no value"};
     add(lexer.next());
     return;
   }
@@ -174,7 +175,7 @@ std::string plural(std::size_t count) { return std::to_string(count) + (count ==
 /// The complaint about a parameter's number of values, empty when it is right.
 std::string check_count(const Parameter& parameter, const TypeRow& row) {
   const std::size_t count = parameter.numbers.size() + parameter.strings.size() + parameter.bools.size();
-  const std::string name = "\"" + parameter.type + " " + parameter.name + "\"";
+  const std::string name = in_quotes(parameter.type + " " + parameter.name);
   if (count == 0) return "the parameter " + name + " has no value";
   if (parameter.type == "spectrum") {
     if (!parameter.strings.empty() && !parameter.numbers.empty()) return name + " mixes names and numbers";
@@ -218,7 +219,7 @@ std::vector<Parameter> parse_parameters(Lexer& statement, ColorSpace space, Diag
     std::optional<SyntaxError> problem;
     parse_values(parameter, lexer, problem);
     if (problem) {
-      diagnostics.error(problem->where, "\"" + parameter.type + " " + parameter.name + "\": " + problem->message);
+      diagnostics.error(problem->where, in_quotes(parameter.type + " " + parameter.name) + ": " + problem->message);
       parameter.broken = true;
     } else if (const std::string complaint = check_count(parameter, *row); !complaint.empty()) {
       diagnostics.error(parameter.where, complaint);
@@ -226,7 +227,7 @@ std::vector<Parameter> parse_parameters(Lexer& statement, ColorSpace space, Diag
     }
     if (Parameter* first = given.find(parameters, parameter.name)) {
       const std::string twice =
-          "the parameter \"" + parameter.name + "\" is given twice (first at " + first->where.to_string() + ")";
+          "the parameter " + in_quotes(parameter.name) + " is given twice (first at " + first->where.to_string() + ")";
       if (first->type != parameter.type) {
         diagnostics.error(parameter.where, twice + ", as " + first->type + " and as " + parameter.type);
         continue;
@@ -252,12 +253,12 @@ void add_errors(const InputError& problem, const SourceLocation& where, Diagnost
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file) {
   namespace fs = std::filesystem;
   const fs::path path(name);
+  check_may_read(path.is_absolute() ? path : fs::path(where.file).parent_path() / path, where);
   if (path.is_absolute()) return name;
   const fs::path beside = fs::path(where.file).parent_path() / path;
-  std::error_code ignored;
-  if (fs::exists(beside, ignored)) return beside.string();
+  if (is_there(beside, where)) return beside.string();
   const fs::path main = fs::path(main_file).parent_path() / path;
-  return fs::exists(main, ignored) ? main.string() : beside.string();
+  return is_there(main, where) ? main.string() : beside.string();
 }
 
 Parameters::Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
@@ -430,8 +431,7 @@ std::optional<Spectrum> Parameters::spectrum_of(const Parameter& parameter, Spec
   if (!parameter.strings.empty()) {
     if (auto named = named_spectrum(parameter.strings[0])) return named;
     const std::string file = resolve_file(parameter.strings[0], parameter.where, *main_file_);
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    if (!is_there(file, parameter.where))
       return wrong("names neither a known spectrum nor a file, " + in_quotes(parameter.strings[0]) +
                    (diagnostics_->is_full()
                         ? ""

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "base/log.h"
+#include "base/quotes.h"
 #include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/pbrt_names.h"
@@ -100,19 +101,23 @@ Imported Parser::parse(std::string text) {
 void Parser::parse_file(const std::string& file, std::string text, Lexer* behind) {
   Lexer lexer(file, std::move(text), behind);
   Lexer* const outer = std::exchange(lexer_, &lexer);
+  Unproven in_file;
   for (bool more = true; more;) {
+    const std::size_t errors = diagnostics_.error_count();
     try {
       more = lexer.peek().kind != Token::Kind::end;
-      if (more) parse_statement();
+      if (more) parse_statement(in_file);
+      if (more && diagnostics_.error_count() == errors) in_file.prove();
     } catch (const SyntaxError& error) {
       diagnostics_.error(error.where, error.message, error.kind);
+      if (outer && !in_file.is_proven()) break;  // a file that another one names, and that is no scene
       skip_to_directive();
     }
   }
   lexer_ = outer;
 }
 
-void Parser::parse_statement() {
+void Parser::parse_statement(Unproven& in_file) {
   static const auto by_name = [] {
     std::unordered_map<std::string_view, const Handler*> map;
     for (const Handler& row : handlers()) map.emplace(row.name, &row);
@@ -139,6 +144,9 @@ void Parser::parse_statement() {
                       directive_ + (directive_ == "WorldBegin" ? " is given twice" : " is only allowed before WorldBegin")};
   if (handler.allowed == Handler::Allowed::world && !in_world_)
     throw SyntaxError{where_, directive_ + " is only allowed after WorldBegin"};
+  // A type that there is, too: whatever is wrong with the rest, this is a scene.
+  if (const Token& type = lexer_->peek(); type.kind == Token::Kind::string)
+    if (is_known_name(directive_, std::string(type.text)) || !v3_name(directive_, type.text).empty()) in_file.prove();
   (this->*handler.run)();
 }
 

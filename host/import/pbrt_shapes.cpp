@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/reading.h"
 #include "import/detail/capsules.h"
 #include "import/detail/pbrt_geometry.h"
 #include "import/detail/ply.h"
@@ -43,8 +44,7 @@ Geometry make_capsules(Parameters& parameters, const MaterialIndex& material_ind
   const std::string file = file_of(parameters);
   if (file.empty()) return CapsulesShape{};
   return read_other(parameters, [&] {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) throw InputError(parameters.where("filename"), file + ": no such file");
+    if (!is_there(file, parameters.where("filename"))) throw InputError(parameters.where("filename"), file + ": no such file");
     return read_capsules(file, material_index);
   });
 }

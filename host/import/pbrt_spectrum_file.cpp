@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "import/detail/pbrt_spectrum_file.h"
 
+#include "base/quotes.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/pbrt_lexer.h"
 
@@ -11,6 +12,7 @@ SampledSpectrum parse_spectrum_text(const std::string& file, std::string text) t
   check_text(text, file);
   Lexer lexer(file, std::move(text));
   SampledSpectrum spectrum;
+  Unproven in_file;
   while (lexer.peek().kind != Token::Kind::end) {
     const Token wavelength = lexer.next();
     spectrum.wavelengths.push_back(parse_number(wavelength, lexer));
@@ -19,6 +21,7 @@ SampledSpectrum parse_spectrum_text(const std::string& file, std::string text) t
       throw SyntaxError{lexer.place(wavelength), "wavelengths must ascend"};
     if (lexer.peek().kind == Token::Kind::end) throw SyntaxError{lexer.place(wavelength), "this wavelength has no value"};
     spectrum.values.push_back(parse_number(lexer.next(), lexer));
+    in_file.prove();
   }
   if (spectrum.wavelengths.empty()) throw InputError(SourceLocation{file}, "the spectrum file is empty");
   return spectrum;

@@ -19,6 +19,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/quotes.h"
 #include "import/detail/importers.h"
 #include "import/detail/swc_color.h"
 #include "import/detail/text_file.h"
@@ -123,7 +124,9 @@ class Parser {
     if (sample.radius < 0) refuse(5, fmt::format("{} is negative", sample.radius));
     if (sample.parent_id < -1) refuse(6, fmt::format("{} is neither an id nor -1 (a root)", sample.parent_id));
     if (sample.parent_id == sample.id) refuse(6, fmt::format("sample {} is its own parent", sample.id));
-    if (good) samples_.push_back(sample);
+    if (!good) return;
+    samples_.push_back(sample);
+    in_file_.prove();
   }
 
   /// Sets `parent`; reports repeated ids and missing parents (these only where no line was refused, since that line may be the
@@ -178,6 +181,7 @@ class Parser {
   std::vector<SwcSample> samples_;
   std::size_t extra_columns_ = 0;
   int first_extra_ = 0;
+  Unproven in_file_;
 };
 
 /// Gives samples without a radius one, and warns.

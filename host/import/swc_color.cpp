@@ -13,7 +13,10 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/quotes.h"
+#include "base/reading.h"
 #include "import/color_map.h"
+#include "import/detail/option_files.h"
 #include "import/detail/text_file.h"
 #include "present/present.h"
 
@@ -152,6 +155,8 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
                                 const std::filesystem::path& neuron, const ImportOptions& options, std::string& name) {
   const std::string file = path.string();
   const TextFile text(path);
+  Unproven in_file;  // a number is no sign of what it is
+  if (!options.are_of_scene) in_file.prove();
   const std::vector<Row> rows = rows_of(text.text(), file, name);
   if (name.empty()) name = path.filename().string();
   std::int64_t id = 0;
@@ -192,8 +197,8 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
   } else {
     std::string file = by;
     if (const std::size_t hole = file.find("{}"); hole != std::string::npos) file.replace(hole, 2, file_name_);
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    const OptionFiles may_be_read(options);
+    if (!may_read(file) || !is_there(file, {"--color"}))
       throw InputError({"--color"}, fmt::format("'{}' is none of type, file, order and depth, and no file of values", file));
     what_.clear();
     values_ = read_values(file, samples, path, options, what_);

@@ -13,7 +13,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "base/atomic_file.h"
+#include "base/quotes.h"
+#include "base/reading.h"
 
 namespace caplet {
 
@@ -33,13 +34,13 @@ struct Descriptor {
 }  // namespace
 
 TextFile::TextFile(const std::filesystem::path& path) {
+  begin_reading(path);
   // O_NONBLOCK: opening a fifo shall not wait for a writer; it is refused below.
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.number < 0) cannot_read(path, std::strerror(errno));
   struct stat status {};
   if (::fstat(file.number, &status) != 0) cannot_read(path, std::strerror(errno));
   if (!S_ISREG(status.st_mode)) cannot_read(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
-  note_input(path);
   const auto expected = static_cast<std::size_t>(status.st_size);
   if (expected > longest_text_file) cannot_read(path, "it is longer than 16 GiB");
   data_ = std::make_unique_for_overwrite<char[]>(expected);
@@ -101,6 +102,7 @@ NumberError parse_float(std::string_view token, float& value) {
 
 std::string quoted(std::string_view token) {
   constexpr std::size_t kLongest = 32;
+  if (!may_quote()) return std::string("'") + withheld + "'";
   std::string out = "'";
   for (const char c : token.substr(0, kLongest)) {
     const auto byte = static_cast<unsigned char>(c);

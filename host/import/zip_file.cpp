@@ -9,8 +9,8 @@
 #include <memory>
 #include <system_error>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 
@@ -26,11 +26,11 @@ zip_t* archive(const std::shared_ptr<void>& file) { return static_cast<zip_t*>(f
 }  // namespace
 
 ZipFile::ZipFile(const std::filesystem::path& path) : path_(path) {
+  begin_reading(path);
   int code = 0;
   if (zip_t* opened = zip_open(path.c_str(), ZIP_RDONLY, &code))
     file_ = std::shared_ptr<void>(opened, [](void* file) { zip_discard(static_cast<zip_t*>(file)); });
   if (!file_) fail("is no zip archive, or is cut off or broken");
-  note_input(path);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   left_ = most_unpacked(error ? 0 : size);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/spelling.h"
+#include "base/utf8.h"
 #include "caplet/scene.h"
 #include "film/image.h"
 #include "import/statement.h"
@@ -134,15 +135,15 @@ CapsulesShape geometry_of(const CapsuleArrays& arrays) {
 
 std::vector<Shape>& shapes_for(caplet::Scene& scene, const std::string& object) {
   if (object.empty()) return scene.shapes;
-  const auto found = std::ranges::find(scene.objects, object, &Object::name);
+  const auto found = std::ranges::find(scene.objects, valid_utf8(object), &Object::name);
   if (found != scene.objects.end()) return found->shapes;
   Object& made = scene.objects.emplace_back();
-  made.name = object;
+  made.name = valid_utf8(object);
   return made.shapes;
 }
 
 std::size_t object_at(const caplet::Scene& scene, const std::string& object) {
-  const auto found = std::ranges::find(scene.objects, object, &Object::name);
+  const auto found = std::ranges::find(scene.objects, valid_utf8(object), &Object::name);
   if (found != scene.objects.end()) return static_cast<std::size_t>(found - scene.objects.begin());
   std::vector<std::string> names;
   for (const Object& one : scene.objects) names.push_back(one.name);
@@ -194,7 +195,7 @@ void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
 }
 
 void set_options(const ShapeOptions& options, const std::optional<AreaEmission>& emission, Shape& shape) {
-  if (!options.name.empty()) shape.name = options.name;
+  if (!options.name.empty()) shape.name = valid_utf8(options.name);
   shape.world_from_object = to_model(options.transform);
   if (options.materials.size() > 1) shape.materials = options.materials;
   if (!options.materials.empty()) shape.material = options.materials[0];
@@ -407,7 +408,7 @@ void Scene::remove_lights() {
 
 std::uint32_t Scene::add_medium(const std::string& name, const std::string& type, const Parameters& parameters,
                                 const Transform& transform) {
-  caplet::Medium medium = medium_of(to_statement(Statement::medium, type, parameters), name, to_model(transform));
+  caplet::Medium medium = medium_of(to_statement(Statement::medium, type, parameters), valid_utf8(name), to_model(transform));
   caplet::Scene one;
   one.media.push_back(medium);
   check_textures(one);

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "base/spelling.h"
+#include "base/utf8.h"
 #include "import/color_map.h"
 #include "library/detail/appearance.h"
 #include "library/detail/inside.h"
@@ -124,7 +125,7 @@ std::string Scene::unit() const { return data_->model.unit; }
 
 void Scene::set_unit(const std::string& unit) {
   Data& data = changed();
-  data.model.unit = unit;
+  data.model.unit = valid_utf8(unit);
   data.as_a_whole_in_view();
 }
 
@@ -132,7 +133,7 @@ void Scene::set_color_bar(const std::string& title, const std::string& unit, dou
   if (!(low <= high) || !std::isfinite(low) || !std::isfinite(high))
     throw InputError("the ends of a colour bar are two numbers, the first not above the second");
   Data& data = changed();
-  data.model.legend = viridis_legend(title, unit, low, high);
+  data.model.legend = viridis_legend(valid_utf8(title), valid_utf8(unit), low, high);
   data.as_a_whole_in_view();
 }
 
@@ -146,10 +147,10 @@ std::vector<std::string> Scene::shapes() const {
 
 std::uint32_t Scene::shape(const std::string& name) const {
   const std::vector<std::string> names = shapes();
-  const auto found = std::ranges::find(names, name);
+  const auto found = std::ranges::find(names, valid_utf8(name));
   if (found == names.end())
     throw InputError(fmt::format("there is no shape '{}'; the nearest is '{}'", name, nearest_name(name, names)));
-  if (std::find(found + 1, names.end(), name) != names.end())
+  if (std::find(found + 1, names.end(), *found) != names.end())
     throw InputError(fmt::format("several shapes are named '{}'", name));
   return static_cast<std::uint32_t>(found - names.begin());
 }
@@ -200,7 +201,7 @@ void Scene::set_material(std::uint32_t material, const Material& to) {
 std::uint32_t Scene::add_material(const std::string& name, const Material& material) {
   caplet::Material made = to_model(material);
   check_bends(data_->model, made);
-  made.name = name;
+  made.name = valid_utf8(name);
   Data& data = changed();
   const auto number = static_cast<std::uint32_t>(data.model.materials.size());
   data.model.materials.push_back(made);

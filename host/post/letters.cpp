@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/utf8.h"
 #include "post/detail/canvas.h"
 
 namespace caplet::post {
@@ -117,20 +118,9 @@ const Letter& letter_of(char32_t code) {
   return found == letters().end() ? unknown : found->second;
 }
 
-/// Bytes that are no UTF-8 are themselves.
 std::vector<char32_t> codes_of(std::string_view utf8) {
   std::vector<char32_t> out;
-  for (std::size_t i = 0; i < utf8.size(); ++i) {
-    const auto first = static_cast<unsigned char>(utf8[i]);
-    const bool is_pair =
-        (first & 0xe0U) == 0xc0U && i + 1 < utf8.size() && (static_cast<unsigned char>(utf8[i + 1]) & 0xc0U) == 0x80U;
-    if (is_pair) {
-      out.push_back((first & 0x1fU) << 6U | (static_cast<unsigned char>(utf8[i + 1]) & 0x3fU));
-      ++i;
-    } else {
-      out.push_back(first);
-    }
-  }
+  while (!utf8.empty()) out.push_back(take_character(utf8));
   return out;
 }
 

@@ -248,7 +248,9 @@ void try_device(const Device& device, const Trial& trial) {
   if (!needs_trial(device, trial)) return;
   if (const std::vector<std::string> failures = known_answer_failures(device, trial); !failures.empty())
     refuse_device(device, failures);
-  remember_self_test(device, trial_texts(device, trial));
+  remember_trial(device, trial);
 }
+
+void remember_trial(const Device& device, const Trial& trial) { remember_self_test(device, trial_texts(device, trial)); }
 
 }  // namespace caplet

@@ -34,4 +34,7 @@ bool needs_trial(const Device& device, const Trial& trial);
 /// WrongDevice that says what is wrong. A driver may end the process here: see host/cli/trial.h.
 void try_device(const Device& device, const Trial& trial);
 
+/// Keeps in the cache that the device has passed; a cache that cannot be used is warned of.
+void remember_trial(const Device& device, const Trial& trial);
+
 }  // namespace caplet

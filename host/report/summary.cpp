@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "base/utf8.h"
 #include "report/picture.h"
 
 namespace caplet::report {
@@ -119,7 +120,7 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
 }
 
 std::string to_text(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_dump(json, 2) + "\n";
 }
 
 }  // namespace caplet::report

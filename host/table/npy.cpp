@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "base/check.h"
+#include "base/utf8.h"
 
 namespace caplet {
 
@@ -171,24 +172,10 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
 
-/// Characters of UTF-8 text, one after the other; what is no UTF-8 is U+FFFD byte by byte.
+/// Characters of UTF-8 text, one after the other (base/utf8.h).
 template <class Receive>
 void for_each_character(std::string_view text, const Receive& receive) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-    const unsigned first = byte(i);
-    const std::size_t more = first < 0x80 ? 0 : first >= 0xc2 && first < 0xe0 ? 1 : first >= 0xe0 && first < 0xf0 ? 2 : 3;
-    std::uint32_t character = more == 0 ? first : first & (0x3fu >> more);
-    bool good = (first < 0x80 || (first >= 0xc2 && first < 0xf5)) && i + more < text.size();
-    for (std::size_t k = 1; good && k <= more; ++k) {
-      good = (byte(i + k) & 0xc0u) == 0x80u;
-      character = character << 6 | (byte(i + k) & 0x3fu);
-    }
-    constexpr std::uint32_t least[] = {0, 0x80, 0x800, 0x10000};
-    good = good && character >= least[more] && character <= 0x10ffff && (character < 0xd800 || character > 0xdfff);
-    receive(good ? character : 0xfffdu);
-    i += good ? more + 1 : 1;
-  }
+  while (!text.empty()) receive(static_cast<std::uint32_t>(take_character(text)));
 }
 
 /// IEEE 754 binary16.

@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/utf8.h"
 
 namespace caplet::verify {
 
@@ -77,7 +78,7 @@ float number(const Json& value, const fs::path& file) {
   } else if (value.is_number()) {
     if (const auto x = value.get<float>(); std::isfinite(x)) return x;
   }
-  throw InputError(SourceLocation{file.string()}, "a ray has six finite numbers, not " + value.dump());
+  throw InputError(SourceLocation{file.string()}, "a ray has six finite numbers, not " + json_dump(value));
 }
 
 Case load(const fs::path& file) {
@@ -96,7 +97,7 @@ Case load(const fs::path& file) {
       const auto whole = [&](const char* name) {
         const Json& value = json.at("torture").at(name);
         if (!value.is_number_unsigned())
-          throw refuse(fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, value.dump()));
+          throw refuse(fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, json_dump(value)));
         return value.get<std::uint64_t>();
       };
       out.scene.seed = whole("seed");
@@ -120,7 +121,7 @@ void save_cases(const fs::path& folder, const std::vector<Failure>& failures) {
   for (std::size_t i = 0; i < failures.size(); ++i)
     write_atomically(folder / fmt::format("case-{:05}.json", i + 1), [&](const fs::path& temporary) {
       std::ofstream out(temporary, std::ios::binary);
-      out << to_json(failures[i]).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+      out << json_dump(to_json(failures[i]), 2) << '\n';
       if (!out.flush()) throw RunError(fmt::format("cannot write {}", temporary.string()));
     });
 }

@@ -198,7 +198,8 @@ void Editor::make(const Change& change, bool goes_on) {
   undone_.clear();
   ++states_;
   made_ = made_by(change);
-  if (goes_on && !done_.empty() && have_same_places(done_.back().step, back))
+  const bool is_new = std::exchange(ends_here_, false);
+  if (goes_on && !is_new && !done_.empty() && have_same_places(done_.back().step, back))
     done_.back().state = states_;  // what is there takes back both
   else
     done_.push_back({std::move(back), states_});

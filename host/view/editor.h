@@ -27,6 +27,8 @@ class Editor {
   /// Throws InputError when there is no such thing, or when validate() would refuse what is to stand there.
   /// `goes_on`: with the change before, as one, where that is of the same places.
   void make(const Change& change, bool goes_on = false);
+  /// What goes on from here is a change of its own: this state can be come back to.
+  void end_gesture() { ends_here_ = true; }
   /// False when there is nothing to take back, or to make again.
   bool undo() { return go(done_, undone_); }
   bool redo() { return go(undone_, done_); }
@@ -83,6 +85,7 @@ class Editor {
   std::vector<std::uint32_t> made_;
   std::vector<Done> done_, undone_;
   std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0;
+  bool ends_here_ = false;
 };
 
 /// A shape of the world by its number. Throws InputError when it is none, or an instance.

@@ -17,6 +17,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "device/cache.h"
 #include "export/export.h"
 #include "view/server.h"
@@ -42,6 +43,31 @@ std::optional<Json> object_of(const std::string& line) {
   return out.is_object() ? std::optional(std::move(out)) : std::nullopt;
 }
 
+constexpr std::string_view of_bytes = "bytes:";  // absolute paths begin with a slash
+
+/// A path as JSON holds it. One that is no UTF-8 has a character for each byte behind `of_bytes`: it is read again as it was.
+std::string json_of_path(const std::string& path) {
+  if (valid_utf8(path) == path) return path;
+  std::string out(of_bytes);
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80) out += static_cast<char>(0xc0 | byte >> 6);
+    out += static_cast<char>(byte < 0x80 ? byte : 0x80 | (byte & 0x3f));
+  }
+  return out;
+}
+
+std::string path_of_json(const std::string& text) {
+  if (!text.starts_with(of_bytes)) return text;
+  std::string out;
+  for (std::size_t i = of_bytes.size(); i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool is_pair = byte >= 0x80 && i + 1 < text.size();
+    out += is_pair ? static_cast<char>(byte << 6 | (static_cast<unsigned char>(text[++i]) & 0x3f)) : text[i];
+  }
+  return out;
+}
+
 bool is_saved_mark(const Json& line) { return line.value("type", "") == "saved"; }
 
 template <class T>
@@ -60,8 +86,8 @@ bool is_written_by_caplet(const fs::path& file) {
 
 }  // namespace
 
-Keeper::Keeper(const fs::path& scene, ReadAs read_as)
-    : read_as_(std::move(read_as)), scene_(fs::absolute(scene).lexically_normal()) {
+Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolute(scene).lexically_normal()) {
+  for (const auto& [name, value] : read_as) read_as_.emplace(name, valid_utf8(value));  // as the journal gives it back
   const std::string known_as = fs::weakly_canonical(scene_).string();
   const fs::path folder = scene_.parent_path(), name = scene_.filename();
   copy_ = folder / fmt::format(".{}.unsaved.pbrt", name.stem().string());
@@ -134,8 +160,8 @@ void Keeper::find_left(const fs::path& journal) try {
   Others others;
   const Json named = head->value("others", Json::object());
   for (const auto& [name, hash] : named.items()) {
-    others.emplace_back(name, hash.get<std::string>());
-    fits = fits && file_hash(name) == others.back().second;
+    others.emplace_back(path_of_json(name), hash.get<std::string>());
+    fits = fits && file_hash(others.back().first) == others.back().second;
   }
   if (!fits) {
     lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(saved));
@@ -213,10 +239,10 @@ void Keeper::has_made(std::size_t count) {
 std::string Keeper::head() const {
   Json others = Json::object();
   if (others_.valid())
-    for (const auto& [name, hash] : others_.get()) others[name] = hash;
+    for (const auto& [name, hash] : others_.get()) others[json_of_path(name)] = hash;
   Json head{{"caplet", format}, {"content", base_hash_.get()}, {"copy", base_is_copy_}, {"others", others}};
   if (!read_as_.empty()) head["read_as"] = read_as_;
-  return head.dump();
+  return json_dump(head);
 }
 
 void Keeper::fail(const std::string& why) {
@@ -246,7 +272,8 @@ void Keeper::keep(const std::string& line) {
 }
 
 fs::path Keeper::target(const std::optional<std::string>& name) const {
-  std::string out = name.value_or(default_name_);
+  // A page has the name as UTF-8.
+  std::string out = name && *name != valid_utf8(default_name_) ? *name : default_name_;
   const auto refuse = [&](const char* why) { throw InputError(SourceLocation{"name"}, fmt::format("'{}' {}", out, why)); };
   if (out.empty()) refuse("is no name");
   if (std::ranges::any_of(out, [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
@@ -301,7 +328,7 @@ void Keeper::save(const Scene& scene, const fs::path& target, const std::string&
     line["content"] = hash;
     scene_hash_ = ready(hash);
   }
-  lines_.push_back(line.dump());
+  lines_.push_back(json_dump(line));
   rest();
 }
 

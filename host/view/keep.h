@@ -33,7 +33,7 @@ class Keeper {
   using ReadAs = std::map<std::string, std::string>;
 
   /// Looks for what an earlier session left. `scene` exists.
-  explicit Keeper(const std::filesystem::path& scene, ReadAs read_as = {});
+  explicit Keeper(const std::filesystem::path& scene, const ReadAs& read_as = {});
   ~Keeper();
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;

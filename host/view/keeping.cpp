@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "view/detail/scene_text.h"
 #include "view/detail/shown_view.h"
 
@@ -21,7 +22,7 @@ constexpr const char* undo_line = R"({"type":"undo","again":false})";
 constexpr const char* redo_line = R"({"type":"undo","again":true})";
 
 /// In one line.
-std::string line_of(const std::string& text) { return Json::parse(text).dump(); }
+std::string line_of(const std::string& text) { return json_dump(Json::parse(text)); }
 
 /// That the scene was saved there, and no change.
 bool is_mark(const std::string& line) {
@@ -56,11 +57,12 @@ bool Keeping::make_line(const std::string& line) try {
   if (!is_mark(line)) return change(parse_message(line));
   const Json text = Json::parse(line);
   saved_ = editor_.state();
+  editor_.end_gesture();
   if (const auto camera = text.find("camera"); camera != text.end()) {
     Json look = *camera;
     look["type"] = "look";
     look["width"] = look["height"] = 1;
-    const Look before = std::exchange(own_, std::get<Look>(parse_message(look.dump())));
+    const Look before = std::exchange(own_, std::get<Look>(parse_message(json_dump(look))));
     own_.width = before.width;
     own_.height = before.height;
     own_is_new_ = true;
@@ -134,10 +136,11 @@ Json Keeping::save(const Save& save, const Look& look, const std::function<bool(
   }
   Json mark = Json::object();
   if (camera_is_new) mark["camera"] = camera_text(own);
-  keeper_->save(scene, target, mark.dump(), cancelled);
+  keeper_->save(scene, target, json_dump(mark), cancelled);
   own_ = own;
   own_is_new_ = camera_is_new;
   saved_ = editor_.state();
+  editor_.end_gesture();
   restored_ = 0;
   log::info("wrote {}", target.string());
   return {{"type", "saved"}, {"name", target.filename().string()}, {"file", target.string()}};

@@ -9,18 +9,22 @@
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <charconv>
 #include <chrono>
 #include <deque>
+#include <list>
 #include <map>
 #include <thread>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "view/addresses.h"
 
 namespace caplet::view {
 
@@ -35,22 +39,47 @@ namespace {
 
 constexpr std::size_t most_header_bytes = 8192;
 constexpr std::chrono::seconds request_patience{15}, handshake_patience{5};
+constexpr std::size_t most_strangers = 48;
 
 using Request = http::request<http::empty_body>;
 using Parser = http::request_parser<http::empty_body>;
 
 std::string_view view_of(boost::string_view text) { return {text.data(), text.size()}; }
 
-/// "127.0.0.1:8080" -> "127.0.0.1", "[::1]:80" -> "::1".
-std::string_view host_of(std::string_view authority) {
-  if (authority.starts_with('[')) return authority.substr(1, std::max<std::size_t>(authority.find(']'), 1) - 1);
-  return authority.substr(0, authority.find(':'));
+/// A Host header: "127.0.0.1:8080", "[::1]:80", "localhost".
+struct Authority {
+  std::string_view host;
+  std::optional<std::uint16_t> port;
+};
+
+/// None of what is no host and at most one port (RFC 3986, section 3.2).
+std::optional<Authority> authority_in(std::string_view text) {
+  Authority out;
+  const bool is_bracketed = text.starts_with('[');
+  const std::size_t end = is_bracketed ? text.find(']') : std::min(text.find(':'), text.size());
+  if (end == std::string_view::npos) return {};
+  out.host = text.substr(is_bracketed ? 1 : 0, end - (is_bracketed ? 1 : 0));
+  text.remove_prefix(end + (is_bracketed ? 1 : 0));
+  if (out.host.empty()) return {};
+  if (text.empty()) return out;
+  std::uint16_t port = 0;
+  const auto [stop, error] = std::from_chars(text.data() + 1, text.data() + text.size(), port);
+  if (text[0] != ':' || error != std::errc() || stop != text.data() + text.size()) return {};
+  out.port = port;
+  return out;
 }
 
-bool is_wildcard(std::string_view host) { return host == "0.0.0.0" || host == "::"; }
+/// The one value of a header; none where it is missing or there are several.
+std::optional<std::string_view> only(const Request& request, http::field name) {
+  const auto [begin, end] = request.equal_range(name);
+  if (begin == end || std::next(begin) != end) return {};
+  return view_of(begin->value());
+}
 
-std::string authority_of(const std::string& host, std::uint16_t port) {
-  return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port) : fmt::format("[{}]:{}", host, port);
+/// An IPv4 address that came through an IPv6 socket as itself.
+asio::ip::address plain(const asio::ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
 }
 
 /// Messages that a client may send: so many a second, and some more at once.
@@ -83,6 +112,7 @@ class Server::State {
       const tcp::endpoint at(asio::ip::make_address(options.host), options.port);
       acceptor_.open(at.protocol());
       acceptor_.set_option(asio::socket_base::reuse_address(true));
+      if (at.protocol() == tcp::v6()) acceptor_.set_option(asio::ip::v6_only(false));  // "::" is all of IPv4, too
       acceptor_.bind(at);
       acceptor_.listen();
       port_ = acceptor_.local_endpoint().port();
@@ -100,8 +130,8 @@ class Server::State {
 
   std::uint16_t port() const { return port_; }
   std::string address() const {
-    return fmt::format("http://{}/{}/", authority_of(is_wildcard(options_.host) ? "127.0.0.1" : options_.host, port_),
-                       options_.token);
+    const std::vector<std::string> reached = addresses_reached(options_.host);
+    return fmt::format("http://{}/{}/", authority_of(reached.front(), port_), options_.token);
   }
 
   asio::io_context& context() { return context_; }
@@ -109,28 +139,33 @@ class Server::State {
   const ServerEvents& events() const { return events_; }
   std::map<ClientId, std::weak_ptr<Client>>& clients() { return clients_; }
   std::size_t& connections() { return connections_; }
+  std::chrono::milliseconds stranger_patience() const {
+    return std::chrono::milliseconds(static_cast<int>(1e3 * options_.stranger_seconds));
+  }
   ClientId next_client() { return ++last_client_; }
 
   /// Names by which a page of this machine calls it; a name that an attacker's DNS leads here is none of them.
-  bool is_own(std::string_view authority, const tcp::endpoint& here) const {
-    if (authority != host_of(authority)) {
-      const std::string_view port = authority.substr(authority.rfind(':') + 1);
-      if (port != std::to_string(port_)) return false;
-    } else if (port_ != 80) {
-      return false;
-    }
-    const std::string_view host = host_of(authority);
+  bool is_own(std::string_view text, const tcp::endpoint& here) const {
+    const std::optional<Authority> authority = authority_in(text);
+    if (!authority || authority->port.value_or(80) != port_) return false;
+    const std::string_view host = authority->host;
     if (host == options_.host || host == "localhost" || host == "127.0.0.1" || host == "::1") return true;
-    return host == here.address().to_string();
+    return host == plain(here.address()).to_string();
   }
+
+  // Connections that have not named the token yet, in the order in which they came.
+  void add_stranger(const std::shared_ptr<Connection>& one) { strangers_.push_back(one); }
+  void forget_stranger(const Connection* one);
 
  private:
   void accept();
+  void make_room_for(const asio::ip::address& from);
 
   ServerOptions options_;
   ServerEvents events_;
   std::map<ClientId, std::weak_ptr<Client>> clients_;
-  std::size_t connections_ = 0;
+  std::list<std::weak_ptr<Connection>> strangers_;
+  std::size_t connections_ = 0;  // those that have named the token, sockets among them
   ClientId last_client_ = 0;
   asio::io_context context_{1};  // ends before what its handlers, and the connections that they hold, refer to
   tcp::acceptor acceptor_;
@@ -241,17 +276,24 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 class Server::State::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(State& server, tcp::socket&& socket) : server_(server), stream_(std::move(socket)) {
-    ++server_.connections();
     beast::error_code ignored;
     here_ = stream_.socket().local_endpoint(ignored);
+    from_ = plain(stream_.socket().remote_endpoint(ignored).address());
   }
-  ~Connection() { --server_.connections(); }
+  ~Connection() {
+    if (is_known_)
+      --server_.connections();
+    else
+      server_.forget_stranger(this);
+  }
+  const asio::ip::address& from() const { return from_; }
+  void drop() { stream_.close(); }
 
   void read() {
     parser_.emplace();
     parser_->header_limit(most_header_bytes);
     parser_->body_limit(0);
-    stream_.expires_after(request_patience);
+    stream_.expires_after(is_known_ ? request_patience : server_.stranger_patience());
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (error == http::error::end_of_stream) return self->close();
       if (error == http::error::header_limit) return self->answer(http::status::request_header_fields_too_large, {}, false);
@@ -266,8 +308,9 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
   void respond() {
     const Request& request = parser_->get();
     const bool keep = request.keep_alive();
-    const std::string_view host = view_of(request[http::field::host]);
-    if (!server_.is_own(host, here_)) return answer(http::status::forbidden, {}, keep);
+    if (request.count(http::field::host) > 1) return answer(http::status::bad_request, {}, false);
+    const std::string_view host = only(request, http::field::host).value_or("");
+    if (!server_.is_own(host, here_)) return answer(http::status::forbidden, {}, false);
     // "/TOKEN/path"
     std::string_view path = view_of(request.target());
     path = path.substr(0, path.find('?'));
@@ -275,7 +318,8 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     const std::string_view token =
         path.substr(std::min<std::size_t>(1, path.size()), slash == std::string_view::npos ? slash : slash - 1);
     if (!path.starts_with('/') || slash == std::string_view::npos || !equal_in_constant_time(token, server_.options().token))
-      return answer(http::status::forbidden, {}, keep);
+      return answer(http::status::forbidden, {}, false);
+    if (!become_known()) return answer(http::status::service_unavailable, {}, false);
     path.remove_prefix(slash + 1);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return answer(http::status::method_not_allowed, {}, keep);
@@ -285,11 +329,20 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
            request.method() == http::verb::head);
   }
 
+  /// False where there is no place for one more.
+  bool become_known() {
+    if (is_known_) return true;
+    if (server_.connections() >= server_.options().most_connections) return false;
+    server_.forget_stranger(this);
+    ++server_.connections();
+    return is_known_ = true;
+  }
+
   void upgrade(std::string_view path, std::string_view host) {
     const Request& request = parser_->get();
     if (path != "socket") return answer(http::status::not_found, {}, false);
     // Pages of others can open sockets here; browsers tell whose page it is.
-    if (view_of(request[http::field::origin]) != fmt::format("http://{}", host))
+    if (only(request, http::field::origin).value_or("") != fmt::format("http://{}", host))
       return answer(http::status::forbidden, {}, false);
     const auto joined = static_cast<std::size_t>(
         std::ranges::count_if(server_.clients(), [](const auto& client) { return !client.second.expired(); }));
@@ -333,18 +386,46 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
   State& server_;
   beast::tcp_stream stream_;
   tcp::endpoint here_;
+  asio::ip::address from_;
+  bool is_known_ = false;  // it has named the token
   beast::flat_buffer buffer_{most_header_bytes + 4096};
   std::optional<Parser> parser_;
   std::optional<http::response<http::string_body>> response_;
 };
 
+void Server::State::forget_stranger(const Connection* one) {
+  std::erase_if(strangers_, [&](const auto& other) { return other.expired() || other.lock().get() == one; });
+}
+
+/// Whoever holds places and says nothing loses them to those who come: a browser sends its request at once. So nobody can keep
+/// others out by waiting, from the same address neither.
+void Server::State::make_room_for(const asio::ip::address& from) {
+  std::shared_ptr<Connection> oldest, oldest_from_there;
+  std::size_t all = 0, from_there = 0;
+  for (const auto& each : strangers_) {
+    const auto one = each.lock();
+    if (!one) continue;
+    if (all++ == 0) oldest = one;
+    if (one->from() == from && from_there++ == 0) oldest_from_there = one;
+  }
+  const std::shared_ptr<Connection> goes = from_there >= options_.most_strangers_an_address ? oldest_from_there
+                                           : all >= most_strangers                          ? oldest
+                                                                                            : nullptr;
+  if (!goes) return;
+  forget_stranger(goes.get());
+  goes->drop();
+}
+
 void Server::State::accept() {
   acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && connections_ < options_.most_connections) {
+    if (!error) {
       beast::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
-      std::make_shared<Connection>(*this, std::move(socket))->read();
+      const auto connection = std::make_shared<Connection>(*this, std::move(socket));
+      make_room_for(connection->from());
+      add_stranger(connection);
+      connection->read();
     }
     accept();
   });

@@ -18,11 +18,13 @@ namespace caplet::view {
 using ClientId = std::uint64_t;
 
 struct ServerOptions {
-  std::string host = "127.0.0.1";  // an address of this machine
-  std::uint16_t port = 0;          // 0: any that is free
-  std::string token;               // first part of every path; whoever does not know it is refused
-  std::size_t most_clients = 16, most_connections = 64;
-  double silence_seconds = 8;  // after which a client that answers no ping is gone
+  std::string host = "127.0.0.1";                        // an address of this machine
+  std::uint16_t port = 0;                                // 0: any that is free
+  std::string token;                                     // first part of every path; whoever does not know it is refused
+  std::size_t most_clients = 16, most_connections = 64;  // that know the token
+  std::size_t most_strangers_an_address = 16;            // connections that have not named it yet: the oldest one goes
+  double stranger_seconds = 5;                           // after which such a one is gone
+  double silence_seconds = 8;                            // after which a client that answers no ping is gone
   std::size_t most_message_bytes = std::size_t{1} << 16;
   double messages_a_second = 300, burst = 600;             // of a client
   std::size_t most_waiting_bytes = std::size_t{32} << 20;  // of messages that a client has not taken
@@ -45,7 +47,8 @@ struct ServerEvents {
 
 /// Serves on a thread of its own from its making to its end. What is not asked for by the page's own address is refused: another
 /// token, another Host than this machine's, another Origin than the page's. Messages, rates, connections and waiting bytes have
-/// limits; a client beyond them is closed, and one that is slow gets fewer pictures.
+/// limits; a client beyond them is closed, and one that is slow gets fewer pictures. Who has not named the token has few places,
+/// for seconds, and none of those of others.
 class Server {
  public:
   /// Throws RunError when it cannot listen there.

@@ -20,6 +20,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "film/develop.h"
 #include "lower/camera.h"
 #include "lower/identity.h"
@@ -47,7 +48,7 @@ constexpr std::size_t most_questions = 16, most_edits = 1000;  // that wait
 
 using Text = std::shared_ptr<const std::string>;
 
-Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<const std::string>(message.dump()); }
+Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<const std::string>(json_dump(message)); }
 
 /// A new view is wanted: the picture under way is of no more use.
 struct Superseded {};
@@ -56,7 +57,7 @@ struct Superseded {};
 std::string error_text(const std::string& what, double number = 0) {
   nlohmann::ordered_json out{{"type", "error"}, {"text", what}};
   if (number > 0) out["number"] = number;
-  return out.dump();
+  return json_dump(out);
 }
 
 }  // namespace
@@ -77,6 +78,8 @@ class Viewer::State {
     events.left = [this](ClientId id) { left(id); };
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
+    checked_ = view_of(live_.scene());
+    checked_.camera.medium.reset();  // is no look's to say
     hello_ = told_scene();
     hello_["parts"] = told_parts();
     hello_["lists"] = lists_text();
@@ -104,6 +107,7 @@ class Viewer::State {
   }
 
   std::string address() const { return server_->address(); }
+  std::uint16_t port() const { return server_->port(); }
 
   void wait(double seconds) {
     std::unique_lock lock(mutex_);
@@ -162,8 +166,14 @@ class Viewer::State {
     clients_.erase(id);
   }
 
+  /// Throws InputError for a look that this scene cannot have, so that it is nobody's.
+  void check_look(const Look& look) const {
+    for (const int eye : {0, 1}) check_edit(Scene(), shown_view(checked_, look, 1, eye));
+  }
+
   void said(ClientId id, const std::string& text) try {
     const Message message = parse_message(text);
+    if (const Look* look = std::get_if<Look>(&message)) check_look(*look);
     std::vector<ClientId> others;
     {
       const std::lock_guard lock(mutex_);
@@ -485,6 +495,7 @@ class Viewer::State {
   }
 
   ViewerOptions options_;
+  ViewEdit checked_;
   LiveScene live_;
   Editor editor_;
   Device device_;
@@ -521,6 +532,7 @@ Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& optio
     : state_(std::make_unique<State>(std::move(scene), device, options, std::move(keeper))) {}
 Viewer::~Viewer() = default;
 std::string Viewer::address() const { return state_->address(); }
+std::uint16_t Viewer::port() const { return state_->port(); }
 void Viewer::wait(double seconds) { state_->wait(seconds); }
 std::optional<std::filesystem::path> Viewer::end() { return state_->end(); }
 

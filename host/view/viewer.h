@@ -37,6 +37,7 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   std::string address() const;
+  std::uint16_t port() const;
   /// Waits a little, and throws what ended the rendering, if anything has.
   void wait(double seconds);
   /// Ends the session. Where changes stay that are not saved: the file in which they are kept.

@@ -673,7 +673,8 @@ def load(path, **options):
     """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
 
     options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",
-    projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks"...
+    projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks"... no_outside=True, for scenes of
+    strangers: the file may name others in its own folder and below it alone.
     """
     try:
         return Scene(_caplet.load(os.fspath(path), {name.replace("_", "-"): _option(value) for name, value in options.items()}))

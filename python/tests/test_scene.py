@@ -458,3 +458,51 @@ def test_files_are_read_as_options_say(tmp_path):
         caplet.load(file, radius=1)
     with pytest.raises(caplet.InputError, match="--style"):
         caplet.load(file, style="thick")
+
+
+@pytest.mark.parametrize("name", [b"K\xfcgel", b"\x80", b"\xc0\xaf", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"\xe2\x82", b"\xff\xfe", "K\u00fcgel \u20ac \U0001f600".encode()])
+def test_names_of_any_bytes_are_text(tmp_path, name):
+    text = b"""MakeNamedMedium "%s" "string type" "homogeneous"
+WorldBegin
+MakeNamedMaterial "%s" "string type" "diffuse"
+NamedMaterial "%s"
+MediumInterface "%s" ""
+Shape "sphere" "string name" "%s"
+ObjectBegin "%s"
+Shape "sphere" "string name" "%s"
+ObjectEnd
+ObjectInstance "%s"
+""".replace(b"%s", name)
+    (tmp_path / "a.pbrt").write_bytes(text)
+    scene = caplet.load("a.pbrt")
+    said = name.decode("utf-8", "replace")  # as Python itself has it
+    native = scene._native
+    assert native.shapes() == [said, said] and native.materials()[0] == said and native.media()[0] == said and native.objects() == [said]
+    assert scene.shapes == [said, said]
+    scene.add_instances(said, np.eye(4)[None])  # it is found by it
+    scene.save("b.pbrt")
+    assert caplet.load("b.pbrt")._native.materials()[0] == said
+    with pytest.raises(caplet.InputError) as error:
+        (tmp_path / "c.pbrt").write_bytes(b'WorldBegin\nNamedMaterial "%s"\nShape "sphere"\n' % name)
+        caplet.load("c.pbrt")
+    assert "c.pbrt" in str(error.value)
+
+
+def test_scenes_of_strangers_stay_in_their_folder(tmp_path):
+    (tmp_path / "up").mkdir()
+    (tmp_path / "cell.swc").write_text("1 1 0 0 0 1 -1\n2 3 5 0 0 1 1\n")
+    (tmp_path / "up" / "own.swc").write_text("1 1 0 0 0 1 -1\n2 3 5 0 0 1 1\n")
+    (tmp_path / "up" / "link.swc").symlink_to("../cell.swc")
+    scene = tmp_path / "up" / "a.pbrt"
+    for name, is_inside in [("own.swc", True), ("../cell.swc", False), (str(tmp_path / "cell.swc"), False), ("link.swc", False)]:
+        scene.write_text(f'WorldBegin\nShape "swc" "string filename" "{name}"\n')
+        assert len(caplet.load(scene).shapes) == 2
+        if is_inside:
+            assert len(caplet.load(scene, no_outside=True).shapes) == 2
+            continue
+        with pytest.raises(caplet.InputError, match="outside of the scene's folder") as error:
+            caplet.load(scene, no_outside=True)
+        assert (error.value.file, error.value.line) == (str(scene), 2)
+        assert len(caplet.load(scene, no_outside=False).shapes) == 2
+    with pytest.raises(caplet.InputError, match="outside"):
+        caplet.load(tmp_path / "up" / "link.swc", no_outside=True)

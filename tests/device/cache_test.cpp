@@ -4,6 +4,7 @@
 // The cache folder: what is stored comes back, anything else is a miss.
 #include "device/cache.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -11,11 +12,13 @@
 
 #include "environment.h"
 #include "support/data.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
 using Bytes = std::vector<unsigned char>;
 
 const Bytes contents = {0, 10, 13, 255, 'a', 10};
@@ -74,6 +77,19 @@ TEST_F(Cache, AFileUnderAnotherKeysNameIsAMiss) {
   cache_store("key", "test", contents);
   fs::rename(cache_file("key", "test"), cache_file("other key", "test"));
   EXPECT_FALSE(cache_load("other key", "test"));
+}
+
+TEST_F(Cache, AFolderInAFilesPlaceIsAMissAndNamed) {
+  fs::create_directories(cache_file("key", "test") / "in the way");
+  test::LogOf log;
+  EXPECT_FALSE(cache_load("key", "test"));
+  EXPECT_FALSE(cache_store("key", "test", contents));
+  EXPECT_FALSE(cache_store("key", "test", contents));
+  const std::string said = log.text(), name = "'" + cache_file("key", "test").string() + "' is a folder";
+  EXPECT_THAT(said, HasSubstr(name));
+  EXPECT_EQ(said.find(name), said.rfind(name));  // once
+  EXPECT_TRUE(cache_store("other key", "test", contents));
+  EXPECT_EQ(cache_load("other key", "test"), contents);
 }
 
 TEST(CacheFolder, ThatCannotBeUsedIsNoError) {

@@ -191,6 +191,18 @@ TEST_F(Machine, Caches) {
   EXPECT_THAT(only_wrong(check_cache(machine_, kept)).what, HasSubstr("1.0 MB free"));
 }
 
+TEST_F(Machine, ASysThatIsNotMounted) {
+  folder("sys");
+  const Findings found = check_sys(machine_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].state, State::note);
+  EXPECT_EQ(found[0].about, (machine_.root / "sys").string());
+  EXPECT_THAT(found[0].what, HasSubstr("Not enough memory"));
+  EXPECT_THAT(found[0].fix, HasSubstr("mount -t sysfs"));
+  folder("sys/devices/system/cpu");
+  EXPECT_THAT(check_sys(machine_), IsEmpty());
+}
+
 TEST_F(Machine, PoclsCache) {
   EXPECT_THAT(check_pocl_cache(machine_), IsEmpty());
   const fs::path file = write("file");

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "film/image.h"
 #include "images.h"
+#include "support/broken_utf8.h"
 #include "support/data.h"
 
 namespace caplet {
@@ -67,6 +68,19 @@ TEST(Exr, KeepsWindowsAndMetadata) {
   EXPECT_EQ(back.data_width, 7);
   EXPECT_EQ(back.data_height, 5);
   for (const auto& [name, value] : image.metadata) EXPECT_EQ(back.metadata.at(name), value) << name;
+}
+
+TEST(Exr, HeadersAreUtf8) {
+  LayeredImage image;
+  image.width = image.height = image.data_width = image.data_height = 1;
+  image.channels.push_back({"Y", {1.0f}, {}});
+  for (std::size_t i = 0; i < std::size(test::broken_utf8); ++i)
+    image.metadata["caplet.test" + std::to_string(i)] = test::broken_utf8[i].bytes;
+  const std::filesystem::path file = test::temporary_folder() / "a.exr";
+  write_exr(file, image);
+  const LayeredImage read = read_exr(file);
+  for (std::size_t i = 0; i < std::size(test::broken_utf8); ++i)
+    EXPECT_EQ(read.metadata.at("caplet.test" + std::to_string(i)), test::broken_utf8[i].valid) << test::broken_utf8[i].what;
 }
 
 TEST(Exr, KeepsTheColorSpaceByItsChromaticities) {

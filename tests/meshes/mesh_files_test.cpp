@@ -465,7 +465,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"b.stl", "solid x\nfacet\nvertex 0 0 0\n", ":3:1: a vertex outside"},
         Bad{"c.stl", "solid x\nouter loop\nvertex 0 0 0\n", "ends within"},
         Bad{"d.stl", "solid x\nouter loop\nvertex 0 0 0\nendloop\n", ":4:1:"}, Bad{"e.stl", "solid x\nendsolid x\n", "no faces"},
-        Bad{"f.stl", "solid x\nbox 1 2\n", ":2:1: 'box'"}, Bad{"a.off", "OFF\n1000000000 1 0\n0 0 0\n", ":3:"},
+        Bad{"f.stl", "solid x\nfacet\nbox 1 2\n", ":3:1: 'box'"}, Bad{"a.off", "OFF\n1000000000 1 0\n0 0 0\n", ":3:"},
         Bad{"b.off", "PLY\n", ":1:"}, Bad{"c.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1: there are 1"},
         Bad{"d.off", "OFF\n1 -1 0\n", ":2:"}, Bad{"a.gltf", "{\n  \"asset\": }", ":2:12:"}, Bad{"b.gltf", "{}", "glTF 2.0"},
         Bad{"c.gltf", R"({"asset":{"version":"2.0"}})", "no triangles"},

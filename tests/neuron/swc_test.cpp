@@ -351,15 +351,15 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Bad{"empty", "", ": ", "no samples"}, Bad{"comments_only", "# nothing\n\n", ": ", "no samples"},
                     Bad{"few_columns", "# c\n1 1 0 0 0 1\n", ":2:12: ", "parent is missing"},
                     Bad{"one_column", "hello\n", ":1:6: ", "type is missing"},
-                    Bad{"word_for_number", "1 1 0 zero 0 1 -1\n", ":1:7: ", "y: 'zero' is not a number"},
-                    Bad{"half_number", "1 1 0 0 0 1.5x -1\n", ":1:11: ", "radius: '1.5x' is not a number"},
+                    Bad{"word_for_number", "9 1 0 0 0 1 -1\n1 1 0 zero 0 1 -1\n", ":2:7: ", "y: 'zero' is not a number"},
+                    Bad{"half_number", "9 1 0 0 0 1 -1\n1 1 0 0 0 1.5x -1\n", ":2:11: ", "radius: '1.5x' is not a number"},
                     Bad{"nan", "1 1 0 0 nan 1 -1\n", ":1:9: ", "not finite"},
                     Bad{"infinity", "1 1 -inf 0 0 1 -1\n", ":1:5: ", "not finite"},
                     Bad{"too_large", "1 1 1e39 0 0 1 -1\n", ":1:5: ", "out of range"},
                     Bad{"beyond_the_camera", "1 1 0 0 0 1 -1\n2 3 0 2e16 0 1 1\n",
                         ":2:7: ", "'2e16' is out of range (largest: 1e+16)"},
                     Bad{"far_too_large", "1 1 1e999 0 0 1 -1\n", ":1:5: ", "out of range"},
-                    Bad{"fractional_id", "1.5 1 0 0 0 1 -1\n", ":1:1: ", "id: '1.5' is not a whole number"},
+                    Bad{"fractional_id", "9 1 0 0 0 1 -1\n1.5 1 0 0 0 1 -1\n", ":2:1: ", "id: '1.5' is not a whole number"},
                     Bad{"huge_id", "99999999999999999999 1 0 0 0 1 -1\n", ":1:1: ", "not a whole number"},
                     Bad{"negative_id", "-3 1 0 0 0 1 -1\n", ":1:1: ", "id: -3 is negative"},
                     Bad{"negative_type", "1 -1 0 0 0 1 -1\n", ":1:3: ", "type: -1 is negative"},
@@ -370,10 +370,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"odd_parent", "1 1 0 0 0 1 -2\n", ":1:13: ", "neither an id nor -1"},
                     Bad{"cycle", "1 1 0 0 0 1 -1\n2 3 1 0 0 1 4\n3 3 2 0 0 1 2\n4 3 2 0 0 1 3\n", ":2: ", "its own ancestor"},
                     Bad{"binary",
-                        std::string("\x7f"
-                                    "ELF\x02\x01\x00\x00 \x01 \x02 \x03 \x04 \x05 \x06",
-                                    21),
-                        ":1:1: ", "'\\x7fELF\\x02\\x01\\x00\\x00' is not a whole number"}));
+                        "9 1 0 0 0 1 -1\n" + std::string("\x7f"
+                                                         "ELF\x02\x01\x00\x00 \x01 \x02 \x03 \x04 \x05 \x06",
+                                                         21),
+                        ":2:1: ", "'\\x7fELF\\x02\\x01\\x00\\x00' is not a whole number"}));
 
 TEST(BadSwcFiles, AreNamed) {
   EXPECT_THAT(test::complaint([] { import_swc("/nonexistent/neuron.swc", test::NoImages()); }),

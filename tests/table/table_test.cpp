@@ -329,11 +329,15 @@ TEST(NpyWriter, WritesWhatTheFormatSays) {
 TEST(NpyWriter, CountsCharactersNotBytes) {
   EXPECT_EQ(unicode_length("axon"), 4u);
   EXPECT_EQ(unicode_length("\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80"), 3u);
-  // Bytes that are no UTF-8 (alone, cut off, too long a form, a surrogate, beyond the last one) count one each.
-  for (const char* bad : {"\x80", "\xc3", "\xe2\x82", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff"}) {
+  // What is no UTF-8 (alone, cut off, too long a form, a surrogate, beyond the last one) counts as often as Python's
+  // bytes.decode("utf-8", "replace") has U+FFFD for it.
+  constexpr std::pair<const char*, std::size_t> broken[] = {{"\x80", 1},         {"\xc3", 1},             {"\xe2\x82", 1},
+                                                            {"\xc0\x80", 2},     {"\xed\xa0\x80", 3},     {"\xf4\x90\x80\x80", 4},
+                                                            {"\xf0\x9f\x98", 1}, {"\xff", 1}};
+  for (const auto& [bad, count] : broken) {
     std::string row;
     const std::size_t length = unicode_length(bad);
-    EXPECT_EQ(length, std::strlen(bad));
+    EXPECT_EQ(length, count);
     append_unicode(row, bad, length);
     for (std::size_t i = 0; i < length; ++i) EXPECT_EQ(row.substr(4 * i, 4), std::string("\xfd\xff\0\0", 4));
   }

@@ -243,6 +243,123 @@ TEST(Keeping, UndoGoesBackBeyondASaveAlsoAfterAKill) {
   EXPECT_THAT(names_in(file.parent_path()), ElementsAre("scene.pbrt"));
 }
 
+TEST(Keeping, AGestureThatGoesOnAfterASaveIsUnsaved) {
+  const fs::path file = scene_file();
+  const auto goes_on = [](double x) {
+    nlohmann::json line = nlohmann::json::parse(move_line(1, x));
+    line["goes_on"] = true;
+    return line.dump();
+  };
+  {
+    Sitting run(file);
+    run.say(move_line(1, 0.5));
+    run.say(goes_on(0.25));
+    run.save();
+    EXPECT_FALSE(run.told()["unsaved"]);
+    run.say(goes_on(0.125));
+    EXPECT_TRUE(run.told()["unsaved"]);
+    EXPECT_EQ(run.x_of(1), 0.875);
+  }
+  {
+    Sitting run(file);  // after a kill
+    EXPECT_TRUE(run.told()["unsaved"]);
+    EXPECT_EQ(run.x_of(1), 0.875);
+    EXPECT_TRUE(run.say(undo));  // back to what is saved, not beyond
+    EXPECT_EQ(run.x_of(1), 0.75);
+    EXPECT_FALSE(run.told()["unsaved"]);
+    EXPECT_TRUE(run.say(redo));
+    EXPECT_TRUE(run.say(goes_on(0.5)));
+    EXPECT_TRUE(run.say(R"({"type":"discard"})"));
+    EXPECT_EQ(run.x_of(1), 0.75);
+    EXPECT_TRUE(run.say(undo));
+    EXPECT_EQ(run.x_of(1), 0);
+    EXPECT_FALSE(run.editor.can_undo());
+  }
+  EXPECT_EQ(import_scene(file, FileImageReader()).shapes[1].world_from_object[3].x, 0.75);
+}
+
+TEST(Keeping, WhatCouldBeMadeAgainIsKeptWhereTheRestIsPutAside) {
+  const fs::path file = scene_file(), journal = file.parent_path() / ".scene.pbrt.unsaved";
+  {
+    Sitting run(file);
+    run.say(move_line(1, 0.5));
+  }
+  std::vector<std::string> lines = Journal::read(journal);
+  ASSERT_EQ(lines.size(), 2u);
+  lines.push_back(move_line(99, 1));  // of a thing that there is not
+  lines.push_back(move_line(1, 7));   // after which nothing is made
+  {
+    Journal altered;
+    ASSERT_TRUE(altered.begin(journal, lines));
+  }
+  for (int kills = 0; kills < 2; ++kills) {  // each before anything is changed
+    Sitting run(file);
+    EXPECT_EQ(run.x_of(1), 0.5);
+    EXPECT_EQ(run.told()["restored"], 1);
+    EXPECT_EQ(run.told()["old"], 2);
+    EXPECT_THAT(Journal::read(journal), testing::SizeIs(2));
+  }
+  Sitting run(file);
+  run.say(move_line(1, 0.25));
+  EXPECT_THAT(Journal::read(journal), testing::SizeIs(3));
+}
+
+TEST(Keeping, ASecondSessionLeavesTheFirstOnesJournalAlone) {
+  const fs::path file = scene_file(), journal = file.parent_path() / ".scene.pbrt.unsaved";
+  std::optional<Sitting> first(std::in_place, file);
+  first->say(move_line(1, 0.5));
+  const std::string kept = text_of(journal);
+  const auto is_second = [&] {
+    Sitting second(file);
+    EXPECT_FALSE(second.told()["kept"]);
+    EXPECT_THAT(second.told()["why"].get<std::string>(), HasSubstr("another session"));
+    second.say(move_line(1, 7));
+    EXPECT_EQ(text_of(journal), kept);
+    second.say(undo);  // which is all that it had
+    EXPECT_EQ(text_of(journal), kept);
+    second.say(redo);
+    second.say(R"({"type":"discard"})");
+    EXPECT_EQ(text_of(journal), kept);
+    second.save("of the second");
+    EXPECT_EQ(text_of(journal), kept);
+    second.say(move_line(2, 1));
+    EXPECT_EQ(second.keeping->end(), std::nullopt);
+    EXPECT_EQ(text_of(journal), kept);
+  };
+  is_second();
+  is_second();  // the one before has gone, and has left the first one's lock
+  EXPECT_THAT(names_in(file.parent_path()), ElementsAre(".scene.pbrt.unsaved", "of the second.pbrt", "scene.pbrt"));
+  first->say(move_line(1, 0.25));
+  first.reset();  // killed
+  Sitting run(file);
+  EXPECT_TRUE(run.told()["kept"]);
+  EXPECT_EQ(run.x_of(1), 0.75);
+}
+
+TEST(Keeping, FilesOfAnyNameCount) {
+  const fs::path folder = test::temporary_folder(), file = folder / "whole.pbrt";
+  // Journals are JSON: names that are no UTF-8 are found again all the same.
+  for (const std::string name : {"K\xfcgel.pbrt", "\xed\xa0\x80 \xc3\xbc.pbrt", "bytes:\xff.pbrt", "K\xc3\xbcgel.pbrt"}) {
+    put(folder / name, "Shape \"sphere\" \"float radius\" 1\n");
+    put(file, "WorldBegin\nInclude \"" + name + "\"\nLightSource \"infinite\"\n");
+    const auto session = [&] {
+      auto keeper = std::make_unique<Keeper>(file);
+      auto live = std::make_unique<LiveScene>(import_scene(keeper->base(), FileImageReader()));
+      keeper->has_read({file.string(), (folder / name).string()});
+      auto editor = std::make_unique<Editor>(*live);
+      Keeping keeping(*live, *editor, std::move(keeper));
+      const double x = live->scene().shapes[0].world_from_object[3].x;
+      keeping.make(parse_message(move_line(0, 1)), move_line(0, 1));
+      return x;
+    };
+    EXPECT_EQ(session(), 0) << name;
+    EXPECT_EQ(session(), 1) << name;
+    put(folder / name, "Shape \"sphere\" \"float radius\" 2\n");
+    EXPECT_EQ(session(), 0) << name;  // another content
+    for (const std::string& left : names_in(folder)) fs::remove(folder / left);
+  }
+}
+
 TEST(Keeping, ChangesOfAnotherContentAreAskedAbout) {
   const fs::path file = scene_file();
   {

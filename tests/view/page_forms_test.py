@@ -220,6 +220,15 @@ def cameras(program, scenes, out):
         rows = [both[4 * width * y:4 * width * (y + 1)] for y in range(height)]
         views = [[v for row in rows for v in row[4 * half * eye:4 * half * (eye + 1)]] for eye in (0, 1)]
         assert views[0] != views[1]
+        # What is under the cursor is asked of the eye whose view that is.
+        shown.script("""window.asked = []; const send = WebSocket.prototype.send;
+            WebSocket.prototype.send = function (data) { const said = typeof data === 'string' && JSON.parse(data);
+              if (said && said.type === 'ask') window.asked.push(said); return send.call(this, data); };""")
+        for eye, x in ((0, half // 3), (1, half + half // 3), (0, half - 2), (1, half + 2)):
+            shown.script("window.asked = []")
+            shown.mouse(x, height // 2).perform()
+            asked = shown.until("a question", lambda: shown.script("return window.asked.at(-1)"))
+            assert asked["eye"] == eye and abs(asked["x"] - (x - eye * half)) <= 1, (asked, x, half)
         # The same by a camera that is moved by hand: parallel axes, so that its window stays.
         at.pick("convergence", "0")
         shown.until("parallel axes", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2 and shown.pixels()[2] != both)

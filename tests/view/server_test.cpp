@@ -10,6 +10,7 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
@@ -19,6 +20,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "view/addresses.h"
 
 namespace caplet::view {
 namespace {
@@ -90,10 +92,10 @@ class Served {
 };
 
 /// What it answers to these bytes, until it closes or is silent for a while.
-std::string answer(const Served& to, const std::string& bytes) {
+std::string answer(const Served& to, const std::string& bytes, const std::string& address = "127.0.0.1") {
   asio::io_context context;
   beast::tcp_stream stream(context);
-  stream.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), to.server->port()));
+  stream.connect(tcp::endpoint(asio::ip::make_address(address), to.server->port()));
   beast::error_code error;
   asio::write(stream.socket(), asio::buffer(bytes), error);
   std::string out;
@@ -110,8 +112,9 @@ std::string answer(const Served& to, const std::string& bytes) {
   return out;
 }
 
-std::string get(const Served& from, const std::string& target, const std::string& host, const std::string& more = "") {
-  return answer(from, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}\r\n", target, host, more));
+std::string get(const Served& from, const std::string& target, const std::string& host, const std::string& more = "",
+                const std::string& address = "127.0.0.1") {
+  return answer(from, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}\r\n", target, host, more), address);
 }
 
 class Socket {
@@ -163,6 +166,45 @@ TEST(Server, RefusesOtherTokensHostsAndPaths) {
     EXPECT_THAT(get(served, right + path, here), StartsWith("HTTP/1.1 404")) << path;
   EXPECT_THAT(answer(served, fmt::format("POST {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", right, here)),
               StartsWith("HTTP/1.1 405"));
+}
+
+TEST(Server, RefusesHostsThatAreNoneOrSeveral) {
+  const Served served;
+  const std::string right = fmt::format("/{}/", token), here = served.authority();
+  const unsigned port = served.server->port();
+  for (const std::string& host :
+       {fmt::format("127.0.0.1:1:{}", port), fmt::format("127.0.0.1:{0}:{0}", port),
+        fmt::format("evil.example:127.0.0.1:{}", port), fmt::format("127.0.0.1:{}x", port), fmt::format("127.0.0.1:+{}", port),
+        fmt::format("127.0.0.1: {}", port), fmt::format("127.0.0.1:{}", port + 65536), fmt::format("[::1:{}", port),
+        fmt::format("[::1]{}", port), fmt::format("[::1]x:{}", port), fmt::format("::1:{}", port), fmt::format(":{}", port),
+        fmt::format("[]:{}", port), fmt::format("a@127.0.0.1:{}", port), fmt::format("127.0.0.1:{},evil.example", port),
+        std::string("127.0.0.1:")})
+    EXPECT_THAT(get(served, right, host), StartsWith("HTTP/1.1 403")) << host;
+  EXPECT_THAT(get(served, right, fmt::format("[::1]:{}", port)), StartsWith("HTTP/1.1 200"));
+  // RFC 9112, section 3.2: several are answered by 400.
+  for (const std::string& other : {here, std::string("evil.example")})
+    for (const auto& [first, second] : {std::pair(here, other), std::pair(other, here)})
+      EXPECT_THAT(get(served, right, first, fmt::format("Host: {}\r\n", second)), StartsWith("HTTP/1.1 400")) << other;
+  EXPECT_THAT(answer(served, fmt::format("GET {} HTTP/1.0\r\n\r\n", right)), StartsWith("HTTP/1.1 403"));
+  // A second Origin does not open a socket, whichever comes first.
+  const auto opens = [&](const std::string& origins) {
+    return answer(served, fmt::format("GET {}socket HTTP/1.1\r\nHost: {}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                                      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n{}\r\n",
+                                      right, here, origins));
+  };
+  const std::string own = fmt::format("Origin: http://{}\r\n", here), evil = "Origin: http://evil.example\r\n";
+  EXPECT_THAT(opens(own), StartsWith("HTTP/1.1 101"));
+  for (const std::string& origins : {own + evil, evil + own, own + own, std::string()})
+    EXPECT_THAT(opens(origins), StartsWith("HTTP/1.1 403")) << origins;
+}
+
+TEST(Server, EndsAConnectionThatDoesNotNameTheToken) {
+  const Served served;
+  // One request, whatever else waits behind it.
+  const std::string wrong = fmt::format("GET /x/ HTTP/1.1\r\nHost: {}\r\n\r\n", served.authority());
+  const std::string right = fmt::format("GET /{}/ HTTP/1.1\r\nHost: {}\r\n\r\n", token, served.authority());
+  EXPECT_THAT(answer(served, wrong + right), testing::AllOf(StartsWith("HTTP/1.1 403"), testing::Not(HasSubstr("200 OK"))));
+  EXPECT_THAT(answer(served, right + right), HasSubstr("the pageHTTP/1.1 200"));
 }
 
 TEST(Server, EndsWhatIsNoRequest) {
@@ -302,6 +344,141 @@ TEST(Server, HoldsAHundredConnections) {
       std::this_thread::sleep_for(milliseconds(20));
     }
   EXPECT_EQ(served.joined, 4);
+}
+
+/// Connections that hold their places: silent, or with a byte of a header now and then.
+class Holders {
+ public:
+  Holders(const Served& of, int count) {
+    for (int i = 0; i < count; ++i) {
+      sockets_.emplace_back(context_);
+      sockets_.back().connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), of.server->port()));
+    }
+  }
+  void say(std::string_view bytes) {
+    for (tcp::socket& each : sockets_) {
+      beast::error_code ignored;
+      asio::write(each, asio::buffer(bytes), ignored);
+    }
+  }
+  /// Those that the server has not closed.
+  int open() {
+    int out = 0;
+    for (tcp::socket& each : sockets_) {
+      char byte = 0;
+      beast::error_code error;
+      each.non_blocking(true);
+      each.read_some(asio::buffer(&byte, 1), error);
+      out += error == asio::error::would_block;
+    }
+    return out;
+  }
+
+ private:
+  asio::io_context context_;
+  std::vector<tcp::socket> sockets_;
+};
+
+TEST(Server, GivesNobodysPlaceToThoseWithoutTheToken) {
+  ServerOptions options;
+  options.stranger_seconds = 600;  // it is not their patience that helps here
+  Served served(options);
+  Holders silent(served, 64), slow(served, 64);
+  slow.say("GET / HTTP/1.1\r\nHost: ");
+  Socket socket(served);  // throws where there is no place
+  EXPECT_TRUE(served.becomes([&] { return served.joined == 1; }));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 200"));
+  EXPECT_LE(silent.open() + slow.open(), static_cast<int>(options.most_strangers_an_address));
+  // Nor do they put out who knows it.
+  Holders more(served, 64);
+  socket.say("still here");
+  EXPECT_TRUE(served.becomes([&] { return served.messages.size() == 1; }));
+  EXPECT_EQ(served.left, 0);
+}
+
+TEST(Server, WaitsForNoHeaderLongerThanItSays) {
+  ServerOptions options;
+  options.stranger_seconds = 0.5;
+  const Served served(options);
+  Holders silent(served, 4), slow(served, 4);
+  EXPECT_EQ(silent.open() + slow.open(), 8);
+  const auto start = std::chrono::steady_clock::now();
+  int open = 8;
+  while (open > 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(10)) {
+    slow.say("x");  // which is no new beginning
+    std::this_thread::sleep_for(milliseconds(20));
+    open = silent.open() + slow.open();
+  }
+  EXPECT_EQ(open, 0);
+  EXPECT_GT(std::chrono::steady_clock::now() - start, milliseconds(300));
+}
+
+TEST(Server, CountsThoseWhoKnowTheToken) {
+  ServerOptions options;
+  options.most_connections = 3;
+  Served served(options);
+  std::vector<std::unique_ptr<Socket>> clients;
+  for (int i = 0; i < 3; ++i) clients.push_back(std::make_unique<Socket>(served));
+  ASSERT_TRUE(served.becomes([&] { return served.joined == 3; }));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 503"));
+  clients.pop_back();
+  ASSERT_TRUE(served.becomes([&] { return served.left == 1; }));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 200"));
+}
+
+TEST(Server, KeepsAClientThatTakesWhatItIsSent) {
+  ServerOptions options;
+  options.most_waiting_bytes = 1000000;
+  Served served(options);
+  Socket socket(served);
+  ASSERT_TRUE(served.becomes([&] { return served.joined == 1; }));
+  const auto message = std::make_shared<const std::string>(400000, 'x');
+  for (int i = 0; i < 20; ++i) {  // eight times what may wait, of which no more than one does
+    served.server->send(served.last, message);
+    ASSERT_EQ(socket.read().size(), message->size()) << i;
+  }
+  EXPECT_EQ(served.left, 0);
+}
+
+/// The address that this machine has towards others, as the kernel chooses it for a datagram; empty where there is no way out.
+std::string own_address() {
+  asio::io_context context;
+  asio::ip::udp::socket socket(context, asio::ip::udp::v4());
+  beast::error_code error;
+  socket.connect({asio::ip::make_address("198.51.100.1"), 9}, error);  // of an example network: nothing is sent
+  return error ? std::string() : socket.local_endpoint().address().to_string();
+}
+
+TEST(Server, ThatIsOpenToAllSaysWhereItIs) {
+  for (const std::string host : {"0.0.0.0", "::"}) {
+    ServerOptions options;
+    options.host = host;
+    std::optional<Served> served;
+    try {
+      served.emplace(options);
+    } catch (const RunError&) {
+      EXPECT_EQ(host, "::");  // a machine without IPv6
+      continue;
+    }
+    const std::vector<std::string> addresses = addresses_reached(host);
+    ASSERT_FALSE(addresses.empty());
+    EXPECT_EQ(served->server->address(), fmt::format("http://{}/{}/", authority_of(addresses[0], served->server->port()), token));
+    const std::string own = own_address();
+    if (!own.empty()) {
+      EXPECT_THAT(addresses, testing::Contains(own));
+      EXPECT_THAT(addresses, testing::Each(testing::Not(StartsWith("127."))));
+    }
+    for (const std::string& address : addresses) {
+      const std::string page =
+          get(*served, fmt::format("/{}/", token), authority_of(address, served->server->port()), "", address);
+      EXPECT_THAT(page, StartsWith("HTTP/1.1 200")) << address;
+    }
+    EXPECT_THAT(get(*served, fmt::format("/{}/", token), "evil.example"), StartsWith("HTTP/1.1 403"));
+  }
+  EXPECT_THAT(addresses_reached("192.0.2.7"), testing::ElementsAre("192.0.2.7"));
+  EXPECT_TRUE(is_this_machine_alone("127.0.0.1") && is_this_machine_alone("127.1.2.3") && is_this_machine_alone("::1"));
+  for (const char* open : {"0.0.0.0", "::", "192.0.2.7", "::ffff:127.0.0.1", "12.7.0.0"})
+    EXPECT_FALSE(is_this_machine_alone(open));
 }
 
 TEST(Server, SaysWhyItCannotListen) {

@@ -23,6 +23,7 @@
 #include <thread>
 
 #include "film/image.h"
+#include "guests.h"
 #include "import/import.h"
 #include "live_pictures.h"
 #include "support/data.h"
@@ -38,85 +39,11 @@ using nlohmann::json;
 using tcp = asio::ip::tcp;
 using testing::HasSubstr;
 
-constexpr int width = 96, height = 64;
-
-struct Place {
-  explicit Place(const std::string& address)
-      : authority(address.substr(7, address.find('/', 7) - 7)), path(address.substr(address.find('/', 7))) {}
-  tcp::endpoint endpoint() const {
-    return {asio::ip::make_address("127.0.0.1"),
-            static_cast<std::uint16_t>(std::stoi(authority.substr(authority.find(':') + 1)))};
-  }
-  std::string authority, path;
-};
-
-/// A picture's first words (docs/viewer.md).
-struct Shown {
-  std::uint32_t view = 0, width = 0, scale = 0, samples = 0;
-};
-
-class Guest {
- public:
-  explicit Guest(const Place& place) : stream_(context_) {
-    beast::get_lowest_layer(stream_).connect(place.endpoint());
-    stream_.set_option(websocket::stream_base::decorator(
-        [&](websocket::request_type& request) { request.set(beast::http::field::origin, "http://" + place.authority); }));
-    stream_.read_message_max(0);
-    stream_.handshake(place.authority, place.path + "socket");
-  }
-  void say(const json& message) { stream_.write(asio::buffer(message.dump())); }
-  void look(const Scene& scene, double by = 0) {
-    json rows = json::array();
-    glm::dmat4 at = scene.camera.world_from_camera;
-    at[3].x += by;
-    for (int i = 0; i < 16; ++i) rows.push_back(at[i % 4][i / 4]);
-    say({{"type", "look"},
-         {"width", width},
-         {"height", height},
-         {"world_from_camera", rows},
-         {"fov", scene.camera.fov},
-         {"lens_radius", scene.camera.lens_radius},
-         {"focal_distance", scene.camera.focal_distance}});
-  }
-  /// The next message that is text of that type; or, for "", bytes that are no picture.
-  std::string until(const std::string& type) {
-    for (;;) {
-      std::string got = next();
-      if (type.empty() ? !stream_.got_text() && got.compare(0, 4, "CPLF") != 0
-                       : stream_.got_text() && json::parse(got).value("type", "") == type)
-        return got;
-    }
-  }
-  /// The first picture in full, of so many samples, of a view after `after`.
-  Shown until_samples(std::uint32_t samples, std::uint32_t after = 0) {
-    for (;;) {
-      const std::string got = next();
-      if (stream_.got_text() || got.compare(0, 4, "CPLF") != 0) continue;
-      std::uint32_t words[10];
-      std::memcpy(words, got.data(), sizeof words);
-      if (words[4] == 1 && words[5] >= samples && words[2] == width && words[1] > after)
-        return {words[1], words[2], words[4], words[5]};
-    }
-  }
-  websocket::stream<beast::tcp_stream>& stream() { return stream_; }
-  tcp::socket& raw() { return beast::get_lowest_layer(stream_).socket(); }
-
- private:
-  std::string next() {
-    beast::flat_buffer buffer;
-    stream_.read(buffer);
-    return beast::buffers_to_string(buffer.data());
-  }
-  asio::io_context context_;
-  websocket::stream<beast::tcp_stream> stream_;
-};
-
-ViewerOptions options_of(int samples) {
-  ViewerOptions out;
-  out.server.token = random_token();
-  out.samples = samples;
-  return out;
-}
+using test::Guest;
+using test::height;
+using test::options_of;
+using test::Place;
+using test::width;
 
 TEST(Viewer, ItsSnapshotIsTheRenderedPicture) {
   const Scene scene = test::some_scene();

@@ -29,6 +29,9 @@ Findings check_memory(const Surroundings& machine);
 /// Caplet's cache: where, how much, and whether it can be written.
 Findings check_cache(const Surroundings& machine, const std::filesystem::path& folder);
 
+/// A missing /sys, as containers may have it, without which PoCL ends the process.
+Findings check_sys(const Surroundings& machine);
+
 /// PoCL's cache. $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; without any PoCL uses /tmp.
 Findings check_pocl_cache(const Surroundings& machine);
 

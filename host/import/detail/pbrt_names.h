@@ -27,6 +27,9 @@ bool is_file_shape(std::string_view type);
 /// All directives.
 const std::vector<std::string>& directive_names();
 
+/// Whether pbrt-v4, or Caplet, has this type of `directive`.
+bool is_known_name(std::string_view directive, const std::string& name);
+
 /// Why a type of `directive` cannot be used, and what groups such errors; `text` is empty where it is accepted.
 struct Refusal {
   std::string text;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/quotes.h"
 #include "base/spelling.h"
 #include "import/detail/pbrt_lexer.h"
 #include "import/detail/pbrt_lights.h"
@@ -111,7 +112,7 @@ class Parser {
 
   // Reading
   void parse_file(const std::string& file, std::string text, Lexer* behind = nullptr);
-  void parse_statement();
+  void parse_statement(Unproven& in_file);
   void skip_to_directive();
   std::string string_argument(const char* what);
   double number_argument();
@@ -119,7 +120,7 @@ class Parser {
   glm::dmat4 matrix_argument();
   std::vector<Parameter> own_parameters();
   Parameters parameters(const std::string& owner, const char* attribute_target = nullptr);
-  std::string owner(const std::string& type) const { return directive_ + " \"" + type + "\""; }
+  std::string owner(const std::string& type) const { return directive_ + " " + in_quotes(type); }
 
   // Directives
   void accelerator();

@@ -61,7 +61,7 @@ inline constexpr float largest_number = 1e16F;
 /// largest_number is out of range.
 NumberError parse_float(std::string_view token, float& value);
 
-/// `token` in quotes for a message: shortened, unprintable bytes as \xNN.
+/// `token` in quotes for a message: shortened, unprintable bytes as \xNN; withheld of a file that is unproven (base/quotes.h).
 std::string quoted(std::string_view token);
 
 /// "'abc' is not a number" and the like, for a token that parse_float refused.

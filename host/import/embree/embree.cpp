@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/check.h"
+#include "base/reading.h"
 #include "import/detail/embree.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
@@ -61,8 +62,7 @@ class Reader {
     } else {
       viewer = read_ecs(path, notes_);
       for (const auto& [one, where] : viewer.files) {
-        std::error_code error;
-        if (!fs::is_regular_file(one, error)) throw InputError(where, "there is no file '" + one.string() + "'");
+        if (!is_file(one, where)) throw InputError(where, "there is no file '" + one.string() + "'");
         if (!is_xml(one)) throw InputError(where, "'" + one.string() + "' is no XML: it is not read");
         roots.push_back(file(one, where, 0));
       }
@@ -109,7 +109,7 @@ class Reader {
     SceneFile scene_file(path, named_at);
     const pugi::xml_node root = scene_file.root();
     if (std::string_view(root.name()) != "scene")
-      scene_file.fail(root, "<" + std::string(root.name()) + "> is no scene of Embree (<scene>)");
+      scene_file.fail(root, "the root element is not <scene>: this is no scene of Embree");
     auto group = std::make_shared<Node>();
     group->where = scene_file.place(root);
     children(scene_file, root, *group, depth);
@@ -255,8 +255,7 @@ class Reader {
     const SourceLocation where = from.place(node);
     if (src.empty()) from.fail(node, "names no file (src)");
     const fs::path path = from.path().parent_path() / src;
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) from.fail(node, "there is no file '" + path.string() + "'");
+    if (!is_file(path, where)) from.fail(node, "there is no file '" + path.string() + "'");
     const Format& format = format_of(path);
     if (format.name == "embree") return file(path, where, depth);
     if (format.name != "obj" && format.name != "ply" && format.name != "stl" && format.name != "off")

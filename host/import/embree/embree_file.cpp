@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/log.h"
+#include "base/reading.h"
 #include "import/detail/embree.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/text_file.h"
@@ -52,10 +53,9 @@ std::string_view SceneFile::binary(pugi::xml_node node, std::size_t row) {
     fs::path one = path(), other = path();
     one.replace_extension(".bin");
     other += ".bin";
-    std::error_code error;
-    if (fs::exists(one, error))
+    if (is_there(one, place(node)))
       companion_ = read_file(one, place(node));
-    else if (fs::exists(other, error))
+    else if (is_there(other, place(node)))
       companion_ = read_file(other, place(node));
     else
       fail(node, fmt::format("its numbers are in '{}', which is not there (nor is '{}')", one.string(), other.string()));

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "base/quotes.h"
 #include "import/detail/embree.h"
 #include "import/detail/text_file.h"
 
@@ -296,6 +297,7 @@ ViewerOptions read_ecs(const std::filesystem::path& path, Notes& notes) {
   ViewerOptions out;
   View view;
   bool has_view = false;
+  Unproven in_file;  // -i comes first, or other options that are known
   std::size_t i = 0;
   const auto next = [&](const Word& option) -> const Word& {
     if (i >= words.size()) throw InputError(option.where, quoted(option.text) + " ends early");
@@ -359,7 +361,9 @@ ViewerOptions read_ecs(const std::filesystem::path& path, Notes& notes) {
     } else {
       notes.add("the option " + caplet::quoted(option.text) + " is passed over", option.where);
       while (i < words.size() && option_of(words[i].text).empty()) ++i;
+      continue;
     }
+    in_file.prove();
   }
   if (direction != glm::dvec3(0)) view.to = view.from + direction;
   if (has_view) out.view = view;

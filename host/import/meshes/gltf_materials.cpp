@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "base/check.h"
+#include "base/reading.h"
 #include "import/detail/gltf.h"
 #include "import/detail/mesh_file.h"
 
@@ -120,6 +121,7 @@ std::shared_ptr<const TextureImage> Materials::image(std::size_t index, bool is_
   }
   try {
     if (data) {
+      const ReadingAnywhere own_file;
       const TemporaryFile file(*data, data->starts_with("\x89PNG") ? ".png" : ".jpg");
       TextureImage read = reader_.read_texture(file.path(), encoding);
       read.file.clear();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/reading.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
 
@@ -117,8 +118,7 @@ class Maker {
   /// Models are passed on without their images, and with paths of other machines: they are drawn in their colours alone.
   bool is_there(const std::string& name, const SourceLocation& where) const {
     if (name.empty()) return false;
-    std::error_code error;
-    if (std::filesystem::exists(folder_ / name, error)) return true;
+    if (caplet::is_there(folder_ / name, where)) return true;
     Diagnostics().warning(where, "the image '" + (folder_ / name).string() + "' is left out: there is no such file");
     return false;
   }

@@ -9,6 +9,8 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "base/quotes.h"
+#include "base/reading.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
@@ -68,6 +70,8 @@ class ObjReader {
  private:
   void parse() {
     const TextFile file(path_);
+    Unproven in_file;
+    in_file_ = &in_file;
     std::string_view text = file.text();
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     std::string joined;
@@ -98,9 +102,11 @@ class ObjReader {
   void statement(const LineWords& words) {
     if (words.count() == 0) return;
     const std::string_view what = words.word(0);
-    if (what == "v")
+    if (what == "v") {
       vertex_statement(words);
-    else if (what == "vt")
+      if (in_file_) in_file_->prove();
+    }
+    if (what == "vt")
       uvs_.emplace_back(words.number(1), words.count() > 2 ? words.number(2) : 0);
     else if (what == "vn")
       normals_.emplace_back(words.number(1), words.number(2), words.number(3));
@@ -207,8 +213,7 @@ class ObjReader {
   void library(const LineWords& words) {
     const SourceLocation here{scene_.source, line_, 0};
     const std::filesystem::path file = path_.parent_path() / std::filesystem::path(std::string(words.rest(1)));
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) {
+    if (!is_there(file, here)) {
       Diagnostics().warning(here, "the materials of '" + file.string() + "' cannot be had: there is no such file");
       return;
     }
@@ -265,6 +270,7 @@ class ObjReader {
 
   const std::filesystem::path& path_;
   const ImportOptions& options_;
+  Unproven* in_file_ = nullptr;  // while it is parsed
   bool with_materials_ = true;
   Scene scene_;
   MeshImages images_;

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "base/check.h"
+#include "base/quotes.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
@@ -71,9 +72,11 @@ TriangleMeshShape text_stl(std::string_view text, const std::string& file) {
   std::vector<std::uint32_t> loop;
   int number = 1;
   bool open = false;
+  Unproven in_file;
   for (; !text.empty(); ++number) {
     const LineWords words(take_line(text), file, number, '\0');
     if (words.count() == 0) continue;
+    if (words.word(0) == "facet" || words.word(0) == "endfacet") in_file.prove();
     if (words.word(0) == "outer") {
       loop.clear();
       open = true;

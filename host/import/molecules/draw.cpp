@@ -12,13 +12,14 @@
 #include <optional>
 #include <set>
 
-#include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
+#include "base/reading.h"
 #include "import/color_map.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"
+#include "import/detail/option_files.h"
 #include "import/detail/text_file.h"
 #include "import/detail/value_colors.h"
 #include "present/present.h"
@@ -279,7 +280,7 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
 
 /// Puts the atoms where frame `number` of the array has them; the bonds are those of the file's own places.
 void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t number) {
-  note_input(path);
+  begin_reading(path);
   NpyReader reader(path, {3}, 3);
   const std::uint64_t frames = reader.shape()[0], atoms = reader.shape()[1];
   if (atoms != molecule.atoms.size())
@@ -308,6 +309,7 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   ImportOptions of_file = options;
   if (positions) of_file.set("model", "1");  // the frame is one of the array
   Molecule molecule = reader(read_text(path, {}), scene.source, of_file);
+  const OptionFiles may_be_read(options);
   if (const std::optional<std::string> file = options.text("components"))
     for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
       molecule.components.insert_or_assign(name, std::move(bonds));

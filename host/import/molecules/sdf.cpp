@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/quotes.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
 
@@ -91,6 +92,7 @@ class Reader {
     atom.element = element_of(symbol);
     atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
     out_.atoms.push_back(atom);
+    in_file_.prove();
   }
 
   void add_bond(std::uint32_t a, std::uint32_t b, std::size_t column) {
@@ -167,6 +169,7 @@ class Reader {
   const ImportOptions& options_;
   int line_ = 0;
   Molecule out_;
+  Unproven in_file_;
 };
 
 }  // namespace

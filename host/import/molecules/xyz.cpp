@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/quotes.h"
 #include "import/detail/molecule.h"
 #include "import/detail/text_file.h"
 
@@ -121,6 +122,7 @@ class Reader {
     atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
     if (atom.hydrogen() && !options_.yes("hydrogens", true)) return;
     out_.atoms.push_back(atom);
+    in_file_.prove();
   }
 
   std::string_view text_;
@@ -128,6 +130,7 @@ class Reader {
   const ImportOptions& options_;
   int line_ = 0;
   Molecule out_;
+  Unproven in_file_;
 };
 
 }  // namespace

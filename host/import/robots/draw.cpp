@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "base/reading.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
@@ -242,9 +243,8 @@ class Drawing {
   void add_mesh(const RobotGeom& geom) {
     std::shared_ptr<const MeshParts> parts = geom.parts;
     if (!parts && !geom.needs_mesh) {
-      std::error_code ignored;
       const char* why = !is_mesh_file(geom.mesh) ? "STL, OBJ, DAE, PLY, OFF and MSH are read" : "no such file";
-      if (!is_mesh_file(geom.mesh) || !std::filesystem::exists(geom.mesh, ignored))
+      if (!is_mesh_file(geom.mesh) || !is_there(geom.mesh, geom.where))
         return Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: " + why);
     }
     if (!parts) parts = files_.read(geom.mesh, geom.where);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/mesh_file.h"
@@ -65,6 +66,7 @@ bool is_mesh_file(const std::filesystem::path& path) {
 }
 
 std::shared_ptr<const MeshParts> MeshFiles::read(const std::filesystem::path& path, const SourceLocation& where) {
+  check_may_read(path, where);
   std::shared_ptr<const MeshParts>& known = meshes_[path.string()];
   if (known) return known;
   const std::string ending = lower_case_ending(path), file = path.string();

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/reading.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/mjcf.h"
@@ -42,6 +43,7 @@ Heights heights_of(const Element& of, const ImageReader& images, const std::file
     out.columns = static_cast<std::size_t>(columns);
   };
   if (!of.text("file").empty()) {
+    check_may_read(path, of.where());
     const std::string ending = lower_case_ending(path);
     if (ending == ".png" || of.text("content_type") == "image/png") {
       const TextureImage image = images.read_texture(path, {ImageEncoding::Kind::linear, 1});

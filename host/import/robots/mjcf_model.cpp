@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/reading.h"
 #include "import/detail/mjcf.h"
 #include "import/detail/text_file.h"
 
@@ -121,11 +122,10 @@ pugi::xml_node Model::included(pugi::xml_node node) const {
   if (known != includes_.end()) return known->second;
   const std::string name = node.attribute("file").value();
   if (name.empty()) fail(node, "<include> without a file");
-  std::error_code ignored;
   std::filesystem::path path = folder_ / name;
-  if (!std::filesystem::exists(path, ignored)) {
+  if (!is_there(path, place(node))) {
     const std::filesystem::path beside = std::filesystem::path(place(node).file).parent_path() / name;
-    if (std::filesystem::exists(beside, ignored)) path = beside;
+    if (is_there(beside, place(node))) path = beside;
   }
   if (!seen_.insert(known_as(path)).second) fail(node, "the file '" + path.string() + "' is included already");
   if (seen_.size() > most_nested) fail(node, "too many files are included");

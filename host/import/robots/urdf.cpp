@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
+#include "base/reading.h"
 #include "import/detail/robot.h"
 
 namespace caplet {
@@ -169,11 +170,10 @@ class UrdfReader {
     name.erase(0, 10);
     const std::size_t slash = name.find('/');
     const std::string rest = slash == std::string::npos ? name : name.substr(slash + 1);
-    std::error_code ignored;
     std::filesystem::path at = folder;
     for (int up = 0; up < 5; ++up, at /= "..")
       for (const std::string& tried : {rest, name})
-        if (std::filesystem::is_regular_file(at / tried, ignored)) return at / tried;
+        if (may_read(at / tried) && is_file(at / tried, file_.place(node))) return at / tried;
     return folder / rest;
   }
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What PoCL needs of a machine: a cache folder that it can write, or it offers no device or cannot compile; and what /sys tells
+// of processors and memory, or it ends the process ("Not enough memory to run on this device").
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace caplet {
+
+/// To be called before the first OpenCL call of a process; later calls do nothing. Sets environment variables where something is
+/// missing: POCL_CACHE_DIR to a temporary folder of this user, HWLOC_SYNTHETIC to the processors and the memory that the kernel
+/// tells of. Warns of a missing /sys, which every PoCL needs.
+void prepare_for_pocl();
+
+/// Warns, once, of PoCL's own cache folder where another one takes its place. To be called when PoCL is used.
+void tell_of_pocl_cache();
+
+/// Why no folder or file can be made at that place; empty: it can. Leaves nothing behind.
+std::string why_unwritable(const std::filesystem::path& folder);
+
+/// A folder of this user alone in `temporary`, the same for all processes; none where somebody else has taken its name.
+std::optional<std::filesystem::path> private_folder(const std::filesystem::path& temporary);
+
+/// Whether `sys` tells of processors.
+bool tells_of_processors(const std::filesystem::path& sys);
+
+}  // namespace caplet
