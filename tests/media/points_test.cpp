@@ -63,7 +63,8 @@ MediumPoints look(const Scene& scene, const std::vector<glm::vec3>& points) {
   std::vector<float> at;
   for (const glm::vec3& p : points) at.insert(at.end(), {p.x, p.y, p.z});
   const Buffer<MediumRecord> mediums(device, std::span<const MediumRecord>(flat.mediums));
-  const Buffer<float> data(device, std::span<const float>(flat.media_data)), grids(device, std::span<const float>(flat.media_grids));
+  const Buffer<float> data(device, std::span<const float>(flat.media_data)),
+      grids(device, std::span<const float>(flat.media_grids));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));
   const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)), places(device, std::span<const float>(at));
   Buffer<float> out(device, 16 * points.size());
@@ -83,7 +84,8 @@ MediumPoints look(const Scene& scene, const std::vector<glm::vec3>& points) {
 
 /// A scene of one medium, which a ball is full of.
 Scene scene_of(const std::string& medium) {
-  return scene_of_text("WorldBegin\n" + white_sky() + medium + "\nMaterial \"interface\"\nMediumInterface \"m\" \"\"\nShape \"sphere\"\n");
+  return scene_of_text("WorldBegin\n" + white_sky() + medium +
+                       "\nMaterial \"interface\"\nMediumInterface \"m\" \"\"\nShape \"sphere\"\n");
 }
 Scene scene_of(decltype(Medium::model) model) {
   Scene scene = scene_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\"");
@@ -112,7 +114,8 @@ std::vector<float> numbers(std::size_t count, unsigned seed, float least = 0) {
 FloatGrid grid(std::vector<float> values) { return std::make_shared<const std::vector<float>>(std::move(values)); }
 
 /// A grid of values at the centres of a box' cells, 0 outside, linear between them.
-double between(const std::vector<float>& values, const GridCounts& counts, const glm::dvec3& part, std::size_t stride = 1, std::size_t c = 0) {
+double between(const std::vector<float>& values, const GridCounts& counts, const glm::dvec3& part, std::size_t stride = 1,
+               std::size_t c = 0) {
   double sum = 0;
   for (int z = 0; z < counts[2]; ++z)
     for (int y = 0; y < counts[1]; ++y)
@@ -251,8 +254,9 @@ TEST(MediaPoints, AGridOfColoursInterpolatesSpectra) {
 TEST(MediaPoints, ANanovdbGridIsLinearBetweenItsVoxels) {
   const auto voxel = [](glm::ivec3 p, int salt) {
     if (p.x < -8 || p.x > 7 || p.y < -8 || p.y > -1 || p.z < 0 || p.z > 15 || (p.x < 0 && p.z > 7)) return 0.0;
-    const unsigned h = (static_cast<unsigned>(p.x + 8) * 73U + static_cast<unsigned>(p.y + 8) * 179U + static_cast<unsigned>(p.z) * 283U +
-                        static_cast<unsigned>(salt)) % 101U;
+    const unsigned h = (static_cast<unsigned>(p.x + 8) * 73U + static_cast<unsigned>(p.y + 8) * 179U +
+                        static_cast<unsigned>(p.z) * 283U + static_cast<unsigned>(salt)) %
+                       101U;
     return h / 100.0;
   };
   // Voxels are 0.25 wide.
@@ -313,30 +317,18 @@ struct CloudRow {
 // By cloud.py: 24 points in clouds of four kinds.
 TEST(MediaPoints, ACloudIsThatOfItsNoise) {
   const std::vector<CloudRow> rows = {
-      {1, 0, 5, {-0.099F, 0.355F, 3.241F}, 0.362490},
-      {1, 0, 5, {-0.979F, 0.798F, 2.782F}, 0.106695},
-      {1, 0, 5, {0.019F, 0.478F, 1.027F}, 0.319444},
-      {1, 0, 5, {2.669F, 0.635F, 1.085F}, 0.583968},
-      {1, 0, 5, {0.987F, 0.310F, -1.929F}, 0.626171},
-      {1, 0, 5, {1.967F, 0.178F, 1.247F}, 0.873220},
-      {0.6, 1, 5, {0.518F, 0.932F, 1.540F}, 0.021618},
-      {0.6, 1, 5, {1.420F, 0.642F, 2.059F}, 0.023672},
-      {0.6, 1, 5, {1.279F, 0.224F, -0.845F}, 0.785062},
-      {0.6, 1, 5, {2.536F, 0.645F, 1.418F}, 0.153804},
-      {0.6, 1, 5, {0.505F, 0.449F, -0.563F}, 0.474443},
-      {0.6, 1, 5, {-0.899F, 0.416F, -1.818F}, 0.590378},
-      {1.5, 3, 2, {0.713F, 0.545F, 3.237F}, 0.409038},
-      {1.5, 3, 2, {0.377F, 0.602F, 2.102F}, 0.209770},
-      {1.5, 3, 2, {-0.206F, 0.409F, -0.924F}, 0.709252},
-      {1.5, 3, 2, {0.720F, 0.542F, 3.706F}, 0.469484},
-      {1.5, 3, 2, {0.004F, 0.785F, 2.059F}, 0.055090},
-      {1.5, 3, 2, {0.331F, 0.439F, -0.783F}, 0.709728},
-      {0.4, 1, 9, {-0.797F, 0.281F, 3.493F}, 0.921767},
-      {0.4, 1, 9, {2.361F, 0.196F, 1.623F}, 0.735570},
-      {0.4, 1, 9, {0.355F, 0.370F, -1.324F}, 0.527711},
-      {0.4, 1, 9, {1.506F, 0.778F, -0.118F}, 0.031030},
-      {0.4, 1, 9, {1.888F, 0.837F, 3.358F}, 0.071500},
-      {0.4, 1, 9, {0.517F, 0.315F, 0.739F}, 0.474689},
+      {1, 0, 5, {-0.099F, 0.355F, 3.241F}, 0.362490},    {1, 0, 5, {-0.979F, 0.798F, 2.782F}, 0.106695},
+      {1, 0, 5, {0.019F, 0.478F, 1.027F}, 0.319444},     {1, 0, 5, {2.669F, 0.635F, 1.085F}, 0.583968},
+      {1, 0, 5, {0.987F, 0.310F, -1.929F}, 0.626171},    {1, 0, 5, {1.967F, 0.178F, 1.247F}, 0.873220},
+      {0.6, 1, 5, {0.518F, 0.932F, 1.540F}, 0.021618},   {0.6, 1, 5, {1.420F, 0.642F, 2.059F}, 0.023672},
+      {0.6, 1, 5, {1.279F, 0.224F, -0.845F}, 0.785062},  {0.6, 1, 5, {2.536F, 0.645F, 1.418F}, 0.153804},
+      {0.6, 1, 5, {0.505F, 0.449F, -0.563F}, 0.474443},  {0.6, 1, 5, {-0.899F, 0.416F, -1.818F}, 0.590378},
+      {1.5, 3, 2, {0.713F, 0.545F, 3.237F}, 0.409038},   {1.5, 3, 2, {0.377F, 0.602F, 2.102F}, 0.209770},
+      {1.5, 3, 2, {-0.206F, 0.409F, -0.924F}, 0.709252}, {1.5, 3, 2, {0.720F, 0.542F, 3.706F}, 0.469484},
+      {1.5, 3, 2, {0.004F, 0.785F, 2.059F}, 0.055090},   {1.5, 3, 2, {0.331F, 0.439F, -0.783F}, 0.709728},
+      {0.4, 1, 9, {-0.797F, 0.281F, 3.493F}, 0.921767},  {0.4, 1, 9, {2.361F, 0.196F, 1.623F}, 0.735570},
+      {0.4, 1, 9, {0.355F, 0.370F, -1.324F}, 0.527711},  {0.4, 1, 9, {1.506F, 0.778F, -0.118F}, 0.031030},
+      {0.4, 1, 9, {1.888F, 0.837F, 3.358F}, 0.071500},   {0.4, 1, 9, {0.517F, 0.315F, 0.739F}, 0.474689},
   };
   for (const CloudRow& row : rows) {
     CloudMedium medium;
@@ -349,7 +341,8 @@ TEST(MediaPoints, ACloudIsThatOfItsNoise) {
     // The place is good for 8 times 2^-24 of 4; the finest octave has 16 times the frequency, its slope is some 2 / 32, and wisps
     // are by slopes that differences over 0.01 are taken of: 2^-23 of noise over 0.01, by 0.05 times the wispiness.
     const double error = 3e-4 * (1 + row.wispiness);
-    EXPECT_NEAR(looked.sigma_a[0][2], 1.5 * row.value, error) << row.p.x << " " << row.p.y << " " << row.p.z << " " << row.wispiness;
+    EXPECT_NEAR(looked.sigma_a[0][2], 1.5 * row.value, error)
+        << row.p.x << " " << row.p.y << " " << row.p.z << " " << row.wispiness;
     EXPECT_NEAR(looked.sigma_s[0][1], 3 * row.value, 2 * error);
     EXPECT_EQ(looked.le[0], Four{});
     expect_below_its_majorant(looked);
