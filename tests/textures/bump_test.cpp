@@ -42,6 +42,7 @@ struct View {
   double u = 0.5, v = 0.5, width = 2e-4;  // of what the pixel sees, in lengths
   glm::dvec3 from = {0, 0, 0};            // beside the normal, twice of which the camera is away
   bool behind = false;
+  bool is_flipped = false;  // v runs down; u and v here do not
 };
 
 /// The shape with one material, seen by a pixel.
@@ -53,11 +54,12 @@ Scene scene_of(const Parallelogram& shape, const View& view, const std::string& 
   return scene_of_text(fmt::format(
       "LookAt {} {} {}\nCamera \"perspective\" \"float fov\" {:.17g}\nPixelFilter \"box\"\n"
       "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nIntegrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
-      "LightSource \"infinite\"\n{}\nMaterial \"diffuse\" {}\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 "
+      "LightSource \"infinite\"\n{}\nMaterial {}\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 "
       "P\" "
-      "[{} {} {} {}] \"point2 uv\" [0 0 1 0 1 1 0 1] {}\n",
-      triple(eye), triple(target), triple(shape.a), fov, textures, material, triple(shape.origin), triple(shape.at(1, 0)),
-      triple(shape.at(1, 1)), triple(shape.at(0, 1)), more));
+      "[{} {} {} {}] \"point2 uv\" [{}] {}\n",
+      triple(eye), triple(target), triple(shape.a), fov, textures, material.empty() ? "\"diffuse\"" : material,
+      triple(shape.origin), triple(shape.at(1, 0)), triple(shape.at(1, 1)), triple(shape.at(0, 1)),
+      view.is_flipped ? "0 1 1 1 1 0 0 0" : "0 0 1 0 1 1 0 1", more));
 }
 
 glm::dvec3 normal_of(const Scene& scene) {
@@ -70,8 +72,8 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance, con
   EXPECT_LT(glm::length(a - b), tolerance) << what << ": " << triple(a) << " is not " << triple(b);
 }
 
-// Heights are looked at half a pixel, 5e-5 of uv, further on, which floats of up to 1 hold to 3e-8: slopes of up to 3 are good for
-// 2e-3. What is seen lies within 5e-5 of the middle of the pixel, where slopes are others by up to 2e-4.
+// Heights are looked at half a pixel, 5e-5 of uv, further on, which floats of up to 1 hold to 3e-8: slopes of up to 3 are good
+// for 2e-3. What is seen lies within 5e-5 of the middle of the pixel, where slopes are others by up to 2e-4.
 constexpr double kDifferences = 2e-3;
 
 std::string bilerp(double v00, double v01, double v10, double v11, const std::string& more = "") {
@@ -79,7 +81,7 @@ std::string bilerp(double v00, double v01, double v10, double v11, const std::st
       "Texture \"h\" \"float\" \"bilerp\" \"float v00\" {} \"float v01\" {} \"float v10\" {} \"float v11\" {} {}\n", v00, v01,
       v10, v11, more);
 }
-const std::string kRaised = "\"texture displacement\" \"h\"";
+const std::string kRaised = "\"diffuse\" \"texture displacement\" \"h\"";
 
 // Heights of uv: (1 - v) (1 - u) v00 + (1 - v) u v10 + v (1 - u) v01 + v u v11.
 TEST(Bumps, OfHeightsOfUvAreThoseOfTheRaisedSurface) {
@@ -90,8 +92,8 @@ TEST(Bumps, OfHeightsOfUvAreThoseOfTheRaisedSurface) {
                        Row{0, 1, 2, -1, 0.7, 0.4}, Row{3, 0, 0, 0, 0.1, 0.9}})
     for (const double turned : {1.0, -1.0})
       for (const bool behind : {false, true}) {
-        // With b on the other side of a, uv is left-handed where it was right-handed.
-        Parallelogram shape = tilted;
+        // With b on the other side of a, uv is left-handed where it was right-handed. The second faces (1, 1, 1).
+        Parallelogram shape = h.v00 == 0 ? tilted : Parallelogram{{0, 1, 2}, {1, -1, 0}, {1, 1, -2}};
         shape.b *= turned;
         const double hu = (1 - h.v) * (h.v10 - h.v00) + h.v * (h.v11 - h.v01);
         const double hv = (1 - h.u) * (h.v01 - h.v00) + h.u * (h.v11 - h.v10);
@@ -149,19 +151,78 @@ TEST(Bumps, ChangesAreThoseOfLittle) {
   expect_near(normal_of(scene), tilted.normal_raised(0.002 * 512, 0), 0.02);
 }
 
-// Heights of v alone, and pixels that are wider along v than u or the other way around: a step of half a pixel along v.
-TEST(Bumps, StepsAreHalfOfWhatIsSeen) {
+// Heights that begin to rise at a line, just before which one looks: of a step that goes beyond it, the part beyond rises. So the
+// normal tells how long steps are: the same part of a pixel along u and v and for pixels of all sizes, and no more than half of
+// one.
+TEST(Bumps, StepsGoWithWhatIsSeen) {
   const Parallelogram square{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}};
-  // 16 texels: level but for one rise of 0.2 from the middle of texel 8 to that of 9.
-  std::vector<float> rise;
-  for (int y = 0; y < 16; ++y) rise.insert(rise.end(), 2, y < 8 ? 0.2F : 0);  // rows from the top
-  const auto seen = [&](const glm::dvec3& from, double width) {
-    Scene scene = scene_of(square, {0.5, 7.75 / 16, width, from});
-    set_heights(scene, image(2, 16, 1, rise));
-    return normal_of(scene);
+  // 16 texels: 0 up to the middle of texel 7, from where on they rise by 0.2 a texel.
+  const double line = 7.5 / 16, slope = 0.2 * 16;
+  std::vector<float> along_v, along_u;
+  for (int i = 0; i < 16; ++i) {
+    along_v.insert(along_v.end(), 2, i < 8 ? 0.2F * static_cast<float>(8 - i) : 0);  // rows from the top
+    along_u.push_back(i > 7 ? 0.2F * static_cast<float>(i - 7) : 0);
+  }
+  std::vector<double> parts;  // of a pixel, that steps are
+  for (const double width : {0.0025, 0.01, 0.04})
+    for (const bool is_v : {true, false}) {
+      const double before = line - 0.1 * width;
+      Scene scene = scene_of(square, {is_v ? 0.3 : before, is_v ? before : 0.3, width});
+      set_heights(scene, is_v ? image(2, 16, 1, along_v) : image(16, 1, 1, along_u));
+      const Rendered rendered = render_model(scene, 1);
+      const auto value = [&](const char* name) { return double{channel(rendered.image, name).floats.at(0)}; };
+      const double at = (value(is_v ? "P.Y" : "P.X") + 1) / 2;  // somewhere in the pixel
+      ASSERT_LT(at, line) << "this seed's sample lies before the line, by less than a step";
+      const double rise = -2 * value(is_v ? "N.Y" : "N.X") / value("N.Z");
+      parts.push_back((line - at) / (1 - rise / slope) / (width / 2));
+    }
+  for (const double part : parts) {
+    EXPECT_NEAR(part, parts[0], 0.02 * parts[0]);
+    EXPECT_GT(part, 0.05);
+    EXPECT_LE(part, 0.5);
+  }
+}
+
+// Light along the bent normal is reflected as by a plane across it, whichever way its uv runs.
+TEST(Bumps, FaceTheSideThatIsSeen) {
+  for (const double turned : {1.0, -1.0})
+    for (const bool behind : {false, true}) {
+      Parallelogram shape = tilted;
+      shape.b *= turned;
+      View view{0.4, 0.3};
+      view.behind = behind;
+      const glm::dvec3 bent = (behind ? -1.0 : 1.0) * shape.normal_raised(0.6, -0.3);
+      const auto seen = [&](const std::string& material, const glm::dvec3& from) {
+        Scene scene = scene_of(shape, view, bilerp(0, -0.3, 0.6, 0.3), material);
+        DistantLight light;
+        light.direction = -from;
+        scene.lights = {{light, 1, {}, {}, {}}};
+        return mean_of(render_model(scene, 4).image, "G").value;
+      };
+      const double straight = seen("", (behind ? -1.0 : 1.0) * shape.normal());
+      EXPECT_GT(straight, 0.1);
+      EXPECT_NEAR(seen(kRaised, bent) / straight, 1, 1e-3) << turned << " " << behind;
+      const glm::dvec3 beside = glm::normalize(bent + 0.5 * glm::normalize(shape.a));
+      EXPECT_NEAR(seen(kRaised, beside) / straight, glm::dot(beside, bent), 3e-3) << turned << " " << behind;
+      EXPECT_EQ(seen(kRaised, -bent), 0) << turned << " " << behind;
+    }
+}
+
+// Glass is outside where its geometric normal is, whichever way its uv runs: with v the other way around the same heights bend
+// alike.
+TEST(Bumps, OfGlassAreOutside) {
+  const auto seen = [&](bool is_flipped) {
+    View view{0.4, 0.3};
+    view.is_flipped = is_flipped;
+    const std::string heights = is_flipped ? bilerp(-0.3, 0, 0.3, 0.6) : bilerp(0, -0.3, 0.6, 0.3);
+    Scene scene = scene_of(tilted, view, heights, "\"dielectric\" \"float roughness\" 0.6 \"texture displacement\" \"h\"");
+    DistantLight light;
+    light.direction = -glm::normalize(tilted.normal() + 0.8 * glm::normalize(tilted.a));
+    scene.lights = {{light, 1, {}, {}, {}}};
+    return mean_of(render_model(scene, 4).image, "G").value;
   };
-  // At 1/4 of a texel after the middle of the last low one, straight on: 0.02 of a texel further is as steep.
-  expect_near(seen({}, 0.002), square.normal_raised(0, 0.2 * 16), 2e-2);
+  EXPECT_GT(seen(false), 1e-3);
+  EXPECT_NEAR(seen(true) / seen(false), 1, 1e-3);
 }
 
 TEST(Bumps, OfImagesAreThoseOfMitsuba) {
@@ -178,15 +239,20 @@ TEST(Bumps, OfImagesAreThoseOfMitsuba) {
   std::string normals = "\"normal N\" [";
   for (const Json& n : theirs.at("normals")) normals += triple(vector(n)) + " ";
   normals += "]";
+  const auto add_map = [&](Material& to, Scene& scene) {
+    scene.textures.push_back({NormalmapTexture{image(4, 3, 3, map).image}, false, "map", {}});
+    to.normalmap = static_cast<std::uint32_t>(scene.textures.size() - 1);
+    to.displacement.reset();
+  };
   for (const Json& row : theirs.at("bumps")) {
     Scene scene = scene_of(shape, {row.at("uv").at(0), row.at("uv").at(1)});
     set_heights(scene, image(4, 4, 1, heights));
+    add_map(scene.materials.emplace_back(scene.materials[0]), scene);  // of another surface
     expect_near(normal_of(scene), vector(row.at("n")), kDifferences, row.at("uv").dump());
   }
   for (const Json& row : theirs.at("normal maps")) {
     Scene scene = scene_of(shape, {row.at("uv").at(0), row.at("uv").at(1)}, "", "", normals);
-    scene.textures.push_back({NormalmapTexture{image(4, 3, 3, map).image}, false, "map", {}});
-    scene.materials.at(0).normalmap = static_cast<std::uint32_t>(scene.textures.size() - 1);
+    add_map(scene.materials[0], scene);
     expect_near(normal_of(scene), vector(row.at("n")), 2e-4, row.at("uv").dump());
   }
 }
