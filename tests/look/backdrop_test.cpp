@@ -98,6 +98,15 @@ TEST(Backdrop, PicturesCoverTheFilmTheSameWayUpright) {
   for (int i = 0; i < 16; ++i) tall->rgb.insert(tall->rgb.end(), 3, static_cast<float>(i / 2) / 8);
   const Backdrop backdrop{Backdrop::Kind::image, {}, tall};
   for (int y = 0; y < 4; ++y) EXPECT_FLOAT_EQ(under(backdrop, 2, 4, 1, y)[0], static_cast<float>(y + 2) / 8);
+  // A pixel is the mean of the texels that it covers.
+  const Backdrop many = picture_of(12, 8, false);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) {
+      double mean = 0;
+      for (int i = 0; i < 16; ++i)
+        mean += double{many.image->rgb[3 * static_cast<std::size_t>(12 * (4 * y + i / 4) + 4 * x + i % 4)]} / 16;
+      EXPECT_NEAR(under(many, 3, 2, x, y)[0], mean, 1e-6);
+    }
 }
 
 // A crop shows what the whole picture shows there, over a picture behind it too.
