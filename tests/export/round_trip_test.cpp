@@ -206,6 +206,45 @@ Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [1 0 0] "float radius" 1)";
   EXPECT_FALSE(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided);
 }
 
+// Of csg shapes one that shows hair anywhere: on an operand, on one of an operand, or by its own list of materials.
+TEST(RoundTrip, CsgOfHairIsOneSidedUnlessTheSceneSaysOtherwise) {
+  const std::string operands = R"(MakeNamedMaterial "fibre" "string type" "hair"
+MakeNamedMaterial "stone" "string type" "diffuse"
+NamedMaterial "stone"
+ObjectBegin "ball" Shape "sphere" ObjectEnd
+ObjectBegin "die" Shape "box" "point3 p0" [0 0 0] "point3 p1" [1 1 1] ObjectEnd
+ObjectBegin "lock" NamedMaterial "fibre" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
+ObjectBegin "cut" Shape "csg" "string operation" "difference" "string operands" ["lock" "die"] ObjectEnd
+)";
+  const auto csg = [&](const std::string& of, const std::string& more = "") {
+    return scene_of(world + operands + "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + of + "] " + more +
+                    "\n");
+  };
+  struct Row {
+    const char *operands, *materials;
+    bool has_hair;
+  };
+  // A ball has one surface, a box six.
+  for (const Row& row :
+       {Row{R"("ball" "lock")", "", true},
+        {R"("lock" "ball")", "", true},
+        {R"("ball" "cut")", "", true},
+        {R"("ball" "die")", "", false},
+        {R"("ball" "die")", R"("string materials" ["stone" "stone" "stone" "fibre" "stone" "stone" "stone"])", true}}) {
+    SCOPED_TRACE(std::string(row.operands) + row.materials);
+    Scene scene = csg(row.operands, row.materials);
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(scene.shapes[0].one_sided, row.has_hair);
+    EXPECT_THAT(text_of(scene, "/tmp"), Not(HasSubstr("onesided")));
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" false)").shapes[0].one_sided, false);
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" true)").shapes[0].one_sided, true);
+    for (const bool one_sided : {false, true}) {
+      scene.shapes[0].one_sided = one_sided;
+      EXPECT_EQ(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided, one_sided);
+    }
+  }
+}
+
 TEST(RoundTrip, FilesAreNamedFromTheFolder) {
   const fs::path folder = temporary_folder();
   fs::create_directories(folder / "images");

@@ -267,6 +267,7 @@ TEST_F(LibraryChanges, NewCapsulesStandInThePlaceOfTheOld) {
   scene.add_capsules(one, {.name = "second", .transform = moved, .materials = {other}});
   scene.add_capsules(one, {.name = "within", .object = "thing"});
   scene.add_capsules(one, {.name = "also", .transform = moved, .object = "thing"});
+  scene.add_capsules(one, {.name = "beyond", .object = "other thing"});
   scene.add_instances("thing", std::vector<caplet::Transform>{{1, 0, 0, 20, 0, 1, 0, 0, 0, 0, 1, 0}});
   caplet::CapsuleArrays two;
   two.p0 = {{0, 0, 0}, {10, 0, 0}};
@@ -285,6 +286,8 @@ TEST_F(LibraryChanges, NewCapsulesStandInThePlaceOfTheOld) {
   EXPECT_EQ(scene.place(scene.shape("second")), (std::pair<std::string, std::size_t>("", 1)));
   EXPECT_EQ(scene.place(scene.shape("within")), (std::pair<std::string, std::size_t>("thing", 0)));
   EXPECT_EQ(scene.place(scene.shape("also")), (std::pair<std::string, std::size_t>("thing", 1)));
+  EXPECT_EQ(scene.place(scene.shape("beyond")), (std::pair<std::string, std::size_t>("other thing", 0)));
+  EXPECT_EQ(scene.shape_in("other thing", 0), scene.shape("beyond"));
   EXPECT_EQ(scene.shape_in("", 1), scene.shape("second"));
   EXPECT_EQ(scene.shape_in("thing", 1), scene.shape("also"));
   // By rays along -z at the middles of what is to be there: (1, 0, 0) of theirs is (5, 7, 7), (11, 0, 0) is (5, 17, 7).

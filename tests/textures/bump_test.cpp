@@ -166,13 +166,18 @@ TEST(Bumps, StepsGoWithWhatIsSeen) {
   std::vector<double> parts;  // of a pixel, that steps are
   for (const double width : {0.0025, 0.01, 0.04})
     for (const bool is_v : {true, false}) {
-      const double before = line - 0.1 * width;
-      Scene scene = scene_of(square, {is_v ? 0.3 : before, is_v ? before : 0.3, width});
-      set_heights(scene, is_v ? image(2, 16, 1, along_v) : image(16, 1, 1, along_u));
-      const Rendered rendered = render_model(scene, 1);
-      const auto value = [&](const char* name) { return double{channel(rendered.image, name).floats.at(0)}; };
-      const double at = (value(is_v ? "P.Y" : "P.X") + 1) / 2;  // somewhere in the pixel
-      ASSERT_LT(at, line) << "this seed's sample lies before the line, by less than a step";
+      // The pixel's one sample lies where it does; the shape is moved until that is 0.03 of a pixel before the line.
+      double middle = line, at = 0;
+      LayeredImage image_seen;
+      for (int round = 0; round < 2; ++round) {
+        Scene scene = scene_of(square, {is_v ? 0.3 : middle, is_v ? middle : 0.3, width});
+        set_heights(scene, is_v ? image(2, 16, 1, along_v) : image(16, 1, 1, along_u));
+        image_seen = render_model(scene, 1).image;
+        at = (double{channel(image_seen, is_v ? "P.Y" : "P.X").floats.at(0)} + 1) / 2;
+        middle += line - 0.03 * width / 2 - at;
+      }
+      ASSERT_NEAR(line - at, 0.03 * width / 2, 1e-3 * width);
+      const auto value = [&](const char* name) { return double{channel(image_seen, name).floats.at(0)}; };
       const double rise = -2 * value(is_v ? "N.Y" : "N.X") / value("N.Z");
       parts.push_back((line - at) / (1 - rise / slope) / (width / 2));
     }
