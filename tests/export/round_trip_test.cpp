@@ -214,7 +214,7 @@ NamedMaterial "stone"
 ObjectBegin "ball" Shape "sphere" ObjectEnd
 ObjectBegin "die" Shape "box" "point3 p0" [0 0 0] "point3 p1" [1 1 1] ObjectEnd
 ObjectBegin "lock" NamedMaterial "fibre" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
-ObjectBegin "cut" Shape "csg" "string operation" "difference" "string operands" ["lock" "die"] ObjectEnd
+ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die" "lock"] ObjectEnd
 )";
   const auto csg = [&](const std::string& of, const std::string& more = "") {
     return scene_of(world + operands + "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + of + "] " + more +
