@@ -27,6 +27,9 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
 }
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->root)
+#if TRACED_ANY
+#define TRACED_ENOUGH(g, item) INFINITY
+#endif
 #include "trace/many.cl"
 __attribute__((vec_type_hint(float8))) __kernel void trace(__global const float* restrict nodes, __global const float* restrict leaves,
     __global const InstanceRecord* restrict instances, uint root, __global const RayRecord* restrict rays,

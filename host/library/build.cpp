@@ -433,7 +433,7 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters, co
   data.model.framing = one.framing;
   if (!one.unit.empty()) data.model.unit = one.unit;
   data.open_camera = false;
-  if (data.model.automatic_camera && !bounds_of(data.model).empty()) frame_camera(data.model);
+  if (data.model.automatic_camera && can_be_framed(data.model)) frame_camera(data.model);
 }
 
 Transform Scene::camera() const { return to_public(data_->model.camera.world_from_camera); }
@@ -471,7 +471,8 @@ void Scene::present() {
   if (data_->presented == data_->origin) return;
   Data& data = changed();
   caplet::Scene& model = data.model;
-  if (model.shapes.empty() && model.instances.empty()) throw InputError("the scene is empty: it has no shapes");
+  if (model.shapes.empty() && model.instances.empty() && data.open_camera && !is_lit(model))
+    throw InputError("the scene is empty: it has no shapes, no light and no camera");
   Diagnostics diagnostics;
   validate(model, diagnostics);
   diagnostics.finish();

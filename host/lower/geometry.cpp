@@ -92,7 +92,6 @@ class GeometryLowering {
         if (!part.primitives.empty())
           place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(i), top, lowered.placed);
     }
-    if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
     add_emitters(top, CAPLET_NONE, Matrix(1), lowered.emitters);
@@ -165,6 +164,8 @@ class GeometryLowering {
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
     if (lowered.world.parts.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    // Kernels have one kind at least.
+    if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
     kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
   }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "lower/detail/covered_ends.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/light_table.h"
 #include "lower/light_tree.h"
@@ -279,7 +280,9 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   bounded.lights.reserve(emitters.size());
   out.lights.reserve(emitters.size() + scene.lights.size());
   shares.reserve(emitters.size() + scene.lights.size());
-  for (const Emitter& emitter : emitters) {
+  const std::vector<LightCover> covers = covered_ends(emitters, out);
+  for (std::size_t i = 0; i < emitters.size(); ++i) {
+    const Emitter& emitter = emitters[i];
     LightRecord record{};
     record.kind = light_area;
     record.spectrum = emitter.spectrum;
@@ -291,7 +294,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
       luminance = scale * picture.mean;
     }
     record.scale = static_cast<float>(scale);
-    record.flags = emitter.two_sided ? CAPLET_LIGHT_BOTH_SIDES : 0;
+    record.flags = covers[i].flags | (emitter.two_sided ? CAPLET_LIGHT_BOTH_SIDES : 0);
     record.slot = emitter.slot;
     record.instance = emitter.instance;
     record.geometry = emitter.geometry;
@@ -313,7 +316,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     }
     out.lights.push_back(record);
     brightest = std::max(brightest, luminance);
-    const double power = pi * emitter.area * luminance * (emitter.two_sided ? 2 : 1);
+    const double power = pi * emitter.area * covers[i].share * luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
     if (shares.back().power > 0) bounded.add(narrow<uint>(shares.size() - 1), bounds_of(emitter, power));
   }

@@ -138,6 +138,7 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   buffers.queues.queue.write(std::span(all).first(rays.size()));
   buffers.shadows.path_shadow.write(shadows);
   buffers.shadows.queue_shadow.write(std::span(all).first(shadows.size()));
+  buffers.shadows.path_shadow_target.write(std::vector<ShadowTarget>(shadows.size(), {CAPLET_NONE, CAPLET_NONE, INFINITY, 0}));
   buffers.shadows.path_shadow_radiance.write(std::vector<float4>(shadows.size(), {1, 1, 1, 1}));
   buffers.radiance.path_radiance.write(std::vector<float4>(shadows.size(), {0, 0, 0, 0}));
   Bindings bindings = scene.bindings();

@@ -46,10 +46,13 @@ static inline float area_scale(__global const InstanceRecord* instance, float3 n
   return length(transform_transposed(instance->object_from_world, n)) * fabs(dot(r0, cross(r1, r2)));
 }
 
-static inline RoundCone area_round_cone(uint shape, __global const float* data) {
+static inline RoundCone area_round_cone(uint shape, __global const LightRecord* light, __global const float* data) {
   if (shape == shape_sphere) return round_cone_of_sphere(sphere_c(data), sphere_r(data));
-  if (shape == shape_capsule) return round_cone_make(capsule_p0(data), capsule_p1(data), capsule_r(data), capsule_r(data));
-  return round_cone_make(tapered_capsule_p0(data), tapered_capsule_p1(data), tapered_capsule_r0(data), tapered_capsule_r1(data));
+  RoundCone k = shape == shape_capsule
+                    ? round_cone_make(capsule_p0(data), capsule_p1(data), capsule_r(data), capsule_r(data))
+                    : round_cone_make(tapered_capsule_p0(data), tapered_capsule_p1(data), tapered_capsule_r0(data), tapered_capsule_r1(data));
+  round_cone_cover(&k, light->flags >> CAPLET_LIGHT_COVER_0 & 255u, light->flags >> CAPLET_LIGHT_COVER_1 & 255u);
+  return k;
 }
 
 // World-space corners of a triangle light, as seen from p.
@@ -114,7 +117,10 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   if (ball) {
     const float3 wi = ball_sample(ball, p, u);
     HitRecord hit;
-    if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit)) return 0;
+    if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &hit)) return 0;
+    // Rays do not stop at an unseen light, so its far side shines through its near one.
+    const uint crossings =
+        light->flags & CAPLET_LIGHT_UNSEEN ? choose_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit) : 1u;
     const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
     const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
     if (found.light == CAPLET_NONE || (!both && !(dot(found.ng, wi) < 0.0f))) return 0;
@@ -122,7 +128,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
     s->n = found.ng;
     s->surface = hit.surface;
     s->error = area_error(&scene->tree, light, norm1(load3(ball)) + ball[3], found.p, p);
-    s->pdf = fmin(ball_pdf(ball, p), CAPLET_MAX_DENSITY);
+    s->pdf = fmin(ball_pdf(ball, p) / (float)crossings, CAPLET_MAX_DENSITY);
     return 1;
   }
   const float cone = area_sphere_cone(light, shape, data, p);
@@ -164,7 +170,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
       if (!(per_area > 0.0f)) return 0;
       if (flip) n = -n;
     } else {
-      const RoundCone k = area_round_cone(shape, data);
+      const RoundCone k = area_round_cone(shape, light, data);
       const RoundConeView view = round_cone_view(&k, q);
       if (view.inside != flip && !both) return 0;  // turned inside out, a solid emits inward
       per_area = round_cone_sample(&k, &view, u, &x, &n);
@@ -228,7 +234,7 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
     } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
       per_area = cylinder_density(cylinder_areas(&scene->surfaces, scene->surfaces.geometries + light->geometry, data));
     } else {
-      const RoundCone k = area_round_cone(shape, data);
+      const RoundCone k = area_round_cone(shape, light, data);
       const RoundConeView view = round_cone_view(&k, q);
       per_area = round_cone_density(&k, &view, y);
     }
@@ -243,8 +249,11 @@ static inline int area_sample_towards(const Scene* scene, __global const LightRe
   const float3 away = point->p - p;
   s->wi = unit_or(away, (float3)(0.0f));
   if (!(dot(s->wi, s->wi) > 0.0f)) return 0;  // p is the point
-  s->target = offset_origin(point->p, point->n, point->error, -s->wi);
-  if (!(norm1(s->target) < INFINITY)) return 0;  // the light's error bound is beyond floats
+  s->target = point->p;
+  s->slack = point->error / fabs(dot(point->n, s->wi));
+  if (!(norm1(s->target) < INFINITY)) return 0;
+  s->slot = light->slot;
+  s->instance = light->instance;
   s->pdf = point->pdf;
   return 1;
 }

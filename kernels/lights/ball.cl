@@ -9,6 +9,7 @@
 
 #include "groups.cl"
 #include "lights/sphere.cl"
+#include "math/rng.cl"
 #include "math/vector.cl"
 #include "shapes/shapes.cl"
 #include "shapes/surface.cl"
@@ -29,15 +30,16 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
   return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) + frame.n * (1.0f - t));
 }
 
-// The first crossing that a ray sees of the primitive at `slot`, from p along wi; 0 when there is none.
-static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
+// The first crossing beyond t_min that a ray sees of the primitive at `slot`, from p along wi; 0 when there is none.
+static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, float t_min,
+                                     HitRecord* hit) {
   const GeometryRecord geometry = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
   float3 o = p, d = wi;
   if (instance != CAPLET_NONE) {
     o = transform_point(tree->instances[instance].object_from_world, p);
     d = transform_vector(tree->instances[instance].object_from_world, wi);
   }
-  ShapeRay ray = shape_ray(o, d, 0.0f, tree->leaves);
+  ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
   if (instance != CAPLET_NONE) {
     // Every shape that is sampled here looks for the first crossing of a side that is seen.
     if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
@@ -57,6 +59,18 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
   hit->instance = instance;
   hit->surface = (uint)sides[at];
   return (mask_bits(found) >> at) & 1u;
+}
+
+// Replaces the first crossing `hit` by one of all crossings along the ray, each with the same chance. Returns how many there are.
+static inline uint choose_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
+  const uint seed = hash_combine(hash_combine(as_uint(wi.x), as_uint(wi.y)), as_uint(wi.z));
+  uint count = 1u;
+  HitRecord next = *hit;
+  while (primitive_crossing(tree, surfaces, slot, instance, p, wi, next.t, &next)) {
+    count++;
+    if (unit_float(hash_combine(seed, count)) * (float)count < 1.0f) *hit = next;
+  }
+  return count;
 }
 
 #endif

@@ -11,16 +11,40 @@
 #include "shapes/surface.cl"
 #include "shared/families.h"
 
-// wi: unit, to the light. target: end of the shadow ray of a finite light, off the light's own surface. radiance: that arrives
-// along wi unoccluded (delta lights: irradiance over cos). pdf: of wi by solid angle times the chance of the light; for delta
-// lights that chance alone. index: of the light.
+// wi: unit, to the light. target: the sampled point of a finite light. slack: a shadow ray meets the light's surface within this
+// length of target, along the ray; 0: the light is no surface. slot, instance: the primitive that the shadow ray must meet first;
+// CAPLET_NONE: none, the ray ends before target. radiance: that arrives along wi unoccluded (delta lights: irradiance over cos).
+// pdf: of wi by solid angle times the chance of the light; for delta lights that chance alone. index: of the light.
 typedef struct {
   float3 wi, target;
+  float slack;
+  uint slot, instance;
   int infinite, delta;
   uint index;
   float4 radiance;
   float pdf;
 } LightSample;
+
+// The ray from `origin` to the sampled point. It ends where it has met the light's surface or, where there is none to meet, before
+// the point.
+static inline RayRecord shadow_ray(const LightSample* s, float3 origin, ShadowTarget* target) {
+  float3 d = s->wi;
+  float distance = INFINITY;
+  if (!s->infinite) {
+    const float3 away = s->target - origin;
+    distance = sqrt(dot(away, away));
+    d = away / distance;
+  }
+  const int surface = s->slot != CAPLET_NONE;
+  target->slot = s->slot;
+  target->instance = s->instance;
+  target->enough = surface ? distance - s->slack : INFINITY;
+  target->pad0 = 0u;
+  RayRecord ray;
+  ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
+  ray.dx = d.x; ray.dy = d.y; ray.dz = d.z; ray.t_max = surface ? distance + s->slack : distance - s->slack;
+  return ray;
+}
 
 static inline __global const float* light_data_of(const Lights* lights, __global const LightRecord* light) {
   return lights->light_data + light->data;

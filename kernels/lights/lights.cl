@@ -103,6 +103,8 @@ static inline int light_sample(const Scene* scene, LightReceiver at, float4 lamb
   const float3 p = at.p;
   float chance;
   s->index = light_choose(lights, &at, u_select, &chance);
+  s->slot = s->instance = CAPLET_NONE;
+  s->slack = 0.0f;
   if (s->index == CAPLET_NONE || !(chance > 0.0f)) return 0;
   __global const LightRecord* light = lights->lights + s->index;
   switch (light->kind) {

@@ -10,10 +10,10 @@
 #include "math/vector.cl"
 
 // Axis p0 + z d. The tangent cone's normals have n . d = s; it touches the spheres at z0 and z1. `single`: one sphere alone, at
-// p0.
+// p0. Of the caps the normals with low <= n . d <= high are sampled.
 typedef struct {
   float3 p0, d;
-  float r0, r1, length, s, c, z0, z1;
+  float r0, r1, length, s, c, z0, z1, low, high;
   int single;
 } RoundCone;
 
@@ -35,6 +35,8 @@ static inline RoundCone round_cone_of_sphere(float3 center, float radius) {
   k.r0 = k.r1 = radius;
   k.length = k.s = k.z0 = k.z1 = 0.0f;
   k.c = 1.0f;
+  k.low = -1.0f;
+  k.high = 1.0f;
   k.single = 1;
   return k;
 }
@@ -53,8 +55,17 @@ static inline RoundCone round_cone_make(float3 p0, float3 p1, float r0, float r1
   k.c = sqrt(fmax(0.0f, (1.0f - k.s) * (1.0f + k.s)));
   k.z0 = r0 * k.s;
   k.z1 = length + r1 * k.s;
+  k.low = -1.0f;
+  k.high = 1.0f;
   k.single = 0;
   return k;
+}
+
+// Leaves out what other solids cover: `cover0` and `cover1` of 255 parts of the caps' heights, from their tops.
+static inline void round_cone_cover(RoundCone* k, uint cover0, uint cover1) {
+  if (k->single) return;
+  k->low = k->s - (1.0f + k->s) * ((float)(255u - cover0) / 255.0f);
+  k->high = k->s + (1.0f - k->s) * ((float)(255u - cover1) / 255.0f);
 }
 
 // Half width of the arc |psi| in which the normal h d + sqrt(1 - h^2) (cos psi e + sin psi f) faces q: across = rho sqrt(1 -
@@ -114,10 +125,10 @@ static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
   else if (along > k->length * k->c)
     outside = d1 - k->r1;
   v.inside = !(outside > 0.0f);
-  v.low0 = -1.0f;
+  v.low0 = k->low;
   v.high0 = k->single ? 1.0f : k->s;
   v.low1 = k->s;
-  v.high1 = k->single ? k->s : 1.0f;
+  v.high1 = k->single ? k->s : k->high;
   v.cone = 0.0f;
   // Any height is right as long as it is one and the same; near the axis, where rho is of no use, a small one.
   const float extent = k->z1 - k->z0;
@@ -213,6 +224,7 @@ static inline float round_cone_density(const RoundCone* k, const RoundConeView* 
   const float chance = first ? v->cap0 : v->cap1;
   if (!(chance > 0.0f)) return 0.0f;
   const float h = clamp((a - offset) / sqrt(sqr(a - offset) + rho * rho), -1.0f, 1.0f);
+  if (h < k->low || h > k->high) return 0.0f;
   return first ? cap_density(v, v->a, k->r0, h, v->low0, v->high0, chance)
                : cap_density(v, v->a - offset, k->r1, h, v->low1, v->high1, chance);
 }

@@ -37,9 +37,10 @@ static inline int textured_area_light_sample(const Scene* scene, __global const 
   const uint alpha = scene->surfaces.geometries[light->geometry].alpha;
   float stopped = 1.0f;
   // pbrt-v4: a light that no ray stops at shines as if it were there.
-  if (light->flags & CAPLET_LIGHT_UNSEEN)
+  if (light->flags & CAPLET_LIGHT_UNSEEN) {
     s->delta = 1;
-  else if (alpha != CAPLET_NONE)
+    s->slot = CAPLET_NONE;
+  } else if (alpha != CAPLET_NONE)
     stopped = alpha_chance(&scene->materials, &scene->spectra, alpha, found.uv, found.p, found.ng);
   if (!(stopped > 0.0f)) return 0;
   s->radiance = textured_area_light_emitted(&scene->spectra, &scene->lights, light, found.uv, lambda) * stopped;
@@ -55,7 +56,7 @@ static inline float textured_area_light_pdf(const Scene* scene, __global const L
     HitRecord first;
     const float3 away = hit->p - p;
     const float distance = sqrt(dot(away, away));
-    if (primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &first) && first.t < distance * (1.0f - 1e-4f) - hit->error)
+    if (primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &first) && first.t < distance * (1.0f - 1e-4f) - hit->error)
       return 0.0f;
   }
   return area_pdf(scene, light, p, hit->p, hit->ng, wi);

@@ -137,6 +137,7 @@
 #define GROUP_SHADOWS                                                                               \
   GROUP_BEGIN(Shadows, shadows)                                                                     \
   BUFFER(path_shadow, RayRecord, STATE)                                                             \
+  BUFFER(path_shadow_target, ShadowTarget, STATE)                                                   \
   BUFFER(path_shadow_radiance, float4, STATE) /* added to path_radiance when the shadow ray is free */ \
   BUFFER(queue_shadow, uint, STATE)           /* paths with a shadow ray */                         \
   GROUP_END(Shadows)

@@ -104,6 +104,10 @@ enum {
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 #define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it
+// First bit of eight for each end of a capsule: how many 255ths of its cap, by height from the top down, are not sampled
+// (host/lower/detail/covered_ends.h).
+#define CAPLET_LIGHT_COVER_0 16
+#define CAPLET_LIGHT_COVER_1 24
 // InstanceRecord.flags
 #define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
 #define CAPLET_INSTANCE_NO_LEAVING 2u      // leaving hits within are not seen ("onesided")

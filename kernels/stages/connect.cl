@@ -2,14 +2,16 @@
 // Copyright Caplet authors
 //
 // Shadow rays: what reaches the light adds its radiance.
+#include "trace/shadow.cl"
+
 static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
   return g->shadows.path_shadow + g->shadows.queue_shadow[item];
 }
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const uint path = g->shadows.queue_shadow[item];
-  if (hit->slot == CAPLET_NONE) g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
+  if (shadow_is_free(hit, g->shadows.path_shadow_target[path])) g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->tree.world->root)
-#define TRACED_ANY 1
+#define TRACED_ENOUGH(g, item) ((g)->shadows.path_shadow_target[(g)->shadows.queue_shadow[item]].enough)
 #include "trace/many.cl"

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shadow rays, where shapes let some of them through.
+// Shadow rays, where shapes let some of them through. A light sample's radiance has the chance that its own point stops a ray already.
 #include "trace/alpha.cl"
+#include "trace/shadow.cl"
 
 static void stage_item(const Stage* g, uint item) {
   const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
   const uint path = g->shadows.queue_shadow[item];
-  if (trace_stopped(&scene, g->shadows.path_shadow[path]).slot == CAPLET_NONE)
-    g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
+  const ShadowTarget target = g->shadows.path_shadow_target[path];
+  RayRecord ray = g->shadows.path_shadow[path];
+  for (;;) {
+    const HitRecord hit = trace_closest(&scene.tree, ray);
+    if (shadow_is_free(&hit, target)) break;
+    if (alpha_stops(&scene, &ray, &hit)) return;
+    ray.t_min = hit.t;
+  }
+  g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }

@@ -7,12 +7,14 @@
 #include "media/travel.cl"
 #include "stages/path.cl"
 #include "trace/alpha.cl"
+#include "trace/shadow.cl"
 
 static void stage_item(const Stage* g, uint item) {
   const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
   const uint path = g->shadows.queue_shadow[item];
   RayRecord ray = g->shadows.path_shadow[path];
   Held held = {g->immersion.shadow_inside[path], g->immersion.shadow_around[path]};
+  const ShadowTarget target = g->shadows.path_shadow_target[path];
   const float2 pdfs = g->immersion.shadow_pdfs[path];
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -33,13 +35,14 @@ static void stage_item(const Stage* g, uint item) {
     const int met = crossings_next(&g->tree, &crossings);
     if (met) hit = crossings.hits[crossings.at - 1u];
     else hit.slot = CAPLET_NONE;
-    const int crosses = met && alpha_stops(&scene, &ray, &hit);
+    const int ends = shadow_is_free(&hit, target);
+    const int crosses = !ends && alpha_stops(&scene, &ray, &hit);
     if (crosses && !surface_passes(&g->tree, &g->surfaces, &g->materials, &hit)) return;
     held = held_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), held);
     const uint medium = held_medium(&g->media, &held);
     const float to = met ? hit.t : ray.t_max;
     if (medium != CAPLET_NONE && from < to && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers, &weights)) return;
-    if (!met) break;
+    if (ends) break;
     const uint boundary = crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;
     if (boundary == CAPLET_NONE || crossing_repeats(&g->tree, &g->surfaces, &g->media, &crossings)) continue;
     held_cross(&g->tree, &g->surfaces, &g->media, &hit, &held);

@@ -6,5 +6,4 @@ static __global const RayRecord* traced_ray_at(const Stage* g, uint item) { retu
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) { g->rays.path_hit[g->queues.queue[item]] = *hit; }
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->tree.world->root)
-#define TRACED_ANY 0
 #include "trace/many.cl"

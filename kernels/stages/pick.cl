@@ -11,5 +11,4 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
 }
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->tree.world->root)
-#define TRACED_ANY 0
 #include "trace/many.cl"

@@ -91,12 +91,9 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
 #endif
   const float4 contribution = throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
-  RayRecord ray;
-  const float3 origin = offset_origin(s->p, s->ng, s->error, light.wi);
-  const float3 direction = light.infinite ? light.wi : light.target - origin;
-  ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
-  ray.dx = direction.x; ray.dy = direction.y; ray.dz = direction.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
-  g->shadows.path_shadow[path] = ray;
+  ShadowTarget target;
+  g->shadows.path_shadow[path] = shadow_ray(&light, offset_origin(s->p, s->ng, s->error, light.wi), &target);
+  g->shadows.path_shadow_target[path] = target;
   g->shadows.path_shadow_radiance[path] = contribution;
   append_shadow(g, out, path);
 }
@@ -194,7 +191,12 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (media_passes(g, out, path, material, &ray, &hit)) return;
 #endif
   const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
-  if (bent) s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv);
+  if (bent) {
+    float3 dndu = (float3)(0.0f), dndv = dndu;
+    if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
+      normal_derivatives(&g->tree, &g->surfaces, &ray, &hit, &s, &dndu, &dndv);
+    s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv, dndu, dndv);
+  }
   const Frame frame = frame_from_tangent(s.ns, s.dpdu);
   const float3 wo_local = to_local(&frame, wo);
   Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);

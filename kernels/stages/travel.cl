@@ -20,13 +20,11 @@ static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene*
   const float phase = phase_density(dot(direction, light.wi), asymmetry);
   const float4 contribution = throughput * light.radiance * (phase / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;
-  const float3 to = light.infinite ? light.wi : light.target - p;
-  RayRecord ray;
-  ray.ox = p.x; ray.oy = p.y; ray.oz = p.z; ray.t_min = 0.0f;
-  ray.dx = to.x; ray.dy = to.y; ray.dz = to.z; ray.t_max = light.infinite ? INFINITY : 1.0f;
   set_shadow_held(g, path, held, settled);
   g->immersion.shadow_pdfs[path] = (float2)(light.pdf, light.delta ? 0.0f : phase);
-  g->shadows.path_shadow[path] = ray;
+  ShadowTarget target;
+  g->shadows.path_shadow[path] = shadow_ray(&light, p, &target);
+  g->shadows.path_shadow_target[path] = target;
   g->shadows.path_shadow_radiance[path] = contribution;
   append_shadow(g, out, path);
 }

@@ -6,7 +6,7 @@
 //   __global const RayRecord* traced_ray_at(const Stage* g, uint item)
 //   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
 //   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
-//   TRACED_ANY                       // 1: any hit will do
+//   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than this will do (INFINITY: any)
 //   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them
 // Programs may be built with CAPLET_ONE_BY_ONE: a ray after the other; or CAPLET_PORTABLE: many at once, whatever the device.
 #ifndef CAPLET_TRACE_MANY_CL
@@ -14,6 +14,12 @@
 
 #if CAPLET_REAL_WIDTH != 8
 #define CAPLET_RAYS_ARE_GLOBAL
+#endif
+#ifdef TRACED_ENOUGH
+#define TRACED_MAY_END_EARLY 1
+#else
+#define TRACED_MAY_END_EARLY 0
+#define TRACED_ENOUGH(g, item) 0.0f
 #endif
 #include "trace/eight.cl"
 #include "trace/trace.cl"
@@ -25,7 +31,7 @@ static inline RayRecord traced_ray(const Stage* g, uint item) { return *traced_r
 #if defined(CAPLET_ONE_BY_ONE) || (!defined(CAPLET_EIGHT_IS_FAST) && !defined(CAPLET_PORTABLE))
 static void stage_share(const Stage* g, uint begin, uint end) {
   for (; begin < end; begin++) {
-    const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ANY);
+    const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
     traced_hit(g, begin, &hit);
   }
 }
@@ -40,7 +46,7 @@ static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, be
 #endif
 #else
 static void stage_item(const Stage* g, uint item) {
-  const HitRecord hit = trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ANY);
+  const HitRecord hit = trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
   traced_hit(g, item, &hit);
 }
 #endif

@@ -30,6 +30,9 @@ typedef struct {
   NearRay near;
   NearestHit nearest;
   float t_min;
+#if TRACED_MAY_END_EARLY
+  float enough;
+#endif
   uint instance;  // that the ray is in
   uint item;
   int flip;  // the octant of the direction: bit k where it falls along axis k
@@ -49,9 +52,13 @@ static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) 
 }
 
 // 0: the ray can hit nothing.
-static inline int pool_begin(PooledRay* r, const Tree* tree, uint root, uint item, RayRecord ray) {
+static inline int pool_begin(PooledRay* r, const Stage* g, const Tree* tree, uint root, uint item) {
+  const RayRecord ray = traced_ray(g, item);
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   r->item = item;
+#if TRACED_MAY_END_EARLY
+  r->enough = TRACED_ENOUGH(g, item);
+#endif
   r->t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack entries go by the bits
   r->nearest = nothing_before(ray.t_max);
   pool_ray(r, tree, o, d);
@@ -111,7 +118,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
   for (uint place = 0; place < CAPLET_POOL_RAYS; place++) {
     int begun = 0;
     while (!begun && next < end) {
-      begun = pool_begin(&pool[place], tree, root, next, traced_ray(g, next));
+      begun = pool_begin(&pool[place], g, tree, root, next);
       if (!begun) traced_hit(g, next, &miss);
       next++;
     }
@@ -153,7 +160,9 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       const uchar place = going_on[i];
       PooledRay* r = &pool[place];
       int top = r->top;
-      if (TRACED_ANY && r->nearest.found) top = 1;
+#if TRACED_MAY_END_EARLY
+      if (r->nearest.found && r->nearest.t < r->enough) top = 1;
+#endif
       for (;;) {
         const int t_best = as_int(r->nearest.t);
         do top--;
@@ -166,7 +175,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
         traced_hit(g, r->item, &hit);
         int begun = 0;
         while (!begun && next < end) {
-          begun = pool_begin(r, tree, root, next, traced_ray(g, next));
+          begun = pool_begin(r, g, tree, root, next);
           if (!begun) traced_hit(g, next, &miss);
           next++;
         }

@@ -45,9 +45,9 @@ static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord*
   nearest->found = kept[7] != CAPLET_NONE;
 }
 
-// Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
-// traversal can show. Zero, infinite and NaN rays miss.
-static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, const int any) {
+// The closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest; INFINITY: any). Equal t: tie_is_before, so that
+// neither the tree nor the order of traversal can show. Zero, infinite and NaN rays miss.
+static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, const float enough) {
   NearestHit nearest = nothing_before(ray->t_max);
   uint2 stack[CAPLET_WALK_ENTRIES];
   Walk walk;
@@ -67,7 +67,7 @@ static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPA
       for (uint lane = 0; lane < CAPLET_WIDTH && lanes_filled(block, lane) != 0; lane++)
         test_leaf(tree, kind, row, lane, &shape, walk.instance, &nearest);
     }
-    if (any && nearest.found) return hit_record(&nearest);
+    if (nearest.found && nearest.t < enough) return hit_record(&nearest);
   }
 }
 

@@ -163,9 +163,9 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
   return line_is_valid(o, d);
 }
 
-// Closest hit in (t_min, t_max), or, with `any`, the first one found. Equal t: tie_is_before, so that neither the tree nor the order of
-// traversal can show. Zero, infinite and NaN rays miss.
-static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
+// The closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest; INFINITY: any). Equal t: tie_is_before, so that
+// neither the tree nor the order of traversal can show. Zero, infinite and NaN rays miss.
+static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const float enough) {
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
   NearestHit nearest = nothing_before(ray.t_max);
@@ -194,7 +194,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       } else {
         for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
           test_leaf(tree, kind, row, lane, &shape, instance, &nearest);
-        if (any && nearest.found) return hit_record(&nearest);
+        if (nearest.found && nearest.t < enough) return hit_record(&nearest);
       }
     }
     while (!pop_entry(stack, &top, floor, nearest.t, &current)) {
@@ -215,19 +215,19 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
 
 #ifndef CAPLET_RAYS_ARE_GLOBAL
 #if CAPLET_REAL_WIDTH == 1
-static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const int any) {
-  return trace_ray_at(tree, root, &ray, any);
+static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const float enough) {
+  return trace_ray_at(tree, root, &ray, enough);
 }
 #endif
 
 // The nearest hit with t in (t_min, t_max).
 static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
-  return trace_ray(tree, tree->world->root, ray, 0);
+  return trace_ray(tree, tree->world->root, ray, 0.0f);
 }
 
 // 1 if anything is hit with t in (t_min, t_max).
 static inline int trace_any(const Tree* tree, RayRecord ray) {
-  return trace_ray(tree, tree->world->root, ray, 1).slot != CAPLET_NONE;
+  return trace_ray(tree, tree->world->root, ray, INFINITY).slot != CAPLET_NONE;
 }
 #endif
 

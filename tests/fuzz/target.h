@@ -100,7 +100,6 @@ inline void check_scene(const Scene& scene) {
       }
     }
   };
-  require(!scene.shapes.empty() || !scene.instances.empty());
   check_shapes(scene.shapes);
   for (const Object& object : scene.objects) check_shapes(object.shapes);
   for (const Instance& instance : scene.instances) require(instance.object < scene.objects.size());

@@ -16,6 +16,7 @@ namespace {
 
 const char* const kernel_text = R"(
 #include "lights/lights.cl"
+#include "trace/shadow.cl"
 #include "trace/trace.cl"
 
 #define GROUP_BEGIN(Type, group)
@@ -48,11 +49,10 @@ __kernel void sample_lights(SCENE, float px, float py, float pz, __global const 
   o[8] = (float)s.infinite;
   o[9] = (float)s.delta;
   if (!s.infinite) {
-    const float3 d = s.target - p;
-    RayRecord ray;
-    ray.ox = p.x; ray.oy = p.y; ray.oz = p.z; ray.t_min = 0.0f;
-    ray.dx = d.x; ray.dy = d.y; ray.dz = d.z; ray.t_max = 1.0f;
-    o[10] = (float)trace_any(&scene.tree, ray);
+    ShadowTarget target;
+    const RayRecord ray = shadow_ray(&s, p, &target);
+    const HitRecord hit = trace_ray(&scene.tree, scene.tree.world->root, ray, target.enough);
+    o[10] = (float)!shadow_is_free(&hit, target);
   }
 }
 

@@ -270,6 +270,43 @@ TEST(TexturedArea, OfAlphaZeroShinesUnseen) {
   }
 }
 
+// Each point of an unseen tube that shines to both sides gives light, through the near side too. The sum over z and phi of the
+// cosines over the squared distance is exact to 1e-6 by the midpoint rule of 2,000 by 400 points.
+TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
+  constexpr double r = 0.3, z_min = -1, z_max = 2;
+  const dvec3 p(1, 0.5, 0.25), n(-1, 0, 0);
+  double expected = 0;
+  for (int j = 0; j < 400; ++j)
+    for (int i = 0; i < 2000; ++i) {
+      const double phi = 2 * pi * (i + 0.5) / 2000, z = z_min + (z_max - z_min) * (j + 0.5) / 400;
+      const dvec3 out(std::cos(phi), std::sin(phi), 0), away = r * out + dvec3(0, 0, z) - p;
+      const double squared = glm::dot(away, away);
+      expected += std::abs(glm::dot(out, away)) * std::max(0.0, glm::dot(n, away)) / (squared * squared);
+    }
+  expected *= 2 * pi * r * (z_max - z_min) / (400 * 2000);
+  for (const bool pbrts_form : {true, false}) {
+    SCOPED_TRACE(pbrts_form);
+    Shape tube;
+    if (pbrts_form)
+      tube.geometry = OpenCylinderShape{r, z_min, z_max};
+    else
+      tube.geometry = CylinderShape{{0, 0, z_min}, {0, 0, z_max}, r, {Cap::open, Cap::open}};
+    tube.emission = AreaEmission{};
+    tube.emission->two_sided = true;
+    tube.alpha = TextureOperand(0);
+    LightBench bench(lower(scene_of(tube)));
+    const Estimate found = irradiance(bench, p, n);
+    EXPECT_NEAR(found.mean, expected, 4 * found.error);
+    EXPECT_LT(found.error, 0.01 * expected);
+    // Shadow rays go to both sides: what lies within the tube shades the far one alone.
+    int near = 0, far = 0;
+    for (const SampledLight& s : bench.sample(p, 20000))
+      if (s.pdf > 0) ++(s.target.x * (p.x - s.target.x) + s.target.y * (p.y - s.target.y) > 0 ? near : far);
+    EXPECT_GT(near, 300);
+    EXPECT_GT(far, 300);
+  }
+}
+
 // The far side of a ball that lets rays through is found by rays alone: no sample lies there.
 TEST(TexturedArea, WhatLiesBehindItsOwnFrontHasNoDensity) {
   Shape ball;

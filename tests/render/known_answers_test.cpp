@@ -126,10 +126,11 @@ TEST(KnownAnswers, SeeAParameterThatIsOffInAnyShape) {
 
 TEST(KnownAnswers, SeeCrossingsThatAreMissedByShadowRaysAlone) {
   const ChangedKernels changed(
-      {{"trace/trace.cl", "if (any && nearest.found)", "if (any) nearest.found = 0;\n        if (any && nearest.found)"},
-       {"trace/single.cl", "if (any && nearest.found)", "if (any) nearest.found = 0;\n    if (any && nearest.found)"},
-       {"trace/pool.cl", "if (TRACED_ANY && r->nearest.found)",
-        "if (TRACED_ANY) r->nearest.found = 0;\n      if (TRACED_ANY && r->nearest.found)"}});
+      {{"trace/trace.cl", "if (nearest.found && nearest.t < enough)",
+        "if (nearest.t < enough) nearest.found = 0;\n        if (0)"},
+       {"trace/single.cl", "if (nearest.found && nearest.t < enough)", "if (nearest.t < enough) nearest.found = 0;\n    if (0)"},
+       {"trace/pool.cl", "if (r->nearest.found && r->nearest.t < r->enough) top = 1;",
+        "if (r->nearest.t < r->enough) r->nearest.found = 0;"}});
   const std::vector<std::string> failures =
       known_answer_failures(test_device(), {.shapes = tapered_and_instances, .render = true});
   ASSERT_EQ(failures.size(), names(tapered_and_instances).size());

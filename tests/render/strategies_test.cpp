@@ -97,6 +97,19 @@ std::string round_lamps() {
   return out;
 }
 
+/// One capsule over the floor, in so many pieces along a gentle bend.
+std::string chain(int pieces, const std::string& parameters = "") {
+  std::string out;
+  const auto corner = [&](int i) {
+    const double t = double(i) / pieces;
+    return "[" + std::to_string(1 + 2 * t) + " " + std::to_string(0.3 * t * t) + " 0] ";
+  };
+  for (int i = 0; i < pieces; ++i)
+    out += "Shape \"capsule\" \"point3 p0\" " + corner(i) + "\"point3 p1\" " + corner(i + 1) + "\"float radius\" 0.15" +
+           parameters + "\n";
+  return out;
+}
+
 std::string glass(double alpha) {
   return "Material \"dielectric\" \"float eta\" 1.5 \"bool remaproughness\" false \"float roughness\" " + std::to_string(alpha) +
          "\n";
@@ -131,6 +144,7 @@ std::vector<Case> cases() {
       {"onesided_pipe_turned", floor + turned + "Scale 1 1 0.5\n" + with(pipe, unseen), beside_it, 2048},
       {"onesided_pipe_both_sides", floor + lamp_both + with(pipe, unseen), beside_it},
       {"onesided_tube_both_sides", floor + lamp_both + with(tube, unseen), beside_it},
+      {"open_tube_both_sides", floor + lamp_both + open_tube, beside_it},
       {"onesided_open_tube_turned", floor + turned + with(open_tube, unseen), beside_it, 2048},
       {"onesided_open_tube_both_sides", floor + lamp_both + with(open_tube, unseen), beside_it, 2048},
       {"onesided_capsule_both_sides", floor + lamp_both + with(capsule, unseen), beside_it},
@@ -147,6 +161,24 @@ std::vector<Case> cases() {
       {"many_panels_over_glass",
        glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" + turned + panels(1.5), at_the_shape, 4096},
       {"many_round_lamps", floor + lamp + round_lamps(), beside_it, 2048},
+      {"chain", floor + lamp + chain(200), beside_it, 1024},
+      {"chain_that_lets_rays_through", floor + lamp + chain(50, " \"float alpha\" 0.7"), beside_it, 1024},
+      {"chain_in_haze",
+       "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.02 0.02 0.02] \"rgb sigma_s\" [0.05 0.05 "
+       "0.05]\n"
+       "MediumInterface \"haze\" \"\"\nMaterial \"interface\"\nShape \"box\" \"point3 p0\" [-12 -12 -0.999] \"point3 p1\" [12 12 "
+       "12]\n"
+       "MediumInterface \"\" \"\"\n" +
+           floor + lamp + chain(60),
+       beside_it, 512},
+      {"boxes_with_faces_in_common",
+       floor + lamp + "Translate 2 0 0\n" + box + "Translate 0.4 0 0\n" + box + "Translate 0 1.3 0\n" + box +
+           "Translate 0 -0.4 0\n" + box,
+       beside_it, 2048},
+      {"csg_beside_a_box",
+       "ObjectBegin \"block\"\n" + box + "ObjectEnd\nObjectBegin \"hole\"\nTranslate 0.3 0 0\n" + box + "ObjectEnd\n" + floor +
+           lamp + difference + "Translate 0.1 0 0\n" + box,
+       beside_it, 2048},
       {"box_within_box_lamp",
        glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + turned + "Scale 8 8 8\n" + box},
   };

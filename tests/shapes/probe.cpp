@@ -38,9 +38,9 @@ __attribute__((vec_type_hint(float8))) __kernel void probe_trace(__global const 
   const Tree tree = {0, nodes, leaves, instances};
   const Surfaces scene = {geometries, primitive_geometry, 0, mesh_indices, mesh_uvs, mesh_uvs};
   const RayRecord ray = rays[i];
-  const HitRecord hit = trace_ray(&tree, roots[i], ray, 0);
+  const HitRecord hit = trace_ray(&tree, roots[i], ray, 0.0f);
   hits[i] = hit;
-  surfaces[i].any = trace_ray(&tree, roots[i], ray, 1).slot != CAPLET_NONE;
+  surfaces[i].any = trace_ray(&tree, roots[i], ray, INFINITY).slot != CAPLET_NONE;
   if (hit.slot == CAPLET_NONE) return;
   const Surface s = surface_at(&tree, &scene, &ray, &hit);
   vstore3(s.p, 0, surfaces[i].p);
@@ -65,8 +65,8 @@ __attribute__((vec_type_hint(float8))) __kernel void probe_list(__global const f
   if (i >= count) return;
   const Tree tree = {0, nodes, leaves, instances};
   const RayRecord ray = rays[i];
-  hits[i] = trace_ray(&tree, roots[i], ray, 0);
-  any[i] = trace_ray(&tree, roots[i], ray, 1).slot != CAPLET_NONE;
+  hits[i] = trace_ray(&tree, roots[i], ray, 0.0f);
+  any[i] = trace_ray(&tree, roots[i], ray, INFINITY).slot != CAPLET_NONE;
   counts[i] = trace_list(&tree, roots[i], ray, capacity, sorted + (size_t)i * capacity);
 }
 
@@ -88,7 +88,7 @@ __attribute__((vec_type_hint(float8))) __kernel void probe_leave(__global const 
   ray.dz = d.z;
   ray.t_max = INFINITY;
   const Tree tree = {0, nodes, leaves, instances};
-  hits[i] = trace_ray(&tree, roots[i], ray, 0);
+  hits[i] = trace_ray(&tree, roots[i], ray, 0.0f);
 }
 )";
 
