@@ -267,6 +267,29 @@ Shape "sphere")"),
   EXPECT_THAT(text, HasSubstr("\"spectrum k\" \"metal-Ag-k\""));
 }
 
+// Small whole numbers are no defaults: lights and emissions of each scale, power and illuminance are read as they were.
+TEST(RoundTrip, ScalesAndPowersOfLights) {
+  for (const std::string scale : {"0.5", "1", "2", "3"})
+    for (const std::string power : {"", "0.5", "1", "2"}) {
+      SCOPED_TRACE(scale + " " + power);
+      const std::string by = "\"float scale\" " + scale + (power.empty() ? "" : " \"float power\" " + power);
+      const std::string illuminance = "\"float scale\" " + scale + (power.empty() ? "" : " \"float illuminance\" " + power);
+      const Scene scene =
+          scene_of(world + "LightSource \"point\" \"rgb I\" [1 1 1] " + by + "\nLightSource \"distant\" \"rgb L\" [1 1 1] " +
+                   illuminance + "\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] " + by + "\nShape \"sphere\"\n");
+      const Scene read = scene_of(text_of(scene, "/tmp"));
+      const double scaled = std::stod(scale);
+      const std::optional<double> given = power.empty() ? std::nullopt : std::optional(std::stod(power));
+      ASSERT_EQ(read.lights.size(), 2u);
+      for (const Light& light : read.lights) EXPECT_EQ(light.scale, scaled);
+      EXPECT_EQ(read.lights[0].power, given);
+      EXPECT_EQ(read.lights[1].illuminance, given);
+      ASSERT_TRUE(read.shapes.at(0).emission);
+      EXPECT_EQ(read.shapes[0].emission->scale, scaled);
+      EXPECT_EQ(read.shapes[0].emission->power, given);
+    }
+}
+
 // --- Refusals ---
 
 TEST(WriteScene, WhatNoTextSaysIsRefusedAtItsPlace) {

@@ -187,6 +187,27 @@ TEST_F(LibraryChanges, ASessionGoesBetweenScenes) {
   follows(a, "the first");
 }
 
+// --- Ranges ---
+
+// Whole numbers may be the least and the greatest of their range, and no others beyond.
+TEST_F(LibraryChanges, RangesHaveTheirEnds) {
+  caplet::Scene scene = square();
+  const auto texture = [&](const char* type, const char* name, double value) {
+    scene.add_texture({type, true, {{name, value}}});
+  };
+  for (const double dimension : {2.0, 3.0}) EXPECT_NO_THROW(texture("checkerboard", "dimension", dimension)) << dimension;
+  for (const double wrong : {1.0, 4.0, 2.5})
+    EXPECT_THROW(texture("checkerboard", "dimension", wrong), caplet::InputError) << wrong;
+  for (const double octaves : {0.0, 64.0}) EXPECT_NO_THROW(texture("fbm", "octaves", octaves)) << octaves;
+  for (const double wrong : {-1.0, 65.0}) EXPECT_THROW(texture("fbm", "octaves", wrong), caplet::InputError) << wrong;
+  const auto material = [&](const char* name, double value) {
+    scene.set_material(0, caplet::NamedMaterial{"coateddiffuse", {{name, value}}});
+  };
+  EXPECT_NO_THROW(material("maxdepth", 0.0));
+  EXPECT_NO_THROW(material("nsamples", 1.0));
+  EXPECT_THROW(material("nsamples", 0.0), caplet::InputError);
+}
+
 // --- Lights ---
 
 TEST_F(LibraryChanges, ScalesOfLightsAreWhatIsSaid) {

@@ -223,5 +223,37 @@ TEST(Turntable, AxisIsUp) {
     }
 }
 
+// --- Scenes without an up ---
+
+// A plate in the plane z = 0, seen from nearly straight on: its longer side goes along the picture's longer side where it then is
+// seen at less than 0.8 of the distance, and stays as it is elsewhere or where there is an up.
+TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
+  struct Row {
+    float x, y;  // half its sides
+    int width, height;
+    bool is_turned;
+  };
+  for (const Row& row : {Row{1, 4, 300, 200, true}, Row{4, 1, 300, 200, false}, Row{4, 1, 200, 300, true},
+                         Row{1, 4, 200, 300, false}, Row{3, 3.5F, 300, 200, false}, Row{1, 4, 200, 200, false}})
+    for (const bool has_no_up : {false, true}) {
+      CapsulesShape plate;
+      for (const float x : {-row.x, row.x})
+        for (const float y : {-row.y, row.y}) plate.p0.emplace_back(x, y, 0);
+      plate.p1 = plate.p0;
+      plate.radius0.assign(4, 0.1F);
+      Scene scene;
+      scene.materials.push_back({DiffuseMaterial{}, "m", {}});
+      scene.shapes.emplace_back().geometry = plate;
+      scene.film.width = row.width;
+      scene.film.height = row.height;
+      scene.has_no_up = has_no_up;
+      frame_camera(scene);
+      const glm::dvec3 right(scene.camera.world_from_camera[0]);
+      SCOPED_TRACE(testing::Message() << row.x << " " << row.y << ", " << row.width << " " << row.height << " " << has_no_up);
+      // 10 and 6 degrees aside.
+      EXPECT_GT(std::abs(row.is_turned && has_no_up ? right.y : right.x), 0.97);
+    }
+}
+
 }  // namespace
 }  // namespace caplet

@@ -39,7 +39,7 @@ const Parallelogram tilted{{0.5, -0.25, 1}, {2, 0.5, 0.25}, {-0.75, 1.5, 0.5}};
 std::string triple(const glm::dvec3& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x, v.y, v.z); }
 
 struct View {
-  double u = 0.5, v = 0.5, width = 2e-4;  // of what the pixel sees, in lengths
+  double u = 0.5, v = 0.5, width = 4e-3;  // of what the pixel sees, in lengths
   glm::dvec3 from = {0, 0, 0};            // beside the normal, twice of which the camera is away
   bool behind = false;
   bool is_flipped = false;  // v runs down; u and v here do not
@@ -62,19 +62,37 @@ Scene scene_of(const Parallelogram& shape, const View& view, const std::string& 
       view.is_flipped ? "0 1 1 1 1 0 0 0" : "0 0 1 0 1 1 0 1", more));
 }
 
-glm::dvec3 normal_of(const Scene& scene) {
-  const Rendered rendered = render_model(scene, 1);
-  const auto part = [&](const char* name) { return double{channel(rendered.image, name).floats.at(0)}; };
-  return {part("N.X"), part("N.Y"), part("N.Z")};
+double value_of(const Rendered& of, const std::string& name) { return double{channel(of.image, name).floats.at(0)}; }
+glm::dvec3 normal_of(const Rendered& of) { return {value_of(of, "N.X"), value_of(of, "N.Y"), value_of(of, "N.Z")}; }
+
+/// A picture whose one sample lies at (view.u, view.v) to a hundredth of the pixel: the shape is moved until it does, for samples
+/// lie anywhere within their pixel, and in the same place each time. `make`: the scene of a view.
+template <class Make>
+Rendered aimed(const Parallelogram& shape, const View& view, Make make) {
+  View aim = view;
+  Rendered out;
+  for (int round = 0; round < 2; ++round) {
+    out = render_model(make(aim), 1);
+    const glm::dvec3 off =
+        shape.at(view.u, view.v) - glm::dvec3(value_of(out, "P.X"), value_of(out, "P.Y"), value_of(out, "P.Z"));
+    if (round == 1) {
+      EXPECT_LT(glm::length(off), 0.01 * view.width + 2e-7 * glm::length(shape.at(view.u, view.v)));
+    }
+    // off = du a + dv b
+    const double aa = glm::dot(shape.a, shape.a), ab = glm::dot(shape.a, shape.b), bb = glm::dot(shape.b, shape.b);
+    const double oa = glm::dot(off, shape.a), ob = glm::dot(off, shape.b), determinant = aa * bb - ab * ab;
+    aim.u += (oa * bb - ob * ab) / determinant;
+    aim.v += (ob * aa - oa * ab) / determinant;
+  }
+  return out;
 }
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance, const std::string& what = "") {
   EXPECT_LT(glm::length(a - b), tolerance) << what << ": " << triple(a) << " is not " << triple(b);
 }
 
-// Heights are looked at half a pixel, 5e-5 of uv, further on, which floats of up to 1 hold to 3e-8: slopes of up to 3 are good
-// for 2e-3. What is seen lies within 5e-5 of the middle of the pixel, where slopes are others by up to 2e-4.
-constexpr double kDifferences = 2e-3;
+// Heights of up to 1 are looked at some 1e-4 of uv further on: floats hold both to 3e-8, and slopes of up to 3 are good for 1e-3.
+constexpr double kDifferences = 1e-3;
 
 std::string bilerp(double v00, double v01, double v10, double v11, const std::string& more = "") {
   return fmt::format(
@@ -100,7 +118,8 @@ TEST(Bumps, OfHeightsOfUvAreThoseOfTheRaisedSurface) {
         View view{h.u, h.v};
         view.behind = behind;
         const glm::dvec3 expected = shape.normal_raised(hu, hv);
-        const glm::dvec3 n = normal_of(scene_of(shape, view, bilerp(h.v00, h.v01, h.v10, h.v11), kRaised));
+        const glm::dvec3 n = normal_of(aimed(
+            shape, view, [&](const View& aim) { return scene_of(shape, aim, bilerp(h.v00, h.v01, h.v10, h.v11), kRaised); }));
         // From behind the normal is turned to the camera.
         expect_near(n, behind ? -expected : expected, kDifferences,
                     fmt::format("{} {} {} {}, {} {}", h.v00, h.v01, h.v10, h.v11, turned, behind));
@@ -117,7 +136,7 @@ TEST(Bumps, OfHeightsOfPlacesAreThoseOfTheRaisedSurface) {
     Parallelogram shape = tilted;
     shape.b *= turned;
     const glm::dvec3 n = shape.normal(), expected = glm::normalize(n - (g - n * glm::dot(n, g)));
-    expect_near(normal_of(scene_of(shape, {0.3, 0.8}, texture, kRaised)), expected, kDifferences);
+    expect_near(normal_of(render_model(scene_of(shape, {0.3, 0.8}, texture, kRaised), 1)), expected, kDifferences);
   }
 }
 
@@ -138,17 +157,27 @@ void set_heights(Scene& scene, ImagemapTexture heights) {
   scene.materials.at(0).displacement = static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
-// Of 512 texels that go up and down no two have a slope in common: heights are looked at 5e-4 further on where nothing is known
-// of what is seen, or half a pixel: within one texel's half here.
+// Texels that go up and down every 1 / 512: a step of a small pixel stays where the slope is that.
 TEST(Bumps, ChangesAreThoseOfLittle) {
   std::vector<float> zigzag;
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 512; ++x) zigzag.push_back(x % 2 == 0 ? 0 : 0.002F);
   // From the middle of texel 100 to that of 101, at a quarter of the way: 0.002 higher over 1 / 512.
-  Scene scene = scene_of(tilted, {(100.5 + 0.25) / 512, 0.5});
+  Scene scene = scene_of(tilted, {(100.5 + 0.25) / 512, 0.5, 2e-4});
   set_heights(scene, image(512, 2, 1, zigzag));
-  // The heights are good for 1e-7 of 0.002 beside a place of 2^-24: over 1e-6 or 5e-4 of uv.
-  expect_near(normal_of(scene), tilted.normal_raised(0.002 * 512, 0), 0.02);
+  // Places of 0.2 are good for 2^-27, of steps of 1e-5.
+  expect_near(normal_of(render_model(scene, 1)), tilted.normal_raised(0.002 * 512, 0), 4e-3);
+}
+
+// However near one looks, slopes are as they are: steps do not become so small that floats of places and heights do not tell them
+// apart. Heights of up to 1 are good for 3e-8, over the least step of 2^-18 of 0.4 for 0.02 of a slope.
+TEST(Bumps, CloseUpsAreSmooth) {
+  const glm::dvec3 expected = tilted.normal_raised(0.6, -0.3);
+  for (const double width : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7})
+    for (const auto& [u, v] : {std::pair{0.7, 0.9}, {0.3, 0.4}, {0.97, 0.13}}) {
+      const Rendered seen = render_model(scene_of(tilted, {u, v, width}, bilerp(0, -0.3, 0.6, 0.3), kRaised), 1);
+      expect_near(normal_of(seen), expected, 0.02, fmt::format("{} {} {}", width, u, v));
+    }
 }
 
 // Heights that begin to rise at a line, just before which one looks: of a step that goes beyond it, the part beyond rises. So the
@@ -250,15 +279,18 @@ TEST(Bumps, OfImagesAreThoseOfMitsuba) {
     to.displacement.reset();
   };
   for (const Json& row : theirs.at("bumps")) {
-    Scene scene = scene_of(shape, {row.at("uv").at(0), row.at("uv").at(1)});
-    set_heights(scene, image(4, 4, 1, heights));
-    add_map(scene.materials.emplace_back(scene.materials[0]), scene);  // of another surface
-    expect_near(normal_of(scene), vector(row.at("n")), kDifferences, row.at("uv").dump());
+    const Rendered seen = aimed(shape, {row.at("uv").at(0), row.at("uv").at(1), 1e-3}, [&](const View& aim) {
+      Scene scene = scene_of(shape, aim);
+      set_heights(scene, image(4, 4, 1, heights));
+      add_map(scene.materials.emplace_back(scene.materials[0]), scene);  // of another surface
+      return scene;
+    });
+    expect_near(normal_of(seen), vector(row.at("n")), kDifferences, row.at("uv").dump());
   }
   for (const Json& row : theirs.at("normal maps")) {
-    Scene scene = scene_of(shape, {row.at("uv").at(0), row.at("uv").at(1)}, "", "", normals);
+    Scene scene = scene_of(shape, {row.at("uv").at(0), row.at("uv").at(1), 1e-5}, "", "", normals);
     add_map(scene.materials[0], scene);
-    expect_near(normal_of(scene), vector(row.at("n")), 2e-4, row.at("uv").dump());
+    expect_near(normal_of(render_model(scene, 1)), vector(row.at("n")), 2e-4, row.at("uv").dump());
   }
 }
 
