@@ -245,6 +245,27 @@ ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die
   }
 }
 
+// Operands that no object holds get objects, whose shapes are as they are: of hair, one-sided or not.
+TEST(RoundTrip, OperandsOfHairKeepTheirSides) {
+  const Scene original = scene_of(world + R"(Material "hair"
+ObjectBegin "one" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
+ObjectBegin "two" Shape "sphere" ObjectEnd
+Shape "csg" "string operation" "union" "string operands" ["one" "two"]
+)");
+  for (const bool one_sided : {false, true}) {
+    Scene scene = original;
+    scene.objects.clear();
+    for (auto& operand : std::get<CsgShape>(scene.shapes.at(0).geometry).operands) {
+      Shape changed = *operand;
+      changed.one_sided = one_sided;
+      operand = std::make_shared<const Shape>(changed);
+    }
+    const Scene read = scene_of(text_of(scene, "/tmp"));
+    ASSERT_EQ(read.objects.size(), 2u);
+    for (const Object& object : read.objects) EXPECT_EQ(object.shapes.at(0).one_sided, one_sided);
+  }
+}
+
 TEST(RoundTrip, FilesAreNamedFromTheFolder) {
   const fs::path folder = temporary_folder();
   fs::create_directories(folder / "images");

@@ -255,5 +255,36 @@ TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
     }
 }
 
+// --- Automatic cameras ---
+
+// An orthographic camera stands as far before the nearest point as the picture's content is long, along each axis that it may be
+// longest along: for the depth layer. With a margin of 5 % of the half picture.
+TEST(Framing, OrthographicCamerasStandOneExtentAway) {
+  for (const glm::vec3& half : {glm::vec3(5, 1, 1), glm::vec3(1, 5, 1), glm::vec3(1, 1, 5)}) {
+    Shape box;
+    box.geometry = BoxShape{-glm::dvec3(half), glm::dvec3(half)};
+    const Scene scene = scene_of({box}, {{"view", "front"}, {"projection", "orthographic"}});
+    const glm::dvec3 eye(scene.camera.world_from_camera[3]);
+    EXPECT_NEAR(eye.z - double{half.z}, 2 * 5 / 0.95, 1e-9) << half.x << " " << half.y;
+  }
+}
+
+// A tower is seen across its wider level side, three-quarter: 30 degrees to its right and 18 above.
+TEST(Framing, TowersAreSeenAcrossTheirWiderSide) {
+  const double azimuth = std::numbers::pi / 6, elevation = std::numbers::pi / 10;
+  for (const bool is_wide_in_x : {true, false}) {
+    std::vector<glm::vec4> corners;
+    for (const float x : {-1.0F, 1.0F})
+      for (const float y : {-6.0F, 6.0F})
+        for (const float z : {-1.0F, 1.0F}) corners.emplace_back(is_wide_in_x ? 2 * x : x, y, is_wide_in_x ? z : 2 * z, 0.2F);
+    const Scene scene = scene_of({capsules(corners, corners)});
+    const glm::dvec3 forward(scene.camera.world_from_camera[2]), right(scene.camera.world_from_camera[0]);
+    EXPECT_NEAR(forward.y, -std::sin(elevation), 1e-6);
+    EXPECT_NEAR(right.y, 0, 1e-6);
+    // From the front where it is wide from left to right, and from the right where it is wide from front to back.
+    EXPECT_NEAR(-(is_wide_in_x ? forward.z : forward.x), std::cos(azimuth) * std::cos(elevation), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace caplet
