@@ -55,9 +55,10 @@ glm::dvec3 column(const Json& matrix, std::size_t c) {
 TEST(Blender, MaterialsOfGltf) {
   const Json theirs = blenders();
   ASSERT_EQ(theirs.at("materials").size(), 7U);
-  for (const auto& [name, looks] : theirs.at("materials").items()) {
-    SCOPED_TRACE(name);
-    const Shape& shape = shape_of(name);
+  for (const auto& one : theirs.at("materials").items()) {
+    SCOPED_TRACE(one.key());
+    const Json& looks = one.value();
+    const Shape& shape = shape_of(one.key());
     const auto& model = std::get<PrincipledMaterial>(ours().materials.at(shape.material).model);
     const auto near = [&](double value, const char* socket) { EXPECT_NEAR(value, looks.at(socket), kDigits * 2) << socket; };
     expect_near(std::get<RgbSpectrum>(model.base_color).rgb, color_of(looks.at("Base Color")), "Base Color");
