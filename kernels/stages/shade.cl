@@ -197,7 +197,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
       normal_derivatives(&g->tree, &g->surfaces, &ray, &hit, &s, &dndu, &dndv);
     s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv, dndu, dndv);
   }
-  const Frame frame = frame_from_tangent(s.ns, s.dpdu);
+  const Frame frame = frame_from_tangent(s.ns, bsdf_tangent(&g->materials, material, s.dpdu, s.ns, s.along_u));
   const float3 wo_local = to_local(&frame, wo);
   Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);

@@ -233,7 +233,7 @@ def test_the_interpreters_lock_is_released(ball, work, tmp_path):
     (tmp_path / "big.capsules").write_text("<0, 0, 0> <1, 0, 0> 0.5\n" * 100_000)
     calls = {"render": lambda: held.render(64, None, None), "trace": lambda: picker.nearest(n, origins, directions, *ends, out),
              "all": lambda: picker.crossings(n, origins, directions, *ends, 16), "pick": lambda: picker.pixel(1, 1),
-             "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, {}),
+             "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, None, {}),
              "load": lambda: caplet._caplet.load(str(tmp_path / "big.capsules"), {})}
     ticks, inside, stop = [0], [False], threading.Event()
 
