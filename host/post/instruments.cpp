@@ -35,7 +35,8 @@ std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
 
 void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink) {
   const double size = text_size(picture), edge = margin(picture), thick = std::max(2.0, std::round(0.22 * size));
-  const double right = picture.width - edge, bottom = picture.height - edge;
+  // A bar that is nearly as wide as the picture has less of a margin, and is whole.
+  const double right = std::max(picture.width - edge, bar.pixels), bottom = picture.height - edge;
   Mask mask(picture.width, picture.height);
   mask.box({right - bar.pixels, bottom - thick}, {right, bottom});
   const double wide = text_width(bar.label, size);

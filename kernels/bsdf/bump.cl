@@ -44,6 +44,8 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
     // Half of what is seen at once, or little where that is not known.
     float2 step = 0.5f * (fabs(place->duvdx) + fabs(place->duvdy));
     step = (float2)(step.x > 0.0f ? step.x : 5e-4f, step.y > 0.0f ? step.y : 5e-4f);
+    // In close-ups no less than floats of places and heights tell apart.
+    step = fmax(step, 0x1p-18f * fmax(fabs(place->uv.x), fabs(place->uv.y)));
     float height[3];
 #pragma unroll 1
     for (int i = 0; i < 3; ++i) {

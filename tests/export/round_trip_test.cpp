@@ -206,6 +206,66 @@ Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [1 0 0] "float radius" 1)";
   EXPECT_FALSE(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided);
 }
 
+// Of csg shapes one that shows hair anywhere: on an operand, on one of an operand, or by its own list of materials.
+TEST(RoundTrip, CsgOfHairIsOneSidedUnlessTheSceneSaysOtherwise) {
+  const std::string operands = R"(MakeNamedMaterial "fibre" "string type" "hair"
+MakeNamedMaterial "stone" "string type" "diffuse"
+NamedMaterial "stone"
+ObjectBegin "ball" Shape "sphere" ObjectEnd
+ObjectBegin "die" Shape "box" "point3 p0" [0 0 0] "point3 p1" [1 1 1] ObjectEnd
+ObjectBegin "lock" NamedMaterial "fibre" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
+ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die" "lock"] ObjectEnd
+)";
+  const auto csg = [&](const std::string& of, const std::string& more = "") {
+    return scene_of(world + operands + "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + of + "] " + more +
+                    "\n");
+  };
+  struct Row {
+    const char *operands, *materials;
+    bool has_hair;
+  };
+  // A ball has one surface, a box six.
+  for (const Row& row :
+       {Row{R"("ball" "lock")", "", true},
+        {R"("lock" "ball")", "", true},
+        {R"("ball" "cut")", "", true},
+        {R"("ball" "die")", "", false},
+        {R"("ball" "die")", R"("string materials" ["stone" "stone" "stone" "fibre" "stone" "stone" "stone"])", true}}) {
+    SCOPED_TRACE(std::string(row.operands) + row.materials);
+    Scene scene = csg(row.operands, row.materials);
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(scene.shapes[0].one_sided, row.has_hair);
+    EXPECT_THAT(text_of(scene, "/tmp"), Not(HasSubstr("onesided")));
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" false)").shapes[0].one_sided, false);
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" true)").shapes[0].one_sided, true);
+    for (const bool one_sided : {false, true}) {
+      scene.shapes[0].one_sided = one_sided;
+      EXPECT_EQ(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided, one_sided);
+    }
+  }
+}
+
+// Operands that no object holds get objects, whose shapes are as they are: of hair, one-sided or not.
+TEST(RoundTrip, OperandsOfHairKeepTheirSides) {
+  const Scene original = scene_of(world + R"(Material "hair"
+ObjectBegin "one" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
+ObjectBegin "two" Shape "sphere" ObjectEnd
+Shape "csg" "string operation" "union" "string operands" ["one" "two"]
+)");
+  for (const bool one_sided : {false, true}) {
+    Scene scene = original;
+    scene.objects.clear();
+    for (auto& operand : std::get<CsgShape>(scene.shapes.at(0).geometry).operands) {
+      Shape changed = *operand;
+      changed.one_sided = one_sided;
+      operand = std::make_shared<const Shape>(changed);
+    }
+    const Scene read = scene_of(text_of(scene, "/tmp"));
+    ASSERT_EQ(read.objects.size(), 2u);
+    for (const Object& object : read.objects) EXPECT_EQ(object.shapes.at(0).one_sided, one_sided);
+  }
+}
+
 TEST(RoundTrip, FilesAreNamedFromTheFolder) {
   const fs::path folder = temporary_folder();
   fs::create_directories(folder / "images");
@@ -226,6 +286,29 @@ Shape "sphere")"),
               "/tmp");
   EXPECT_THAT(text, HasSubstr("\"spectrum eta\" \"metal-Ag-eta\""));
   EXPECT_THAT(text, HasSubstr("\"spectrum k\" \"metal-Ag-k\""));
+}
+
+// Small whole numbers are no defaults: lights and emissions of each scale, power and illuminance are read as they were.
+TEST(RoundTrip, ScalesAndPowersOfLights) {
+  for (const std::string scale : {"0.5", "1", "2", "3"})
+    for (const std::string power : {"", "0.5", "1", "2"}) {
+      SCOPED_TRACE(scale + " " + power);
+      const std::string by = "\"float scale\" " + scale + (power.empty() ? "" : " \"float power\" " + power);
+      const std::string illuminance = "\"float scale\" " + scale + (power.empty() ? "" : " \"float illuminance\" " + power);
+      const Scene scene =
+          scene_of(world + "LightSource \"point\" \"rgb I\" [1 1 1] " + by + "\nLightSource \"distant\" \"rgb L\" [1 1 1] " +
+                   illuminance + "\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] " + by + "\nShape \"sphere\"\n");
+      const Scene read = scene_of(text_of(scene, "/tmp"));
+      const double scaled = std::stod(scale);
+      const std::optional<double> given = power.empty() ? std::nullopt : std::optional(std::stod(power));
+      ASSERT_EQ(read.lights.size(), 2u);
+      for (const Light& light : read.lights) EXPECT_EQ(light.scale, scaled);
+      EXPECT_EQ(read.lights[0].power, given);
+      EXPECT_EQ(read.lights[1].illuminance, given);
+      ASSERT_TRUE(read.shapes.at(0).emission);
+      EXPECT_EQ(read.shapes[0].emission->scale, scaled);
+      EXPECT_EQ(read.shapes[0].emission->power, given);
+    }
 }
 
 // --- Refusals ---

@@ -235,6 +235,19 @@ TEST(Develop, EveryLayerIsItsMeanOverHits) {
   EXPECT_EQ(Layers::all().channels(), channels);
 }
 
+// One sample of many that hits tells what it hit.
+TEST(Develop, OneHitTellsWhatItHit) {
+  Pixel pixel = with_hits();
+  pixel.hits = 1;
+  pixel.normal = {0, 0, 1};
+  const auto image = develop({pixel}, window(1, 1), Scene{}, Layers::all());
+  EXPECT_EQ(value(image, "A"), 0.25f);
+  EXPECT_NEAR(value(image, "Z"), 5, rounding);
+  EXPECT_NEAR(value(image, "N.Z"), 1, rounding);
+  EXPECT_NEAR(value(image, "P.Y"), 7, rounding);
+  EXPECT_EQ(image.find("object.id")->uints.at(0), 7u);
+}
+
 TEST(Develop, NormalsAreAtMostOneLong) {
   // Rounded unit vectors that are all too long by up to 1e-7, and one that is not.
   for (int i = 0; i < 1000; ++i) {

@@ -224,6 +224,52 @@ TEST(Outline, StepsOfDepthHaveOneAndSlopesNone) {
   EXPECT_EQ(red(slope.picture, 6, 10), 1);
 }
 
+// A step is what three pixels differ by: more than 3 of a depth of 100 and twice what the pixels beside it differ by.
+TEST(Outline, StepsAreSteeperThanWhatIsBesideThem) {
+  struct Row {
+    std::array<float, 6> depths;  // before them the first goes on, and behind them the last
+    bool has_line;                // between the third and the fourth
+  };
+  for (const Row& row : {Row{{10, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{10, 10, 10, 12.5, 12.5, 12.5}, false},
+                         Row{{10, 10, 11, 13, 13.5, 13.5}, true}, Row{{10, 10, 10, 13.5, 13.5, 16}, false},
+                         Row{{10, 10, 10, 13.5, 13.5, 14.5}, true}, Row{{7.5, 10, 10, 13.5, 13.5, 13.5}, false},
+                         Row{{9, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{9, 10, 10, 13.5, 13.5, 14.5}, false}})
+    for (const bool is_turned : {false, true})
+      for (const bool is_upright : {false, true}) {
+        const auto along = [&](int x, int y) { return is_upright ? y : x; };
+        // Two pixels by themselves have the nearest and the farthest depth.
+        const auto apart = [&](int x, int y) { return is_upright ? x : y; };
+        const auto share = [&](int x, int y) {
+          return along(x, y) < 30 || (along(x, y) == 35 && (apart(x, y) == 5 || apart(x, y) == 15)) ? 1.0f : 0.0f;
+        };
+        const auto depth = [&](int x, int y) {
+          if (along(x, y) >= 30) return apart(x, y) == 5 ? 7.0f : 107.0f;
+          const int place = std::clamp(along(x, y) - 12, 0, 5);
+          return row.depths.at(static_cast<std::size_t>(is_turned ? 5 - place : place));
+        };
+        Canvas on = canvas(40, 40, {1, 1, 1}, share, depth);
+        draw_outline(on.picture, on.layers, 2);
+        for (int i = 2; i < 28; ++i) {
+          const float value = is_upright ? red(on.picture, 20, i) : red(on.picture, i, 20);
+          // Two pixels wide about the line between pixels 14 and 15.
+          const bool is_black = row.has_line && (i == 14 || i == 15);
+          EXPECT_EQ(value < 0.5F, is_black) << testing::PrintToString(row.depths) << is_turned << is_upright << " " << i;
+        }
+      }
+}
+
+// One pixel that shows what is behind tells its colour.
+TEST(DepthCue, FadesToWhatIsBehind) {
+  Canvas on = canvas(
+      3, 1, {0.2f, 0.2f, 0.2f}, [](int x, int) { return x < 2 ? 1.0f : 0.0f; },
+      [](int x, int) { return 5.0f + static_cast<float>(x); });
+  on.picture.rgb[2] = {1, 0.5f, 0};
+  draw_depth_cue(on.picture, on.layers, 1);
+  EXPECT_FLOAT_EQ(on.picture.rgb[0][0], 0.2f);
+  EXPECT_EQ(on.picture.rgb[1], (std::array<float, 3>{1, 0.5f, 0}));
+  EXPECT_EQ(on.picture.rgb[2], (std::array<float, 3>{1, 0.5f, 0}));
+}
+
 TEST(DepthCue, TheFarthestFadesByItsShare) {
   // Shapes of 0.2 on white: the nearest stay, the farthest go 0.5 of the way to white, in light.
   Canvas on = canvas(

@@ -127,6 +127,20 @@ TEST(Collada, AScenesAxisAndUnit) {
   EXPECT_EQ(glm::dvec3(y.shapes[0].world_from_object * glm::dvec4(1, 2, 3, 1)), glm::dvec3(1, 2, 3));
 }
 
+// The table of COLLADA's specification: to the right, up and toward the viewer are -y, x, z of X_UP; x, y, z of Y_UP; x, z, -y of
+// Z_UP.
+TEST(Collada, UpIsWhatTheFileSays) {
+  const auto moved = [](const std::string& asset) {
+    return glm::dvec3(
+        scene_of(dae(kTwo, "<node><instance_geometry url='#g'/></node>", "", asset)).shapes.at(0).world_from_object *
+        glm::dvec4(1, 2, 3, 1));
+  };
+  EXPECT_EQ(moved("<up_axis>X_UP</up_axis>"), glm::dvec3(-2, 1, 3));
+  EXPECT_EQ(moved("<up_axis> Y_UP\n</up_axis>"), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(moved("<up_axis>Z_UP</up_axis>"), glm::dvec3(1, 3, -2));
+  EXPECT_EQ(moved(""), glm::dvec3(1, 2, 3));
+}
+
 TEST(Collada, MaterialsAreThoseThatAreBound) {
   const auto with = [](const std::string& shading, const std::string& more = "", const std::string& bound = "#red") {
     return scene_of(

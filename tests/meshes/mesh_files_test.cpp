@@ -169,6 +169,22 @@ TEST(Obj, MaterialsAreThoseOfTheLibrary) {
   EXPECT_TRUE(scene.automatic_camera);
 }
 
+// What is seen of a surface: `d`, or 1 less `Tr`, in which MTL's writers say the same.
+TEST(Obj, TransparencyIsOneLessOpacity) {
+  const auto seen = [](const std::string& statement) {
+    const Scene scene = scene_beside("t.obj", "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", "t.mtl",
+                                     "newmtl a\n" + statement + "\n");
+    const auto& alpha = scene.shapes.at(0).alpha;
+    return alpha ? std::get<ConstantSpectrum>(alpha->value).value : 1;
+  };
+  EXPECT_EQ(seen("Tr 0.375"), 0.625);
+  EXPECT_EQ(seen("d 0.625"), 0.625);
+  EXPECT_EQ(seen("d -halo 0.25"), 1);
+  EXPECT_EQ(seen("Tr 0"), 1);
+  EXPECT_EQ(seen("Tr 1"), 0);
+  EXPECT_EQ(seen("d 0.75\nTr 0.5"), 0.5);  // the last
+}
+
 std::string binary_stl(std::uint32_t announced, const std::vector<std::array<float, 9>>& facets) {
   std::string out(80, ' ');
   out.append(reinterpret_cast<const char*>(&announced), 4);

@@ -367,6 +367,27 @@ TEST(Drawing, ColoursTellBFactors) {
   EXPECT_LT(tube.radius0.front(), tube.radius1.back());
 }
 
+// Where all are the same each has the middle of the map, (33, 145, 140) of matplotlib's, but for half a step of 63; the tube has
+// the width between the thinnest and the widest.
+TEST(Drawing, OneBFactorHasTheMiddleOfTheMap) {
+  const auto tube_of = [](double b0, double b1, Scene& scene) {
+    scene = scene_of_text("b.pdb",
+                          atom_line(1, " CA ", ' ', "ALA", 'A', 1, 0, 0, 0, b0, " C") +
+                              atom_line(2, " CA ", ' ', "ALA", 'A', 2, 3.8, 0, 0, b1, " C"),
+                          {{{"color", "bfactor"}, {"style", "trace"}}});
+    return std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  };
+  Scene scene;
+  const CapsulesShape both = tube_of(5, 50, scene), one = tube_of(20, 20, scene);
+  ASSERT_FALSE(one.materials.empty());
+  const Material& material = scene.materials.at(one.materials.front());
+  EXPECT_EQ(material.name, "bfactor 20");
+  const glm::dvec3 color = std::get<RgbSpectrum>(std::get<DiffuseMaterial>(material.model).reflectance).rgb;
+  const double srgb[3] = {33 / 255.0, 145 / 255.0, 140 / 255.0};
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(color[k], std::pow((srgb[k] + 0.055) / 1.055, 2.4), 0.01) << k;
+  EXPECT_NEAR(one.radius0.front(), 0.5F * (both.radius0.front() + both.radius1.back()), 1e-6F);
+}
+
 TEST(Xyz, FramesAndColumns) {
   const std::string text = "1\nfirst\nHe 0 0 0\n2\nProperties=id:I:1:species:S:1:pos:R:3\n1 C 1 2 3\n2 O 1 2 4.2\n";
   EXPECT_EQ(read_xyz(text, "f.xyz", {}).atoms.size(), 1u);

@@ -230,6 +230,19 @@ TEST(SwcColors, GoAlongTheMap) {
   EXPECT_LT(glm::length(color_of_segment(scene, 4) - linear(253, 231, 37)), 0.01);  // 6
 }
 
+// One value is neither the least nor the greatest: the middle of the map, (33, 145, 140) of matplotlib's, but for half a step
+// of 63.
+TEST(SwcColors, OneValueHasTheMiddleOfTheMap) {
+  const Paths bare{write_file("bare.swc", "1 1 0 0 0 2 -1\n2 3 0 3 0 1 1\n3 3 0 6 0 1 2\n")};
+  const glm::dvec3 middle = linear(33, 145, 140);
+  const Scene order = several(bare, color("order"));
+  EXPECT_THAT(materials_of(order), ElementsAre("order 0"));
+  EXPECT_LT(glm::length(color_of_segment(order, 0) - middle), 0.01);
+  const Scene fives = several(bare, color(write_file("fives.txt", "5\n5\n5\n").string()));
+  EXPECT_THAT(materials_of(fives), ElementsAre("fives.txt 5"));
+  EXPECT_LT(glm::length(color_of_segment(fives, 1) - middle), 0.01);
+}
+
 TEST(SwcColors, OfFilesAreTheirs) {
   const Paths paths{write_file("one.swc", neuron(0)), write_file("two.swc", neuron(20))};
   const Scene scene = several(paths, color("file"));

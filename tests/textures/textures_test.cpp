@@ -666,6 +666,31 @@ TEST(Checkerboards, OfSpaceAreCubes) {
   EXPECT_EQ(at(-0.5f, -0.5f, -0.5f), 0);
 }
 
+// What is seen reaches as far as its sides on both sides of the point: along each axis by the longer of the two. Means over boxes
+// by sums over many points, one axis after the other.
+TEST(Checkerboards, OfSpaceAreTheMeanOfWhatIsSeen) {
+  CheckerboardTexture board;
+  board.mapping.kind = TextureMapping::Kind::solid;
+  FlatScene flat;
+  const std::uint32_t step = step_of({{{board, true, "t", {}}}, {}, 0, "step"}, flat);
+  const auto mean = [](double x, double half) {
+    int odd = 0;
+    for (int i = 0; i < 100'000; ++i) odd += static_cast<int>(std::floor(x + ((i + 0.5) / 50'000 - 1) * half)) & 1;
+    return 1 - 2 * odd / 1e5;
+  };
+  for (const auto& [p, dx, dy] :
+       std::vector<std::array<std::array<float, 3>, 3>>{{{{0.3f, 0.8f, 0.1f}, {0.4f, 0, 0.3f}, {0.1f, 0.3f, 0}}},
+                                                        {{{0.5f, 0.5f, 0.9f}, {0, 0, 0.35f}, {0, 0, -0.2f}}},
+                                                        {{{-2.7f, 1.1f, 3.9f}, {-0.7f, 0.45f, 0.2f}, {0.3f, -0.8f, 0.9f}}},
+                                                        {{{0.25f, 5.75f, -0.4f}, {0, 0.35f, 0}, {0.3f, 0, 0.8f}}}}) {
+    const TextureTrial::Value at{0, 0, 0, p, {0, 0, 1}, dx, dy};
+    double expected = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      expected *= mean(double{p[k]}, std::max(std::abs(double{dx[k]}), std::abs(double{dy[k]})));
+    EXPECT_NEAR(look_up(flat, at, every_kind, step).step[0], 0.5 + 0.5 * expected, 3e-4) << p[0];
+  }
+}
+
 // A plane of 8 x 8 squares of 0.2 and 0.6 fills the picture under a sky of radiance 1: each pixel within a square is its
 // reflectance.
 TEST(TexturedPictures, OfAFloorUnderAConstantSky) {
