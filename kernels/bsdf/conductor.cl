@@ -25,7 +25,7 @@ static inline float4 conductor_eval(const Bsdf* b, int inside, float3 wo, float3
   const float cos_m = dot(wo, m);
   if (!(cos_m > 0.0f)) return (float4)(0.0f);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  return fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wi, b->alpha_u, b->alpha_v));
+  return fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
 }
 
 static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
@@ -44,7 +44,7 @@ static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3
   s->wi = normalize(2.0f * cos_m * m - wo);
   if (!(cos_m > 0.0f) || !(s->wi.z > 0.0f)) return 0;
   s->pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(s->wi, b->alpha_u, b->alpha_v);
+  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(wo, s->wi, b->alpha_u, b->alpha_v);
   return s->pdf > 0.0f;
 }
 

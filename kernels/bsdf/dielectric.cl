@@ -31,7 +31,7 @@ static inline float dielectric_value(const Bsdf* b, float eta, float3 wo, float3
   float cos_t;
   const float fresnel = fresnel_dielectric(cos_o, eta, &cos_t);
   const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  const float masking = ggx_masking(wi, b->alpha_u, b->alpha_v);
+  const float masking = ggx_masking(wo, wi, b->alpha_u, b->alpha_v);
   if (reflected) {
     *pdf = 0.25f * fresnel * visible;
     return *pdf * masking;
@@ -71,7 +71,7 @@ static inline int dielectric_sample(const Bsdf* b, int inside, int smooth, float
     const float cos_i = dot(s->wi, m);
     const float denominator = cos_i + cos_o / eta;
     s->pdf *= reflected ? 0.25f * visible : visible * cos_o * fabs(cos_i) / (denominator * denominator);
-    weight *= ggx_masking(s->wi, b->alpha_u, b->alpha_v);
+    weight *= ggx_masking(wo, s->wi, b->alpha_u, b->alpha_v);
   }
   s->weight = (float4)(weight);
   return s->pdf > 0.0f && !isinf(s->pdf);

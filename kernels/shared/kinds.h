@@ -43,7 +43,8 @@ enum {
   trait_opaque = 2,      // it scatters light on the side alone that it comes from
   trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
   trait_metal_base = 8,  // a coat over a metal (layered.cl)
-  trait_passes = 16      // light goes on as if there were nothing: it may bound a medium
+  trait_passes = 16,     // light goes on as if there were nothing: it may bound a medium
+  trait_sheer = 32       // opaque where its transmittance (Bsdf) is 0
 };
 
 enum {
@@ -101,6 +102,8 @@ enum {
 // GeometryRecord.flags
 #define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
 #define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
+#define CAPLET_GEOMETRY_OPEN 4u            // a sheet that encloses nothing
+#define CAPLET_GEOMETRY_NORMALS 8u         // a mesh with normals at its vertices
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 #define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it

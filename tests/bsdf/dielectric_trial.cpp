@@ -32,7 +32,10 @@ BsdfTrial dielectric_trial() {
   trial.unlike = {{glass(0.3f, 0.3f), glass(0.3f, 0.3f, 1.55f)}};
   for (const MitsubaRow& row : mitsuba_rows)
     if (row.kind == material_dielectric)
-      trial.values.push_back({glass(row.alpha_u, row.alpha_v), row.wo, row.wi, row.value, row.pdf, mitsuba_tolerance});
+      trial.values.push_back(
+          {glass(row.alpha_u, row.alpha_v), row.wo, row.wi,
+           row.value * correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}), row.pdf,
+           mitsuba_tolerance});
   trial.model.model = DielectricMaterial{};
   // Radiance that enters the medium of lower index is greater there by the square of their ratio's inverse.
   trial.most = [](const BsdfParameters& bsdf, bool inside) {
