@@ -131,6 +131,7 @@ enum {
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
+#define CAPLET_MATERIAL_MULTISCATTER 2u    // what one scattering loses is made up for (bsdf/multiscatter.cl)
 
 // HitRecord.slot of a path that has come to its end, or has been scattered, before what it hit
 #define CAPLET_SCATTERED 0xfffffffeu

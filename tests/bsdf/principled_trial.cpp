@@ -38,8 +38,7 @@ BsdfTrial principled_trial() {
   rougher.metallic = 1;
   trial.unlike = {{all, other}, {metal, rougher}};
   for (const PrincipledRow& row : principled_rows) {
-    const double more =
-        correlated_over_separable(row.wo, row.wi, double{row.bsdf.alpha_u}, double{row.bsdf.alpha_v}) - 1;
+    const double more = correlated_over_separable(row.wo, row.wi, double{row.bsdf.alpha_u}, double{row.bsdf.alpha_v}) - 1;
     trial.values.push_back({row.bsdf, row.wo, row.wi, row.value + more * facets_of_mitsuba(row), -1, 3e-4});
   }
   trial.model.model = PrincipledMaterial{};
