@@ -6,7 +6,7 @@
 usage: PYTHON tools/energy_tables.py
 
 PYTHON has numpy. Takes a minute. The facets are those of Heitz 2014 with height-correlated masking, of the same roughness alpha along u and v.
-- Metals that reflect all: rows of alpha from 0 to 1, in each the loss at x = sqrt(c (1 + alpha) / (c + alpha)) from 0 to 1, c the cosine.
+- Metals that reflect all: rows of sqrt(alpha) from 0 to 1, in each the loss at x = sqrt(c (1 + alpha) / (c + alpha)) from 0 to 1, c the cosine.
 - Interfaces of the relative index eta, of what is reflected and refracted together: planes of t from -1 to 1 where
   (eta - 1) / (eta + 1) = sign(t) t^2 / 2, of the same rows.
 - The means of each row over a hemisphere, weighted by the cosine."""
@@ -70,7 +70,7 @@ def rows(count, eta=None):
     """Losses, count x COSINES, and their means."""
     table, means = [], []
     fine = (np.arange(20000) + 0.5) / 20000
-    for alpha in np.linspace(0, 1, count):
+    for alpha in np.linspace(0, 1, count) ** 2:
         a = max(alpha, 1e-3)
         x = np.linspace(0, 1, COSINES)
         row = np.array([loss(xx * xx * a / (1 + a - xx * xx), alpha, eta) for xx in x])

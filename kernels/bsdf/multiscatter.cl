@@ -24,7 +24,11 @@ static inline int bsdf_multiscatters(const Bsdf* b) {
 #include "bsdf/multiscatter_tables.cl"
 
 // The roughness whose losses count for those of unequal roughnesses along u and v.
-static inline float loss_roughness(const Bsdf* b) { return clamp(0.5f * (b->alpha_u + b->alpha_v), 1e-3f, 1.0f); }
+static inline float loss_roughness(const Bsdf* b) { return clamp(0.5f * (b->alpha_u + b->alpha_v), CAPLET_ALPHA_MIN, 1.0f); }
+
+// Below this roughness little is lost but at grazing, where the lobe would be of few and heavy samples: losses there are those of this
+// roughness, as much smaller as the roughness is.
+#define LOSS_ALPHA_LEAST 0.08f
 
 // Where x, from 0 to 1, is among `count` values: the number of the lower one of its neighbours, and how far it is from there.
 static inline int between(float x, int count, float* far) {
@@ -36,11 +40,19 @@ static inline int between(float x, int count, float* far) {
 static inline float loss_between(__constant const float* row, int low, float far) { return mix(row[low], row[low + 1], far); }
 
 static inline float loss_of_rows(__constant const float* rows, int roughnesses, float cosine, float alpha) {
+  const float scale = fmin(alpha / LOSS_ALPHA_LEAST, 1.0f);
   float at_alpha, at_cosine;
-  const int low_alpha = between(alpha, roughnesses, &at_alpha);
+  alpha = fmax(alpha, LOSS_ALPHA_LEAST);
+  const int low_alpha = between(sqrt(alpha), roughnesses, &at_alpha);
   const int low_cosine = between(sqrt(cosine * (1.0f + alpha) / (cosine + alpha)), LOSS_COSINES, &at_cosine);
   __constant const float* row = rows + low_alpha * LOSS_COSINES;
-  return mix(loss_between(row, low_cosine, at_cosine), loss_between(row + LOSS_COSINES, low_cosine, at_cosine), at_alpha);
+  return scale * mix(loss_between(row, low_cosine, at_cosine), loss_between(row + LOSS_COSINES, low_cosine, at_cosine), at_alpha);
+}
+// Of means, a row of all roughnesses.
+static inline float mean_loss_of_row(__constant const float* row, int roughnesses, float alpha) {
+  float far;
+  const int low = between(sqrt(fmax(alpha, LOSS_ALPHA_LEAST)), roughnesses, &far);
+  return fmin(alpha / LOSS_ALPHA_LEAST, 1.0f) * loss_between(row, low, far);
 }
 
 // --- Metals ---
@@ -57,9 +69,7 @@ static inline float4 metal_mean_reflectance(float4 eta, float4 k) {
 // is chosen with the probability metal_loss of wo.
 static inline float4 metal_multiscattered(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   const float alpha = loss_roughness(b), lost = metal_loss(wo.z, alpha), cosine = wi.z * CAPLET_INV_PI;
-  float far;
-  const int low = between(alpha, METAL_LOSS_ROUGHNESSES, &far);
-  const float mean_loss = fmax(loss_between(metal_mean_losses, low, far), 1e-6f);
+  const float mean_loss = mean_loss_of_row(metal_mean_losses, METAL_LOSS_ROUGHNESSES, alpha);
   const float4 mean = metal_mean_reflectance(b->eta, b->k);
   *pdf = mix(*pdf, cosine, lost);
   return mean * mean * ((1.0f - mean_loss) / (1.0f - mean * mean_loss)) * (lost * metal_loss(wi.z, alpha) / mean_loss * cosine);
@@ -80,11 +90,11 @@ static inline float interface_loss(float cosine, float alpha, float eta) {
              far);
 }
 static inline float interface_mean_loss(float alpha, float eta) {
-  float at_eta, at_alpha;
-  const int low = between(interface_loss_at(eta), INTERFACE_LOSS_INDICES, &at_eta);
-  const int low_alpha = between(alpha, INTERFACE_LOSS_ROUGHNESSES, &at_alpha);
+  float far;
+  const int low = between(interface_loss_at(eta), INTERFACE_LOSS_INDICES, &far);
   __constant const float* row = interface_mean_losses + low * INTERFACE_LOSS_ROUGHNESSES;
-  return fmax(mix(loss_between(row, low_alpha, at_alpha), loss_between(row + INTERFACE_LOSS_ROUGHNESSES, low_alpha, at_alpha), at_eta), 1e-6f);
+  return mix(mean_loss_of_row(row, INTERFACE_LOSS_ROUGHNESSES, alpha), mean_loss_of_row(row + INTERFACE_LOSS_ROUGHNESSES, INTERFACE_LOSS_ROUGHNESSES, alpha),
+             far);
 }
 
 // The part of a lost direction's light that goes on beyond the interface. With T the mean transmittance for light from everywhere (Kulla and

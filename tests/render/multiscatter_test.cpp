@@ -31,7 +31,9 @@ TEST(Multiscatter, FurnacesOfMetalAndGlass) {
       const Mean on = green(rough + " \"bool multiscatter\" true");
       EXPECT_NEAR(on.value, 1, 0.01 + 4 * on.error) << rough;
       EXPECT_LT(on.error, 2e-3) << rough;
-      if (alpha == 0.6) EXPECT_LT(green(rough).value, 0.8) << rough;
+      if (alpha == 0.6) {
+        EXPECT_LT(green(rough).value, 0.8) << rough;
+      }
     }
 }
 

@@ -28,10 +28,21 @@ const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 const std::string from_above = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n";
 const std::string from_aside = "LookAt 4 0 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 20\n";
 
-/// What makes the stages of media render a scene, and changes nothing: far away, and what it scatters comes from a sky alike.
-const std::string some_medium =
+/// Of each kind something that is too far away and too small to matter, so that all scenes have the same kernels.
+const std::string some_of_each =
+    "AttributeBegin Translate 0 300 0\n"
+    "Material \"conductor\" Shape \"sphere\" \"float radius\" 1e-3 Material \"dielectric\" Shape \"disk\" \"float radius\" 1e-3\n"
+    "Material \"coateddiffuse\" Shape \"sphere\" \"float radius\" 1e-3 Material \"coatedconductor\" Shape \"sphere\" \"float "
+    "radius\" 1e-3\n"
+    "Material \"principled\" Shape \"sphere\" \"float radius\" 1e-3 Material \"diffusetransmission\" Shape \"sphere\" \"float "
+    "radius\" 1e-3\n"
+    "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1e-3 0 0 0 1e-3 0 1e-3 1e-3 0]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1e-3 0 0 0 1e-3 0] \"integer indices\" [0 1 2]\nAttributeEnd\n";
+/// The same with what makes the stages of media render a scene.
+const std::string with_a_medium =
+    some_of_each +
     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1]\n"
-    "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Translate 0 300 0 Shape \"sphere\" \"float radius\" 1 "
+    "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Translate 0 300 0 Shape \"sphere\" \"float radius\" 1e-3 "
     "AttributeEnd\n";
 
 std::string diffuse(double reflectance) {
@@ -126,12 +137,11 @@ const char* const opaque[] = {"\"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]",
 // the sky. (The part of a cosine lobe around n that is above the surface is (1 + n.z) / 2: without the rest 0.487, 0.474, 0.394
 // and 0.362 come back.)
 TEST(ShadingNormals, OpenMeshesReflectAllOfASky) {
-  for (const std::string& medium : {std::string(), some_medium})
-    for (const glm::dvec3& n : {glm::dvec3(1. / 3, 0, 1), {0.5, 0, 1}, {1, 1, 1}, {2, 0, 1}, {-2, 0, -1}})
-      for (const std::string& view : {from_above, from_aside}) {
-        const Mean mean = green(view, sky + medium + diffuse(0.5) + plate(n));
-        EXPECT_NEAR(mean.value, 0.5, 1e-4) << n.x << ' ' << n.y << ' ' << n.z << view;
-      }
+  for (const std::string& medium : {some_of_each, with_a_medium})
+    for (const glm::dvec3& n : {glm::dvec3(1. / 3, 0, 1), {0.5, 0, 1}, {1, 1, 1}, {2, 0, 1}, {-2, 0, -1}}) {
+      const Mean mean = green(n.x < 1 ? from_above : from_aside, sky + medium + diffuse(0.5) + plate(n));
+      EXPECT_NEAR(mean.value, 0.5, 1e-4) << n.x << ' ' << n.y << ' ' << n.z;
+    }
 }
 
 // Normals anywhere within 0.5 of straight up, another at each vertex.
@@ -153,14 +163,14 @@ TEST(ShadingNormals, AnOpenMeshOfUnevenNormalsReflectsAllOfASky) {
     }
   const std::string mesh = "Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"normal N\" [" + normals +
                            "] \"integer indices\" [" + indices + "]\n";
-  EXPECT_NEAR(green(from_above, sky + diffuse(0.5) + mesh).value, 0.5, 1e-4);
+  EXPECT_NEAR(green(from_above, sky + some_of_each + diffuse(0.5) + mesh).value, 0.5, 1e-4);
 }
 
 // A bilinear patch likewise.
 TEST(ShadingNormals, OpenPatchesReflectAllOfASky) {
   const std::string patch =
       "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0] \"normal N\" [2 0 1  2 0 1  2 0 1  2 0 1]\n";
-  EXPECT_NEAR(green(from_above, sky + diffuse(0.5) + patch).value, 0.5, 1e-4);
+  EXPECT_NEAR(green(from_above, sky + some_of_each + diffuse(0.5) + patch).value, 0.5, 1e-4);
 }
 
 // Whatever the material, an even sky cannot tell a plate whose normals lean from one that leans.
@@ -171,7 +181,7 @@ TEST(ShadingNormals, AnOpenPlateLooksLikeOneThatLeans) {
         "\"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.3] \"rgb transmittance\" [0.4 0.4 0.4]",
         "\"coateddiffuse\" \"float roughness\" 0.2", "\"coatedconductor\" \"float conductor.roughness\" 0.2",
         "\"principled\" \"float spec_trans\" 0.5 \"float roughness\" 0.6"})
-    for (const std::string& medium : {std::string(), some_medium}) {
+    for (const std::string& medium : {some_of_each, with_a_medium}) {
       const std::string world = sky + medium + "Material " + material + "\n";
       const Mean leaning = green(from_above, world + plate(n), 1024), expected = green(from_above, world + plate_across(n), 1024);
       const double error = std::hypot(leaning.error, expected.error);
@@ -188,7 +198,7 @@ TEST(ShadingNormals, OpenMeshesAreLitFromBeneath) {
                     near_light = "LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [50 0 -10]\n";
   const double cosine = glm::dot(glm::normalize(n), glm::normalize(glm::dvec3(3, 0, -1))), of_plate = 0.5 / pi * 9;
   const std::string view = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-0.01 0.01 -0.01 0.01]\n";
-  for (const std::string& medium : {std::string(), some_medium}) {
+  for (const std::string& medium : {some_of_each, with_a_medium}) {
     EXPECT_NEAR(green(view, far_light + medium + diffuse(0.5) + plate(n, 1)).value, of_plate * cosine, 2e-4 * of_plate);
     EXPECT_NEAR(green(view, near_light + medium + diffuse(0.5) + plate(n, 1)).value,
                 of_plate * glm::dot(glm::normalize(n), glm::normalize(glm::dvec3(50, 0, -10))) / 2600, 1e-3 * of_plate / 2600);
@@ -197,7 +207,7 @@ TEST(ShadingNormals, OpenMeshesAreLitFromBeneath) {
 
 // Both lights are below the opaque plate, on the outer side of its leaning normals.
 TEST(ShadingNormals, LetNoLightSampleThrough) {
-  for (const std::string& medium : {std::string(), some_medium})
+  for (const std::string& medium : {some_of_each, with_a_medium})
     for (const std::string light : {"LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [5 0 -0.005]\n",
                                     "LightSource \"distant\" \"rgb L\" [9 9 9] \"point3 from\" [3 0 -1] \"point3 to\" [0 0 0]\n"})
       EXPECT_EQ(green(from_aside, light + medium + diffuse(0.5) + closed_plate({0.95, 0, 0.3})).value, 0) << light;
@@ -205,7 +215,7 @@ TEST(ShadingNormals, LetNoLightSampleThrough) {
 
 // A lamp within the plate, which is met by scattered rays alone: it has no chance of being sampled.
 TEST(ShadingNormals, LetNoScatteredRayThrough) {
-  for (const std::string& medium : {std::string(), some_medium}) {
+  for (const std::string& medium : {some_of_each, with_a_medium}) {
     const Scene scene =
         scene_of_text("Integrator \"volpath\" \"integer maxdepth\" 8\n" + from_aside +
                       "PixelFilter \"box\"\nFilm \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n" +
@@ -231,7 +241,7 @@ TEST(ShadingNormals, ClosedOpaqueMeshesLetNoLightThrough) {
   const std::string outside = "LookAt 1 2 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.3 1.3 -1.3 1.3]\n";
   const std::string within = "LookAt 0 0.1 0  0.3 1 0.2  0 0 1\nCamera \"perspective\" \"float fov\" 120\n";
   for (const std::string material : opaque)
-    for (const std::string& medium : {std::string(), some_medium}) {
+    for (const std::string& medium : {some_of_each, with_a_medium}) {
       const std::string world = medium + "Material " + material + "\n" + ball(1);
       EXPECT_EQ(green(outside, lamp + world, 64, 20).value, 0) << material << medium;
       EXPECT_EQ(green(within, sky + world, 64, 20).value, 0) << material << medium;
@@ -244,7 +254,7 @@ TEST(ShadingNormals, OpenBallsGoByTheirNormals) {
       "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n";
   const std::string from_the_other_side =
       "LookAt 5 5 5  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-1.3 1.3 -1.3 1.3]\n";
-  EXPECT_GT(green(from_the_other_side, lamp + diffuse(0.8) + ball(1, 1), 256, 20).value, 1e-4);
+  EXPECT_GT(green(from_the_other_side, lamp + some_of_each + diffuse(0.8) + ball(1, 1), 256, 20).value, 1e-4);
 }
 
 // A mirror that reflects all but 4e-4 is not to be seen under an even sky, its rim included, where what is reflected goes beneath
@@ -252,23 +262,26 @@ TEST(ShadingNormals, OpenBallsGoByTheirNormals) {
 TEST(ShadingNormals, RimsOfMirrorsAreNotDark) {
   const std::string mirror = "Material \"conductor\" \"spectrum eta\" [300 1 900 1] \"spectrum k\" [300 100 900 100]\n";
   const std::string view = "LookAt 1 2 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.3 1.3 -1.3 1.3]\n";
-  for (const std::string& medium : {std::string(), some_medium})
+  for (const std::string& medium : {some_of_each, with_a_medium})
     EXPECT_NEAR(green(view, sky + medium + mirror + ball(1)).value, 1, 1e-3);
 }
 
-// Clear glass takes nothing from an even sky, be its normals not those of its faces: of closed ones too all directions go by
-// them.
-TEST(ShadingNormals, ClosedGlassTakesNothing) {
+// What lets light through and absorbs nothing takes nothing from an even sky, be its normals not those of its faces: of closed
+// meshes of it too all directions go by them. Dropped, 3 % of the sheet's light would be missing.
+TEST(ShadingNormals, ClosedMeshesThatLetLightThroughTakeNothing) {
   const std::string view = "LookAt 1 2 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.3 1.3 -1.3 1.3]\n";
-  for (const std::string& medium : {std::string(), some_medium}) {
-    const Mean mean = green(view, sky + medium + "Material \"dielectric\"\n" + ball(1), 256);
-    EXPECT_NEAR(mean.value, 1, 4 * mean.error + 1e-3);
-  }
+  const std::string sheet =
+      "Material \"diffusetransmission\" \"rgb reflectance\" [0.5 0.5 0.5] \"rgb transmittance\" [0.5 0.5 0.5]\n";
+  for (const std::string& medium : {some_of_each, with_a_medium})
+    for (const std::string& world : {sheet + ball(1), "Material \"dielectric\"\n" + ball(2)}) {
+      const Mean mean = green(view, sky + medium + world, 256);
+      EXPECT_NEAR(mean.value, 1, 4 * mean.error + 1e-3);
+    }
   // With fog in it, which absorbs nothing.
   const std::string fog =
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1]\n"
       "MediumInterface \"fog\" \"\" Material \"dielectric\"\n";
-  const Mean mean = green(view, sky + fog + ball(1), 256, 1000);
+  const Mean mean = green(view, sky + some_of_each + fog + ball(2), 256, 1000);
   EXPECT_NEAR(mean.value, 1, 4 * mean.error + 3e-3);
 }
 
@@ -278,7 +291,7 @@ TEST(ShadingNormals, ClosedGlassTakesNothing) {
 TEST(ShadingNormals, ASmoothMeshOverAFloorIsTheBall) {
   const std::string view = "LookAt 0 -5 2  0 0 0.6  0 0 1\nCamera \"perspective\" \"float fov\" 40\n";
   const std::string floor = sky + diffuse(0.5) + "Shape \"disk\" \"float radius\" 20\n" + diffuse(0.9) + "Translate 0 0 1\n";
-  for (const std::string& medium : {std::string(), some_medium}) {
+  for (const std::string& medium : {some_of_each, with_a_medium}) {
     const Mean solid = green(view, medium + floor + "Shape \"sphere\" \"float radius\" 1\n", 1024),
                mesh = green(view, medium + floor + ball(4), 1024);
     EXPECT_NEAR(mesh.value, solid.value, 4.5 * std::hypot(mesh.error, solid.error) + 3e-3 * solid.value);
