@@ -163,8 +163,8 @@ std::vector<Case> cases() {
            "Translate 0 0 -2.2\n" + triangles + "Translate 0 0 2.6\n" + triangles,
        beside_it},
       {"glass_octahedron_both_sides", glass(0.4) + lamp_both + octahedron},
-      {"closed_octahedron_under_a_lamp",
-       "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + octahedron + "Translate 0 0 2\n" + turned + triangles},
+      {"closed_octahedron_under_a_lamp", "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + octahedron +
+                                             "Translate 0 0 2\nScale 4 4 1\n" + turned + triangles},
       {"bumped_sphere_both_sides", bumps + lamp_both + sphere},
       {"box_within_box_lamp",
        glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + turned + "Scale 8 8 8\n" + box},
