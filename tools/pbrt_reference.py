@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/validation.md"
 TITLE = "Scenes beside pbrt-v4"
 # Beside those of the pictures (1,024 to 3,072), so that our noise is no larger than theirs.
-SAMPLES = {"coated": 2048, "sheets": 2048, "textures": 1024, "alpha-normal": 1024, "media": 3072, "grid": 1024, "gobos": 3072, "many-lights": 2048}
+SAMPLES = {"coated": 2048, "sheets": 2048, "textures": 1024, "alpha-normal": 1024, "media": 3072, "grid": 1024, "gobos": 3072, "many-lights": 2048, "glossy": 1024}
 # What their pictures are too noisy for: 1 % elsewhere.
 BLOCKS = {"gobos": 0.025, "many-lights": 0.025}
 SPECTRAL = {"textures"}

@@ -107,6 +107,10 @@ struct MaterialWriter {
     if (!textured(name, name)) to.number(name, value);
   }
   void whole(const char* name, int value, int, int) { to.whole(name, value); }
+  /// pbrt does not know them: they stand only where they are on.
+  void flag(const char* name, bool value) {
+    if (value) to.boolean(name, true);
+  }
   void parts(const std::array<std::uint32_t, 2>& of) { to.texts("materials", {names.materials[of[0]], names.materials[of[1]]}); }
   void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
     spectrum(reflectance ? "reflectance" : "sigma_a", reflectance ? "reflectance" : "sigma_a", reflectance.value_or(sigma_a));

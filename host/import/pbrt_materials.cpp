@@ -145,6 +145,7 @@ struct MaterialReader {
     value = parameters.number_or_texture(name, value, textures);
     if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
   }
+  void flag(const char* name, bool& value) { value = parameters.boolean(name, value); }
   void whole(const char* name, int& value, int low, int high) {
     value = parameters.integer(name, value);
     if (value < low || value > high)

@@ -124,6 +124,9 @@ struct MaterialTaker {
     if (!textured(name)) given.number(name, value);
   }
   void whole(const std::string& name, int& value, int low, int high) { given.whole(name, value, low, high); }
+  void flag(const std::string& name, bool& value) {
+    if (const bool* on = given.get<bool>(name, "true or false")) value = *on;
+  }
   void parts(std::array<std::uint32_t, 2>& materials) {
     if (const auto* two = given.get<std::array<std::uint32_t, 2>>("materials", "the numbers of two materials")) materials = *two;
   }

@@ -41,6 +41,10 @@ bool FlatScene::has_media() const {
   return !mediums.empty() || std::ranges::any_of(materials, passes);
 }
 
+bool FlatScene::multiscatters() const {
+  return std::ranges::any_of(materials, [](const MaterialRecord& m) { return (m.flags & CAPLET_MATERIAL_MULTISCATTER) != 0; });
+}
+
 std::uint64_t FlatScene::geometry_bytes() const {
   return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +
          bytes_of(mesh_normals) + bytes_of(mesh_uvs);

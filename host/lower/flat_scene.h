@@ -30,7 +30,8 @@ struct FlatScene {
   std::uint64_t texture_kinds() const;
   std::uint64_t light_kinds() const;
   std::uint64_t medium_kinds() const;
-  bool has_media() const;  // or surfaces that light passes
+  bool has_media() const;      // or surfaces that light passes
+  bool multiscatters() const;  // some material makes up for what one scattering loses
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
   bool sky_is_unseen = false;  // by camera rays: there is a backdrop
   bool has_chains = false;     // capsules with u at their ends, operands of csg among them

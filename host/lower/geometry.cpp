@@ -126,6 +126,7 @@ class GeometryLowering {
       if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
     }
     if (turns_normals(shape, m)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
+    if (!is_watertight(shape)) record.flags |= CAPLET_GEOMETRY_OPEN;
     reversed_ = shape.reverse_orientation;
     std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
     const std::size_t count = part.primitives.size() - first;
@@ -295,6 +296,7 @@ class GeometryLowering {
   void add_vertex_data(const std::vector<glm::vec3>& normals, const std::vector<glm::vec2>& uvs, const Matrix& m,
                        GeometryRecord& record) {
     if (!normals.empty()) {
+      record.flags |= CAPLET_GEOMETRY_NORMALS;
       record.normal_begin = narrow<uint>(out_.mesh_normals.size());
       const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(m)));
       for (const glm::vec3& n : normals) {
@@ -314,6 +316,7 @@ class GeometryLowering {
     if (record.normal_begin != CAPLET_NONE) out_.mesh_normals.resize(record.normal_begin);
     if (record.uv_begin != CAPLET_NONE) out_.mesh_uvs.resize(record.uv_begin);
     record.normal_begin = record.uv_begin = CAPLET_NONE;
+    record.flags &= ~CAPLET_GEOMETRY_NORMALS;
   }
 
   void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {

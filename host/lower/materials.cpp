@@ -70,6 +70,10 @@ struct MaterialWriter {
     if (!textured(name, TextureUse::number)) data.put(field_of(name), value);
   }
   void whole(const char* name, int value, int, int) { data.put(name, value); }
+  /// The one flag that there is: the bit says nothing of its name.
+  void flag(const char*, bool on) {
+    if (on) record.flags |= CAPLET_MATERIAL_MULTISCATTER;
+  }
   void parts(const std::array<std::uint32_t, 2>& materials) {
     data.put_index("first", materials[0]);
     data.put_index("second", materials[1]);

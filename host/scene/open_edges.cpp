@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <map>
 #include <span>
 
@@ -34,11 +36,38 @@ class Edges {
   std::map<std::pair<Corner, Corner>, int> faces_;
 };
 
-}  // namespace
+/// The exclusive or of a hash of each edge of each face: an edge that an even number of faces have leaves nothing of its own.
+class EdgeParity {
+ public:
+  void add(std::span<const glm::vec3> around) {
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      const glm::vec3 &a = around[i], &b = around[(i + 1) % around.size()];
+      if (a == b) continue;
+      sum_ ^= mixed(hash(a) + hash(b));
+      is_empty_ = false;
+    }
+  }
+  bool is_even() const { return !is_empty_ && sum_ == 0; }
 
-double open_edges(const Shape& shape) {
-  if (is_closed(shape)) return 0;
-  Edges edges;
+ private:
+  /// The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+  static std::uint64_t mixed(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+  static std::uint64_t hash(const glm::vec3& p) {
+    std::uint64_t out = 0x9e3779b97f4a7c15u;
+    for (int k = 0; k < 3; ++k) out = mixed(out + std::bit_cast<std::uint32_t>(p[k] + 0.f));  // no -0
+    return out;
+  }
+  std::uint64_t sum_ = 0;
+  bool is_empty_ = true;
+};
+
+/// Adds the faces of a mesh to `edges`, the corners of each in the order around it.
+template <class To>
+void add_faces(const Shape& shape, To& edges) {
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
     for (const auto& face : mesh->triangles)
       edges.add(std::array{mesh->positions[face[0]], mesh->positions[face[1]], mesh->positions[face[2]]});
@@ -46,7 +75,22 @@ double open_edges(const Shape& shape) {
     for (const auto& face : mesh->patches)
       edges.add(
           std::array{mesh->positions[face[0]], mesh->positions[face[1]], mesh->positions[face[3]], mesh->positions[face[2]]});
+}
+
+}  // namespace
+
+double open_edges(const Shape& shape) {
+  if (is_closed(shape)) return 0;
+  Edges edges;
+  add_faces(shape, edges);
   return edges.open();
+}
+
+bool is_watertight(const Shape& shape) {
+  if (is_closed(shape)) return true;
+  EdgeParity edges;
+  add_faces(shape, edges);
+  return edges.is_even();
 }
 
 }  // namespace caplet

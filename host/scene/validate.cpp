@@ -168,6 +168,7 @@ class Validator {
     void index(const char*, const Spectrum&) {}
     void number(const char* name, double, double, double) { is_float[name] = true; }
     void whole(const char*, int, int, int) {}
+    void flag(const char*, bool) {}
     void parts(const std::array<std::uint32_t, 2>&) {}
     void pigment(const Spectrum&, const std::optional<Spectrum>& reflectance) {
       is_float[reflectance ? "reflectance" : "sigma_a"] = false;
@@ -367,6 +368,7 @@ class Validator {
         validator.error(where, std::string(name) + ' ' + must_lie_within(low, high));
     }
     void whole(const char* name, int value, int low, int high) { number(name, value, low, high); }
+    void flag(const char*, bool) {}
     void parts(const std::array<std::uint32_t, 2>&) {}  // mixes()
     void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
       unbounded("sigma_a", sigma_a);

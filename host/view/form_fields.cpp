@@ -63,6 +63,7 @@ class MaterialFields {
     with_slot(name, true, [&](Slot& slot) { to_.number(name, value, low, high, &slot); });
   }
   void whole(const char* name, int& value, int low, int high) { to_.whole(name, value, low, high); }
+  void flag(const char* name, bool& value) { to_.flag(name, value); }
   void parts(std::array<std::uint32_t, 2>& of) {
     to_.material("material 0", of[0]);
     to_.material("material 1", of[1]);
@@ -127,6 +128,7 @@ struct MaterialDefaults {
   void index(const char*, Spectrum&) {}
   void number(const char*, double&, double, double) {}
   void whole(const char*, int&, int, int) {}
+  void flag(const char*, bool&) {}
   void parts(std::array<std::uint32_t, 2>& of) {
     of[0] = own == 0 ? 1 : 0;
     of[1] = materials > 2 && own != 1 ? 1 : of[0];

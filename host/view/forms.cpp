@@ -230,6 +230,7 @@ struct Swatch {
   void index(const char*, const Spectrum&) {}
   void number(const char*, double, double, double) {}
   void whole(const char*, int, int, int) {}
+  void flag(const char*, bool) {}
   void parts(const std::array<std::uint32_t, 2>& materials) {
     glm::dvec3 sum(0);
     for (const std::uint32_t part : materials) {

@@ -80,10 +80,11 @@ static inline int bsdf_is_specular(const Bsdf* b) {
   }
 }
 
+// It scatters light on the side alone that it comes from.
 static inline int bsdf_is_opaque(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return ((traits)&trait_opaque) != 0;
+  case material_##name: return ((traits)&trait_opaque) != 0 || (((traits)&trait_sheer) != 0 && !(max4(b->transmittance) > 0.0f));
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL

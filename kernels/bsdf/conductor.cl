@@ -8,6 +8,7 @@
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
+#include "bsdf/multiscatter.cl"
 
 static inline void conductor_make(const MaterialPoint* m, Bsdf* b) {
   bsdf_roughness(b, material_number(m, conductor_at_alpha_u), material_number(m, conductor_at_alpha_v));
@@ -25,7 +26,11 @@ static inline float4 conductor_eval(const Bsdf* b, int inside, float3 wo, float3
   const float cos_m = dot(wo, m);
   if (!(cos_m > 0.0f)) return (float4)(0.0f);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  return fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wi, b->alpha_u, b->alpha_v));
+  const float4 value = fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
+#ifdef CAPLET_MULTISCATTER
+  if (bsdf_multiscatters(b)) return value + metal_multiscattered(b, wo, wi, pdf);
+#endif
+  return value;
 }
 
 static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
@@ -42,9 +47,18 @@ static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3
   const float3 m = ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
   const float cos_m = dot(wo, m);
   s->wi = normalize(2.0f * cos_m * m - wo);
+#ifdef CAPLET_MULTISCATTER
+  if (bsdf_multiscatters(b)) {
+    if (u_component < metal_loss(wo.z, loss_roughness(b))) s->wi = sample_cosine_hemisphere(u);
+    s->pdf = 0.0f;
+    const float4 value = conductor_eval(b, inside, wo, s->wi, &s->pdf);
+    s->weight = value / s->pdf;
+    return s->pdf > 0.0f;
+  }
+#endif
   if (!(cos_m > 0.0f) || !(s->wi.z > 0.0f)) return 0;
   s->pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(s->wi, b->alpha_u, b->alpha_v);
+  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(wo, s->wi, b->alpha_u, b->alpha_v);
   return s->pdf > 0.0f;
 }
 

@@ -19,23 +19,15 @@ static inline float ggx_stretched(float3 w, float alpha_u, float alpha_v) {
   return sqrt(sqr(alpha_u * w.x) + sqr(alpha_v * w.y) + sqr(w.z));
 }
 
-// Smith masking of one direction, 1 / (1 + Lambda).
-static inline float ggx_g1(float3 w, float alpha_u, float alpha_v) {
-  const float z = fabs(w.z);
-  return 2.0f * z / (z + ggx_stretched(w, alpha_u, alpha_v));
-}
-
 // Density per solid angle of the normals m visible from wo (dot(wo, m) > 0) over dot(wo, m): G1(wo) D(m) / wo.z, finite at
 // grazing.
 static inline float ggx_visible_over_cos(float3 wo, float3 m, float alpha_u, float alpha_v) {
   return 2.0f * ggx_d(m, alpha_u, alpha_v) / (wo.z + ggx_stretched(wo, alpha_u, alpha_v));
 }
 
-// G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Separable Smith: G2 = G1 G1.
-static inline float ggx_masking(float3 wi, float alpha_u, float alpha_v) { return ggx_g1(wi, alpha_u, alpha_v); }
-
-// The same for height-correlated masking (Heitz 2014, 99): G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
-static inline float ggx_correlated_masking(float3 wo, float3 wi, float alpha_u, float alpha_v) {
+// G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Height-correlated Smith masking (Heitz 2014, 99):
+// G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
+static inline float ggx_masking(float3 wo, float3 wi, float alpha_u, float alpha_v) {
   const float zo = fabs(wo.z), zi = fabs(wi.z);
   const float so = ggx_stretched(wo, alpha_u, alpha_v), si = ggx_stretched(wi, alpha_u, alpha_v);
   return zi * (so + zo) / (zi * so + zo * si);

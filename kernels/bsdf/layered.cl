@@ -3,7 +3,7 @@
 //
 // A base under a coat: a rough or clear dielectric interface, and between both a layer that absorbs, or scatters by Henyey and Greenstein's
 // law. Light is followed from one to the other at random (Guo, Hasan and Zhao 2018; Pharr, Jakob and Humphreys 2023, 14.3). Coats are the
-// same from both sides. wo.z > 0 (bsdf.cl mirrors the frame). Masking is height-correlated (decision 0012).
+// same from both sides. wo.z > 0 (bsdf.cl mirrors the frame).
 //
 // Within the walk z is 0 at the base and coat.thickness at the interface, w the way light is followed. Weights of the interface leave the
 // 1 / eta^2 of radiance out, which entering brings and leaving takes away.
@@ -81,7 +81,7 @@ static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u
     const float cos_i = dot(s->wi, m), denominator = cos_i + cos_o / eta;
     s->pdf *= ggx_visible_over_cos(wo, m, coat->alpha_u, coat->alpha_v) *
               (reflected ? 0.25f : cos_o * fabs(cos_i) / (denominator * denominator));
-    s->weight *= ggx_correlated_masking(wo, s->wi, coat->alpha_u, coat->alpha_v);
+    s->weight *= ggx_masking(wo, s->wi, coat->alpha_u, coat->alpha_v);
   }
   if (below) s->wi.z = -s->wi.z;
   return s->pdf > 0.0f && !isinf(s->pdf);
@@ -92,7 +92,7 @@ static inline float coat_reflected(const BsdfCoat* coat, float3 wo, float3 wi) {
   const float3 m = normalize(wo + wi);
   float cos_t;
   return 0.25f * fresnel_dielectric(dot(wo, m), coat->eta, &cos_t) * ggx_visible_over_cos(wo, m, coat->alpha_u, coat->alpha_v) *
-         ggx_correlated_masking(wo, wi, coat->alpha_u, coat->alpha_v);
+         ggx_masking(wo, wi, coat->alpha_u, coat->alpha_v);
 }
 
 // Through a rough interface from outside to inside: the weight of coat_sample there, and the density with which it takes `inner` by
@@ -108,7 +108,7 @@ static inline float coat_transmitted(const BsdfCoat* coat, float3 outer, float3 
   const float denominator = cos_i + cos_o / coat->eta;
   *pdf = ggx_visible_over_cos(outer, m, coat->alpha_u, coat->alpha_v) * cos_o * -cos_i / (denominator * denominator);
   float cos_t;
-  return (1.0f - fresnel_dielectric(cos_o, coat->eta, &cos_t)) * ggx_correlated_masking(outer, inner, coat->alpha_u, coat->alpha_v);
+  return (1.0f - fresnel_dielectric(cos_o, coat->eta, &cos_t)) * ggx_masking(outer, inner, coat->alpha_u, coat->alpha_v);
 }
 
 // --- The base, seen from within: wo.z > 0 ---
@@ -127,7 +127,7 @@ static inline float4 base_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   if (bsdf_is_smooth(b)) return (float4)(0.0f);
   const float3 m = normalize(wo + wi);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  return fresnel_conductor(dot(wo, m), b->eta, b->k) * (*pdf * ggx_correlated_masking(wo, wi, b->alpha_u, b->alpha_v));
+  return fresnel_conductor(dot(wo, m), b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
 }
 
 // *weight is multiplied by f |cos wi| / pdf.
@@ -146,7 +146,7 @@ static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, fl
   *weight *= fresnel_conductor(cos_m, b->eta, b->k);
   *pdf = 1.0f;
   if (smooth) return 1;
-  *weight *= ggx_correlated_masking(wo, *wi, b->alpha_u, b->alpha_v);
+  *weight *= ggx_masking(wo, *wi, b->alpha_u, b->alpha_v);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
   return *pdf > 0.0f;
 }

@@ -31,6 +31,7 @@ static inline void principled_make(const MaterialPoint* m, Bsdf* b) {
   b->reflectance = base;
   p->metallic = fmin(material_number(m, principled_at_metallic), 1.0f);
   p->transmission = (1.0f - p->metallic) * fmin(material_number(m, principled_at_spec_trans), 1.0f);
+  b->transmittance = (float4)(p->transmission);
   p->roughness = fmin(material_number(m, principled_at_roughness), 1.0f);
   // Burley 2012: the square, stretched by the aspect.
   const float aspect = sqrt(1.0f - 0.9f * fmin(material_number(m, principled_at_anisotropic), 1.0f));
@@ -66,7 +67,7 @@ static inline int principled_is_specular(const Bsdf* b) {
 
 // The cosine at which a smooth interface reflects no less than facets of roughness alpha do in all: fitted for indices of 1.05 to 3, to 1e-3.
 static inline float principled_seen_cosine(float cosine, float alpha) {
-  return sqrt(cosine * cosine + fmax(0.3f * alpha - 0.011f, 0.0f) * sqr(1.0f - cosine));
+  return sqrt(cosine * cosine + fmax(alpha * (0.227f - 0.062f * alpha) - 0.006f, 0.0f) * sqr(1.0f - cosine));
 }
 
 static inline float principled_interface_albedo(float cosine, float eta, float alpha) {
@@ -158,7 +159,7 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
   const float cos_o = dot(wo, m), cos_i = dot(wi, m);
   const int is_facet = cos_o > 0.0f && (reflected ? cos_i > 0.0f : cos_i < 0.0f) && m.z > 0.0f;
   if (!is_facet) return (float4)(0.0f);
-  const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v), masking = ggx_masking(wi, b->alpha_u, b->alpha_v);
+  const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v), masking = ggx_masking(wo, wi, b->alpha_u, b->alpha_v);
   float cos_t;
   const float fresnel = fresnel_dielectric(cos_o, eta, &cos_t);
   const float through_o = principled_through_coat(b, wo.z), through_i = principled_through_coat(b, fabs(wi.z));
@@ -191,7 +192,7 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
   if (p->coat > 0.0f) {
     const float alpha = b->coat.alpha_u, coat_lobe = 0.25f * ggx_visible_over_cos(wo, m, alpha, alpha);
     *pdf += shares->coat * coat_lobe;
-    value += p->coat * (inside ? 1.0f - p->transmission : 1.0f) * fresnel_dielectric(cos_o, b->coat.eta, &cos_t) * coat_lobe * ggx_masking(wi, alpha, alpha);
+    value += p->coat * (inside ? 1.0f - p->transmission : 1.0f) * fresnel_dielectric(cos_o, b->coat.eta, &cos_t) * coat_lobe * ggx_masking(wo, wi, alpha, alpha);
   }
   return value;
 }

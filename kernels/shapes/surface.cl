@@ -12,12 +12,12 @@
 
 // World space. p lies on the surface within `error`: p +- ng * error is on the intended side. ng points outward of solids, and by
 // winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE;
-// primitive_light: that of the whole primitive, of which this surface may be dark.
+// primitive_light: that of the whole primitive, of which this surface may be dark. flags: GeometryRecord's.
 typedef struct {
   float3 p, ng, ns, dpdu, dpdv;
   float2 uv;
   float error;
-  uint geometry, primitive, surface, material, light, primitive_light;
+  uint geometry, primitive, surface, material, light, primitive_light, flags;
   int leaving;
   int along_u;  // LocalSurface
 } Surface;
@@ -79,6 +79,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   s.uv = found.uv;
   s.error = found.error;
   s.geometry = index;
+  s.flags = geometry.flags;
   s.primitive = primitive;
   s.surface = surface;
   s.leaving = leaving;

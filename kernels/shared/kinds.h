@@ -43,7 +43,8 @@ enum {
   trait_opaque = 2,      // it scatters light on the side alone that it comes from
   trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
   trait_metal_base = 8,  // a coat over a metal (layered.cl)
-  trait_passes = 16      // light goes on as if there were nothing: it may bound a medium
+  trait_passes = 16,     // light goes on as if there were nothing: it may bound a medium
+  trait_sheer = 32       // opaque where its transmittance (Bsdf) is 0
 };
 
 enum {
@@ -102,6 +103,8 @@ enum {
 #define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
 #define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
 #define CAPLET_GEOMETRY_CHAIN 4u           // capsules with u at their ends
+#define CAPLET_GEOMETRY_OPEN 8u            // a sheet that encloses nothing
+#define CAPLET_GEOMETRY_NORMALS 16u        // a mesh with normals at its vertices
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 #define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it
@@ -133,6 +136,7 @@ enum {
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
+#define CAPLET_MATERIAL_MULTISCATTER 2u    // what one scattering loses is made up for (bsdf/multiscatter.cl)
 
 // HitRecord.slot of a path that has come to its end, or has been scattered, before what it hit
 #define CAPLET_SCATTERED 0xfffffffeu

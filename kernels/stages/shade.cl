@@ -65,22 +65,27 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
   return CAPLET_NONE;
 }
 
+// Whether directions go by the shading normal alone, as pbrt-v4's do: of bumps and, on surfaces that are open or let light through, of the
+// normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no light through (decision 0023).
+static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int bumped) {
+  if (bumped) return 1;
+  return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u && ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));
+}
+
 // One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const HitRecord* hit, const Surface* s, const Frame* frame,
-                                const Bsdf* bsdf, uint side, int bent, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
+                                const Bsdf* bsdf, uint side, int by_shading, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
   // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
   const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), side};
   if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
-  // Shading normals must not let light through what is geometrically opaque, nor reflect it into the surface. Bent ones may: their
-  // directions are those of pbrt-v4 (docs/textures.md).
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
   const int crosses = dot(light.wi, s->ng) * dot(wo, s->ng) < 0.0f;
-  if (transmitted != crosses && !bent) return;
-  // A refracted ray sees its own primitive from the other side than this sample did: it alone finds that light.
-  if (transmitted && light.index == s->primitive_light) return;
+  if (transmitted != crosses && !by_shading) return;
+  // A ray that crosses sees its own primitive from the other side than this sample did: it alone finds that light.
+  if (crosses && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
 #ifdef SHADE_IN_MEDIA
@@ -158,7 +163,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
-      // What a refracted ray finds of the primitive that it crossed has no other strategy.
+      // What a ray finds of the primitive that it crossed has no other strategy.
       if (!specular && as_uint(scatter.z) != s.light) {
 #ifdef CAPLET_LIGHT_TREE
         const uint before = g->carried.path_normal[path];
@@ -190,8 +195,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #ifdef SHADE_IN_MEDIA
   if (media_passes(g, out, path, material, &ray, &hit)) return;
 #endif
-  const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
-  if (bent) {
+  const int bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
+  if (bumped) {
     float3 dndu = (float3)(0.0f), dndv = dndu;
     if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
       normal_derivatives(&g->tree, &g->surfaces, &ray, &hit, &s, &dndu, &dndv);
@@ -222,18 +227,25 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (any_stochastic_material) bsdf.random = path_hash(at, depth);
   const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
+  const int by_shading = goes_by_shading_normal(&s, &bsdf, bumped);
   if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
-    sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, bent, wo_local, wo, throughput, wavelengths,
+    sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, by_shading, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
   if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &sample)) return;
-  const float3 wi = to_world(&frame, sample.wi);
-  if (!bent && sample.transmitted != (dot(wi, s.ng) * dot(wo, s.ng) < 0.0f)) return;
+  float3 wi = to_world(&frame, sample.wi);
+  int crosses = dot(wi, s.ng) * dot(wo, s.ng) < 0.0f;
+  if (sample.transmitted != crosses && !by_shading) {
+    // Rims of mirrors would be black: what they reflect beneath the surface, they reflect above it.
+    if (!sample.specular || (s.flags & CAPLET_GEOMETRY_NORMALS) == 0u) return;
+    wi -= 2.0f * dot(wi, s.ng) * s.ng;
+    crosses = 0;
+  }
   throughput *= sample.weight;
   scatter.x = sample.pdf;
   scatter.y *= sample.eta_scale;
-  scatter.z = as_float(sample.transmitted ? s.primitive_light : CAPLET_NONE);
+  scatter.z = as_float(crosses ? s.primitive_light : CAPLET_NONE);
 
   if (!path_survives(at, depth, scatter.y, &throughput)) return;
   if (!(max4(fabs(throughput)) > 0.0f)) return;
@@ -263,7 +275,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #endif
   g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
 #ifdef SHADE_IN_MEDIA
-  media_scattered(g, path, &hit, dot(wi, s.ng) * dot(wo, s.ng) < 0.0f);
+  media_scattered(g, path, &hit, crosses);
 #endif
   const uint bits = g->batch.batch->sort_bits;
   append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);

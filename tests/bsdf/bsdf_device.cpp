@@ -12,6 +12,7 @@ namespace caplet::test {
 namespace {
 
 const char* const kernels = R"CL(
+#define CAPLET_MULTISCATTER
 #include "bsdf/bsdf.cl"
 #include "math/rng.cl"
 

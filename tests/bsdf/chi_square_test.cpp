@@ -54,8 +54,8 @@ std::size_t cell_of(const Direction& wi) {
 
 /// Integrals of density and value over the cells, with steps that resolve the lobe.
 std::vector<float> integrate(const BsdfTrial& trial, const BsdfParameters& bsdf, const Direction& wo) {
-  static std::map<std::tuple<uint, std::vector<float>, float>, std::vector<float>> known;
-  std::vector<float>& integrals = known[{bsdf.kind, bsdf.values(), wo[2]}];
+  static std::map<std::tuple<uint, uint, std::vector<float>, float>, std::vector<float>> known;
+  std::vector<float>& integrals = known[{bsdf.kind, bsdf.flags, bsdf.values(), wo[2]}];
   if (integrals.empty()) integrals = bsdf_on_device().integrate(bsdf, wo, rows, columns, trial.steps(bsdf, double{wo[2]}));
   return integrals;
 }

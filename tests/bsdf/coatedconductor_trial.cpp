@@ -1,35 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include <complex>
 #include <numbers>
 
 #include "coats.h"
+#include "microfacets.h"
 #include "trials.h"
 
 namespace caplet::test {
-
-namespace {
-
-double metal_reflectance(double cos_i, std::complex<double> index) {
-  const std::complex<double> sin2 = 1 - cos_i * cos_i, cos_t = std::sqrt(1.0 - sin2 / (index * index));
-  return 0.5 * (std::norm((cos_i - index * cos_t) / (cos_i + index * cos_t)) +
-                std::norm((index * cos_i - cos_t) / (index * cos_i + cos_t)));
-}
-
-/// GGX of equal roughnesses with height-correlated masking (Heitz 2014): f |cos wi|.
-double microfacets(const Direction& wo, const Direction& wi, double alpha, std::complex<double> index) {
-  double m[3], length = 0, cos_m = 0;
-  for (std::size_t c = 0; c < 3; ++c) length += std::pow(m[c] = double{wo[c]} + double{wi[c]}, 2);
-  for (std::size_t c = 0; c < 3; ++c) cos_m += (m[c] /= std::sqrt(length)) * double{wo[c]};
-  const double a2 = alpha * alpha, d = a2 / (std::numbers::pi * std::pow(m[2] * m[2] * (a2 - 1) + 1, 2));
-  const auto lambda = [&](const Direction& w) {
-    const double z2 = double{w[2]} * double{w[2]};
-    return 0.5 * (std::sqrt(1 + a2 * (1 - z2) / z2) - 1);
-  };
-  return metal_reflectance(cos_m, index) * d / (1 + lambda(wo) + lambda(wi)) / (4 * double{wo[2]});
-}
-
-}  // namespace
 
 BsdfTrial coatedconductor_trial() {
   BsdfTrial trial;
@@ -57,7 +34,7 @@ BsdfTrial coatedconductor_trial() {
     bare.thickness = 1e-30f;
     for (const auto& [o, i] : {std::pair(0.2, 0.5), std::pair(1.1, 0.8), std::pair(0.6, 1.4)}) {
       const Direction wo = direction(o, 0.3), wi = direction(i, 2.6);
-      trial.values.push_back({bare, wo, wi, microfacets(wo, wi, double{alpha}, {0.2, 3.9}), 0, 1e-4});
+      trial.values.push_back({bare, wo, wi, microfacets(wo, wi, double{alpha}, double{alpha}, {0.2, 3.9}), 0, 1e-4});
     }
   }
   CoatedConductorMaterial model;

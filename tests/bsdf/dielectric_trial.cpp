@@ -29,10 +29,18 @@ BsdfTrial dielectric_trial() {
   trial.bends = true;
   for (const auto& [u, v] : roughnesses)
     trial.cases.push_back({glass(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.4, std::numbers::pi - 1.2}});
+  for (const auto& [u, v] : {std::pair(0.3f, 0.3f), std::pair(0.8f, 0.8f), std::pair(0.1f, 0.4f)}) {
+    BsdfParameters more = glass(u, v);
+    more.name += " multiscatter";
+    more.flags = CAPLET_MATERIAL_MULTISCATTER;
+    trial.cases.push_back({more, {0.0, 0.7, 1.3, std::numbers::pi - 0.4, std::numbers::pi - 1.2}});
+  }
   trial.unlike = {{glass(0.3f, 0.3f), glass(0.3f, 0.3f, 1.55f)}};
   for (const MitsubaRow& row : mitsuba_rows)
     if (row.kind == material_dielectric)
-      trial.values.push_back({glass(row.alpha_u, row.alpha_v), row.wo, row.wi, row.value, row.pdf, mitsuba_tolerance});
+      trial.values.push_back({glass(row.alpha_u, row.alpha_v), row.wo, row.wi,
+                              row.value * correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}),
+                              row.pdf, mitsuba_tolerance});
   trial.model.model = DielectricMaterial{};
   // Radiance that enters the medium of lower index is greater there by the square of their ratio's inverse.
   trial.most = [](const BsdfParameters& bsdf, bool inside) {

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bsdf_device.h"
+#include <complex>
+
+#include "microfacets.h"
 
 namespace caplet::test {
 
@@ -40,6 +42,24 @@ struct PrincipledRow {
   Direction wo, wi;
   double value;  // f |cos wi|
 };
+
+/// The part of a row's value that its facets have, with Mitsuba's separable masking (its principled.cpp, eval): all of metal and
+/// glass; of the rest what the interface reflects, of Fresnel's and the tinted reflectance.
+inline double facets_of_mitsuba(const PrincipledRow& row) {
+  const BsdfParameters& b = row.bsdf;
+  const double metallic = double{b.metallic}, glass = double{b.transmission}, rest = 1 - metallic - glass;
+  if (rest == 0 || row.wi[2] * row.wo[2] < 0) return row.value;
+  double length = 0, cos_m = 0;
+  for (std::size_t c = 0; c < 3; ++c) length += std::pow(double{row.wo[c]} + double{row.wi[c]}, 2);
+  for (std::size_t c = 0; c < 3; ++c) cos_m += (double{row.wo[c]} + double{row.wi[c]}) / std::sqrt(length) * double{row.wo[c]};
+  const double schlick = std::pow(1 - cos_m, 5), fresnel = metal_reflectance(cos_m, double{b.eta});
+  const double tinted = double{b.normal_tinted} + (1 - double{b.normal_tinted}) * schlick;
+  const double reflectance = metallic * (double{b.reflectance} + (1 - double{b.reflectance}) * schlick) + glass * fresnel +
+                             rest * ((1 - double{b.tint}) * fresnel + double{b.tint} * tinted);
+  // The microfacets of a metal that reflects all, without the masking that they have.
+  const double lobe = microfacets(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v}, {0, 1e9});
+  return reflectance * lobe / correlated_over_separable(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v});
+}
 
 // clang-format off
 inline const PrincipledRow principled_rows[] = {

@@ -5,9 +5,24 @@
 // distribution ggx. Its directions are named the other way round: its si.wi is wo here.
 #pragma once
 
+#include <cmath>
+
 #include "bsdf_device.h"
 
 namespace caplet::test {
+
+/// Smith's Lambda of GGX (Heitz 2014, 72): masking of one direction is 1 / (1 + Lambda).
+inline double ggx_lambda(const Direction& w, double alpha_u, double alpha_v) {
+  const double x = alpha_u * double{w[0]}, y = alpha_v * double{w[1]}, z = double{w[2]};
+  return 0.5 * (std::sqrt(1 + (x * x + y * y) / (z * z)) - 1);
+}
+
+/// Height-correlated masking, 1 / (1 + Lambda(wo) + Lambda(wi)), over the separable form that Mitsuba has, 1 / ((1 + Lambda(wo))
+/// (1 + Lambda(wi))) (Heitz 2014, 99 and 98): what values of Mitsuba are multiplied by. Densities have no part of it.
+inline double correlated_over_separable(const Direction& wo, const Direction& wi, double alpha_u, double alpha_v) {
+  const double o = ggx_lambda(wo, alpha_u, alpha_v), i = ggx_lambda(wi, alpha_u, alpha_v);
+  return (1 + o) * (1 + i) / (1 + o + i);
+}
 
 /// Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to the fourth power.
 inline constexpr double mitsuba_tolerance = 2e-4;

@@ -75,15 +75,15 @@ TEST(Principled, AWhiteOneLosesNoMoreThanIsStated) {
     float roughness, coat;
     double theta, albedo;
   };
-  for (const White& row : std::initializer_list<White>{{0.3f, 0, 0.1, 0.9617},
-                                                       {0.3f, 0, 1.2, 0.9791},
-                                                       {0.3f, 0, 1.4, 0.9304},
-                                                       {0.8f, 0, 0.1, 0.9424},
-                                                       {0.8f, 0, 0.7, 0.9432},
-                                                       {0.8f, 0, 1.4, 0.9192},
-                                                       {0.8f, 1, 0.1, 0.8984},
-                                                       {0.8f, 1, 1.2, 0.9156},
-                                                       {0.5f, 1, 0.7, 0.9243}}) {
+  for (const White& row : std::initializer_list<White>{{0.3f, 0, 0.1, 0.9610},
+                                                       {0.3f, 0, 1.2, 0.9779},
+                                                       {0.3f, 0, 1.4, 0.9252},
+                                                       {0.8f, 0, 0.1, 0.9368},
+                                                       {0.8f, 0, 0.7, 0.9379},
+                                                       {0.8f, 0, 1.4, 0.8844},
+                                                       {0.8f, 1, 0.1, 0.8953},
+                                                       {0.8f, 1, 1.2, 0.9062},
+                                                       {0.5f, 1, 0.7, 0.9232}}) {
     BsdfParameters white = principled("white", 1, row.roughness);
     white.coat = row.coat;
     white.coat_alpha_u = 0.04f;

@@ -37,7 +37,10 @@ BsdfTrial principled_trial() {
   BsdfParameters rougher = principled("principled rougher metal", 0.7f, 0.55f, 0.8f);
   rougher.metallic = 1;
   trial.unlike = {{all, other}, {metal, rougher}};
-  for (const PrincipledRow& row : principled_rows) trial.values.push_back({row.bsdf, row.wo, row.wi, row.value, -1, 3e-4});
+  for (const PrincipledRow& row : principled_rows) {
+    const double more = correlated_over_separable(row.wo, row.wi, double{row.bsdf.alpha_u}, double{row.bsdf.alpha_v}) - 1;
+    trial.values.push_back({row.bsdf, row.wo, row.wi, row.value + more * facets_of_mitsuba(row), -1, 3e-4});
+  }
   trial.model.model = PrincipledMaterial{};
   trial.most = [](const BsdfParameters& bsdf, bool inside) {
     return inside && bsdf.transmission > 0 ? double{bsdf.eta} * double{bsdf.eta} : 1.0;

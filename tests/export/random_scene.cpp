@@ -172,6 +172,7 @@ struct FillMaterial {
     if (!textured(name, true)) of = random.within(low, high);
   }
   void whole(const char*, int& of, int low, int) { of = low + 1 + static_cast<int>(random.below(9)); }
+  void flag(const char*, bool& of) { of = random.one_in(2); }
   void parts(std::array<std::uint32_t, 2>& of) { of = {0, 1}; }
   void pigment(Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
     if (random.one_in(2)) return unbounded("sigma_a", sigma_a);

@@ -100,6 +100,17 @@ TEST(Leniency, NamesThatPbrtAccepts) {
               HasSubstr("defined twice"));
 }
 
+TEST(Multiscatter, IsOfRoughMetalsAndGlass) {
+  const Scene scene = world_of(
+      "Material \"conductor\" Shape \"sphere\" Material \"conductor\" \"bool multiscatter\" true Shape \"sphere\"\n"
+      "Material \"dielectric\" \"bool multiscatter\" false Shape \"sphere\" Material \"dielectric\" \"bool multiscatter\" true "
+      "Shape \"sphere\"");
+  EXPECT_FALSE(model_of<ConductorMaterial>(scene, 0).multiscatter);
+  EXPECT_TRUE(model_of<ConductorMaterial>(scene, 1).multiscatter);
+  EXPECT_FALSE(model_of<DielectricMaterial>(scene, 2).multiscatter);
+  EXPECT_TRUE(model_of<DielectricMaterial>(scene, 3).multiscatter);
+}
+
 TEST(Coats, EveryParameter) {
   const Scene scene = world_of(
       "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float uroughness\" .04 \"float vroughness\" .09 \"float "

@@ -475,6 +475,7 @@ TEST_F(LibraryAppearance, WhatThereIsNoneOfIsToldWithTheNearest) {
   EXPECT_THAT(said(Named{"hair", {{"beta_m", 2.0}}}), HasSubstr("beta_m must lie between"));
   EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}), HasSubstr("'maxdepth' is not a whole number"));
   EXPECT_THAT(said(Named{"conductor", {{"eta", std::string("metal-Gold-eta")}}}), HasSubstr("metal-"));
+  EXPECT_THAT(said(Named{"conductor", {{"multiscatter", 1.0}}}), HasSubstr("'multiscatter' must be true or false"));
   EXPECT_THAT(said(Named{"diffuse", {{"reflectance", caplet::TextureNumber{7}}}}), HasSubstr("reflectance"));
   EXPECT_THAT(said(Named{"diffuse", {{"displacement", caplet::TextureNumber{7}}}}), HasSubstr("displacement"));
   EXPECT_THAT(said(Named{"mix", {{"materials", std::array<std::uint32_t, 2>{0, 1}}}}), HasSubstr("itself"));

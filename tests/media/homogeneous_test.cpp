@@ -161,8 +161,8 @@ TEST(Scattering, FurnaceBehindRoughGlass) {
   const std::string clear = medium("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [1 1 1]") + "MediumInterface \"m\" \"\" ";
   for (const std::string& light : {white_sky(), white_walls()}) {
     const std::string view = parallel_view(1, 4000) + "WorldBegin\n" + light + rough;
-    EXPECT_NEAR(seen(view + "Shape \"sphere\"\n", 256).value, 0.672, 0.004) << light;
-    EXPECT_NEAR(seen(view + clear + "Shape \"sphere\"\n", 256).value, 0.662, 0.004) << light;
+    EXPECT_NEAR(seen(view + "Shape \"sphere\"\n", 256).value, 0.684, 0.004) << light;
+    EXPECT_NEAR(seen(view + clear + "Shape \"sphere\"\n", 256).value, 0.675, 0.004) << light;
   }
 }
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What paths carry, against numbers on paper: filters with negative lobes, glass that disperses, light that must not leak,
-// shadows, surfaces that emit and such that do not.
+// What paths carry, against numbers on paper: filters with negative lobes, glass that disperses, shadows, surfaces that emit and
+// such that do not.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <numbers>
 
-#include "film/develop.h"
-#include "lower/lower.h"
 #include "render_scene.h"
 
 namespace caplet::test {
@@ -81,33 +79,6 @@ TEST(Dispersion, LosesNoLightSamples) {
     EXPECT_NEAR(mean.value, expected.value, 4.5 * error) << name;
     EXPECT_LT(error, 6e-3 * expected.value) << name << ": too few samples to tell";
   }
-}
-
-// --- Shading normals ---
-
-/// The ground with shading normals that lean far towards +x, seen from that side.
-const std::string leaning =
-    "Shape \"trianglemesh\" \"point3 P\" [-50 -50 0  50 -50 0  50 50 0  -50 50 0] \"integer indices\" [0 1 2  0 2 3]\n"
-    "\"normal N\" [0.95 0 0.3  0.95 0 0.3  0.95 0 0.3  0.95 0 0.3]\n";
-const std::string from_aside = "LookAt 4 0 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 20\n";
-
-// Both lights are below the opaque ground, on the outer side of its leaning normals.
-TEST(ShadingNormals, LetNoLightSampleThrough) {
-  for (const std::string light : {"LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [5 0 -1]\n",
-                                  "LightSource \"distant\" \"rgb L\" [9 9 9] \"point3 from\" [3 0 -1] \"point3 to\" [0 0 0]\n"})
-    EXPECT_EQ(mean_of(render_model(scene_of(from_aside, light + grey + leaning), 64).image, "G").value, 0) << light;
-}
-
-// A sky that only shines from below the horizon is met by scattered rays alone: a lamp of no chance to be sampled.
-TEST(ShadingNormals, LetNoScatteredRayThrough) {
-  const Scene scene =
-      scene_of(from_aside, grey + leaning + black + "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\nTranslate 0 0 -3\n" + ground);
-  FlatScene flat = lower(scene);
-  const FlatView view = lower_view(scene);
-  flat.lighting.sampled_light_count = 0;
-  RenderOptions options;
-  options.samples_per_pixel = 64;
-  EXPECT_EQ(mean_of(develop(render(flat, view, test_device(), options, {}).film, scene, Layers::all()), "G").value, 0);
 }
 
 // --- Shadows ---

@@ -59,6 +59,16 @@ const std::string disk = "Shape \"disk\" \"float radius\" 0.8\n";
 const std::string triangles =
     "Shape \"trianglemesh\" \"point3 P\" [-0.7 -0.8 0  0.8 -0.6 0.2  0.7 0.8 0  -0.8 0.8 0.5] \"integer indices\" [0 1 2  0 2 "
     "3]\n";
+const std::string leaning =
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-9 -9 -1  9 -9 -1  9 9 -1  -9 9 -1] \"integer indices\" [0 1 2  0 2 3]\n"
+    "\"normal N\" [1.5 0 1  1.5 0 1  1 0.7 1  1 -0.7 1]\n";
+const std::string octahedron =
+    "Shape \"trianglemesh\" \"point3 P\" [1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1] \"normal N\" [1 0 0  -1 0 0  0 1 0  0 -1 "
+    "0  0 0 1  0 0 -1]\n\"integer indices\" [0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5]\n";
+const std::string bumps =
+    "Texture \"f\" \"float\" \"fbm\"\nTexture \"b\" \"float\" \"scale\" \"texture tex\" \"f\" \"float scale\" 0.5\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7] \"texture displacement\" \"b\"\n";
 const std::string unseen = " \"bool onesided\" true\n";
 const std::string floor =
     "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
@@ -179,6 +189,15 @@ std::vector<Case> cases() {
        "ObjectBegin \"block\"\n" + box + "ObjectEnd\nObjectBegin \"hole\"\nTranslate 0.3 0 0\n" + box + "ObjectEnd\n" + floor +
            lamp + difference + "Translate 0.1 0 0\n" + box,
        beside_it, 2048},
+      {"leaning_triangles_above_and_beneath", leaning + lamp_both + "Translate 0 0 -1\n" + panels(-0.4) + panels(1.2), beside_it},
+      {"leaning_metal_above_and_beneath",
+       leaning.substr(leaning.find("Shape")).insert(0, "Material \"conductor\" \"float roughness\" 0.3\n") + lamp_both +
+           "Translate 0 0 -2.2\n" + triangles + "Translate 0 0 2.6\n" + triangles,
+       beside_it},
+      {"glass_octahedron_both_sides", glass(0.4) + lamp_both + octahedron},
+      {"closed_octahedron_under_a_lamp", "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + octahedron +
+                                             "Translate 0 0 2\nScale 4 4 1\n" + turned + triangles},
+      {"bumped_sphere_both_sides", bumps + lamp_both + sphere},
       {"box_within_box_lamp",
        glass(0.4) + box + "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + turned + "Scale 8 8 8\n" + box},
   };

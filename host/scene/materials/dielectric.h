@@ -6,15 +6,17 @@
 
 namespace caplet {
 
-/// Roughness as of ConductorMaterial.
+/// Roughness and multiscatter as of ConductorMaterial.
 struct DielectricMaterial {
   Spectrum eta = ConstantSpectrum{1.5};
   double alpha_u = 0, alpha_v = 0;
+  bool multiscatter = false;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.index("eta", self.eta);
     visit.roughness(self.alpha_u, self.alpha_v);
+    visit.flag("multiscatter", self.multiscatter);
   }
 };
 
