@@ -119,8 +119,6 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
   return out;
 }
 
-std::string to_text(const nlohmann::ordered_json& json) {
-  return json_dump(json, 2) + "\n";
-}
+std::string to_text(const nlohmann::ordered_json& json) { return json_dump(json, 2) + "\n"; }
 
 }  // namespace caplet::report

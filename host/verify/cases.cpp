@@ -97,7 +97,8 @@ Case load(const fs::path& file) {
       const auto whole = [&](const char* name) {
         const Json& value = json.at("torture").at(name);
         if (!value.is_number_unsigned())
-          throw refuse(fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, json_dump(value)));
+          throw refuse(
+              fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, json_dump(value)));
         return value.get<std::uint64_t>();
       };
       out.scene.seed = whole("seed");

@@ -331,8 +331,8 @@ TEST(NpyWriter, CountsCharactersNotBytes) {
   EXPECT_EQ(unicode_length("\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80"), 3u);
   // What is no UTF-8 (alone, cut off, too long a form, a surrogate, beyond the last one) counts as often as Python's
   // bytes.decode("utf-8", "replace") has U+FFFD for it.
-  constexpr std::pair<const char*, std::size_t> broken[] = {{"\x80", 1},         {"\xc3", 1},             {"\xe2\x82", 1},
-                                                            {"\xc0\x80", 2},     {"\xed\xa0\x80", 3},     {"\xf4\x90\x80\x80", 4},
+  constexpr std::pair<const char*, std::size_t> broken[] = {{"\x80", 1},         {"\xc3", 1},         {"\xe2\x82", 1},
+                                                            {"\xc0\x80", 2},     {"\xed\xa0\x80", 3}, {"\xf4\x90\x80\x80", 4},
                                                             {"\xf0\x9f\x98", 1}, {"\xff", 1}};
   for (const auto& [bad, count] : broken) {
     std::string row;
