@@ -160,13 +160,28 @@ class Collapser {
   double scale_ = 1;
 };
 
+Tree childless_root() {
+  Tree tree;
+  tree.depth = 1;
+  Node& root = tree.nodes.emplace_back();
+  const Box nothing;
+  for (std::size_t i = 0; i < width; i++) {
+    for (std::size_t k = 0; k < 3; k++) {
+      root.min[k][i] = nothing.min[k];
+      root.max[k][i] = nothing.max[k];
+    }
+    root.child[i] = 0x7fffffff;
+  }
+  return tree;
+}
+
 }  // namespace
 
 Tree collapse(const BinaryTree& binary) { return Collapser(binary).run(); }
 
 Tree build(std::span<const Reference> references, std::uint32_t single_group, Effort effort) {
-  CHECK_LT_(std::size_t(0), references.size());
   CHECK_LT_(references.size(), std::size_t(1) << 31);
+  if (references.empty()) return childless_root();
   return collapse(build_binary(references, single_group, effort));
 }
 

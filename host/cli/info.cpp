@@ -20,10 +20,13 @@ namespace {
 void print_text(const nlohmann::ordered_json& info) {
   fmt::print("scene        {}\n", info["scene"].get<std::string>());
   for (const auto& [kind, count] : info["primitives"].items()) fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
-  const auto& low = info["bounds"]["min"];
-  const auto& high = info["bounds"]["max"];
-  fmt::print("bounds       ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0].get<double>(), low[1].get<double>(),
-             low[2].get<double>(), high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
+  if (const auto& bounds = info["bounds"]; bounds.is_null()) {
+    fmt::print("bounds       none: there are no shapes\n");
+  } else {
+    const auto &low = bounds["min"], &high = bounds["max"];
+    fmt::print("bounds       ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0].get<double>(), low[1].get<double>(),
+               low[2].get<double>(), high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
+  }
   fmt::print("materials    {}\nlights       {}\n", info["materials"].get<std::uint64_t>(), info["lights"].get<std::uint64_t>());
   fmt::print("image        {} x {}, {} samples per pixel\n", info["image"]["width"].get<int>(),
              info["image"]["height"].get<int>(), info["samples_per_pixel"].get<int>());

@@ -113,6 +113,7 @@ struct GeometryWriter {
     points(out, "point3", "p1", of.p1);
     floats(out, "radius", of.radius0);
     if (of.radius1 != of.radius0) floats(out, "radius1", of.radius1);
+    chain(out, of);
     if (of.materials.empty()) return out;
     // Those that are used, each once.
     constexpr std::uint32_t none = 0xffffffffu;
@@ -137,7 +138,12 @@ struct GeometryWriter {
     const bool is_tapered = !of.radius1.empty() && of.radius1[0] != of.radius0[0];
     out.list("float", "radius", is_tapered ? 2 : 1,
              [&of](Text& text, std::size_t i) { text << (i == 0 ? of.radius0[0] : of.radius1[0]); });
+    chain(out, of);
     return out;
+  }
+  static void chain(Statement& to, const CapsulesShape& of) {
+    to.list("float", "u", 2 * of.u.size(),
+            [&of](Text& text, std::size_t i) { text << (i % 2 == 0 ? of.u[i / 2].x : of.u[i / 2].y); });
   }
   template <class Part>
   static void part(Statement& to, const Part& of) {

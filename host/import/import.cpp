@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <glm/geometric.hpp>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -231,9 +229,9 @@ Imported read_scene(const fs::path& path, const ImageReader& images, const Impor
 Scene presented(Imported file) {
   Scene& scene = file.scene;
   if (scene.automatic_camera || (file.has_camera && file.is_lit)) return std::move(scene);
-  const Bounds bounds = bounds_of(scene);
-  if (bounds.empty() || !std::isfinite(glm::length(bounds.max - bounds.min)))
-    return std::move(scene);  // validate says what is wrong
+  if (!file.has_camera && !file.is_lit && scene.shapes.empty() && scene.instances.empty())
+    throw InputError(SourceLocation{scene.source}, "the scene is empty: it has no shapes, no light and no camera");
+  if (!can_be_framed(scene)) return std::move(scene);
   const Camera camera = scene.camera;
   if (file.is_lit)
     frame_camera(scene);

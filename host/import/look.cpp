@@ -2,8 +2,6 @@
 // Copyright Caplet authors
 #include "import/look.h"
 
-#include <cmath>
-
 #include "base/error.h"
 #include "import/detail/text_file.h"
 #include "present/look.h"
@@ -23,11 +21,6 @@ double width_of(const std::string& text) {
   return value;
 }
 
-bool has_shapes(const Scene& scene) {
-  const Bounds bounds = bounds_of(scene);
-  return !bounds.empty() && std::isfinite(glm::length(bounds.max - bounds.min));
-}
-
 void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   const auto view = options.text("view"), up = is_turned ? std::nullopt : options.text("up");
   const bool projects = options.text("projection").has_value();
@@ -38,7 +31,7 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   if (up) framing.up = parse_axis(*up, "--up");
   if (view) framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
   if (projects) framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
-  if (!has_shapes(scene)) return;  // validate reports it
+  if (!can_be_framed(scene)) return;
   const auto medium = scene.camera.medium;
   frame_camera(scene);
   scene.camera.medium = medium;

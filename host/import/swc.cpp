@@ -11,6 +11,8 @@
 #include <charconv>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -311,6 +313,46 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   return roles;
 }
 
+/// For each segment what u is at its parent and at its sample: from 0 to 1 by length along each branch, which goes on while there
+/// is one segment to go on with, and ends where a soma does.
+std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, const std::vector<Role>& roles) {
+  constexpr std::int32_t none = -1, several = -2;
+  const auto parent_of = [&](std::size_t i) { return static_cast<std::size_t>(samples[i].parent); };
+  std::vector<std::int32_t> next(samples.size(), none);  // the only segment from a sample on
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!roles[i].segment) continue;
+    std::int32_t& of_parent = next[parent_of(i)];
+    of_parent = of_parent == none ? static_cast<std::int32_t>(i) : several;
+  }
+  const auto goes_on = [&](std::size_t i) {  // from the segment to its sample
+    return next[i] >= 0 && (samples[i].type == kSoma) == (samples[static_cast<std::size_t>(next[i])].type == kSoma);
+  };
+  std::vector<glm::vec2> out(samples.size());
+  std::vector<std::size_t> branch;
+  std::vector<double> ends;
+  for (std::size_t first = 0; first < samples.size(); ++first) {
+    if (!roles[first].segment) continue;
+    const std::size_t before = parent_of(first);
+    if (roles[before].segment && goes_on(before)) continue;
+    branch.clear();
+    ends.clear();
+    double length = 0;
+    for (std::size_t i = first;; i = static_cast<std::size_t>(next[i])) {
+      length += glm::length(glm::dvec3(samples[i].position) - glm::dvec3(samples[parent_of(i)].position));
+      branch.push_back(i);
+      ends.push_back(length);
+      if (!goes_on(i)) break;
+    }
+    float u = 0;
+    for (std::size_t k = 0; k < branch.size(); ++k) {
+      const double share = length > 0 ? ends[k] / length : static_cast<double>(k + 1) / static_cast<double>(branch.size());
+      out[branch[k]] = {u, static_cast<float>(share)};
+      u = out[branch[k]].y;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
@@ -328,6 +370,8 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
   const auto count = static_cast<std::size_t>(std::ranges::count(roles, true, &Role::segment));
   for (std::vector<glm::vec3>* points : {&segments.p0, &segments.p1}) points->reserve(count);
   for (std::vector<float>* radii : {&segments.radius0, &segments.radius1}) radii->reserve(count);
+  const std::vector<glm::vec2> u = along_branches(samples, roles);
+  segments.u.reserve(count);
   segments.materials.reserve(count);
   bool tapered = false;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -350,6 +394,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
     segments.radius0.push_back(from_soma ? sample.radius : parent.radius);
     segments.radius1.push_back(to_soma ? parent.radius : sample.radius);
     segments.materials.push_back(colors.of(to_soma ? parent : sample));
+    segments.u.push_back(u[i]);
     tapered |= segments.radius0.back() != segments.radius1.back();
   }
   if (!tapered) segments.radius1 = {};

@@ -124,9 +124,11 @@ CapsulesShape geometry_of(const CapsuleArrays& arrays) {
   check("radius0", arrays.radius0.size(), false);
   check("radius1", arrays.radius1.size(), true);
   check("materials", arrays.materials.size(), true);
+  check("u", arrays.u.size(), true);
   if (count == 0) throw InputError("capsules: there are none");
   CapsulesShape out{points_of(arrays.p0), points_of(arrays.p1), arrays.radius0, arrays.radius1, arrays.materials};
   if (out.radius1 == out.radius0) out.radius1.clear();
+  for (const auto& u : arrays.u) out.u.emplace_back(u[0], u[1]);
   return out;
 }
 
@@ -316,7 +318,9 @@ std::uint32_t Scene::add_mesh(const MeshArrays& mesh, const ShapeOptions& option
 CapsuleArrays Scene::capsule_arrays(std::uint32_t shape) const {
   const auto* found = std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
   if (!found) throw InputError(fmt::format("shape {} is not one of capsules", shape));
-  return {arrays_of(found->p0), arrays_of(found->p1), found->radius0, found->radius1, found->materials};
+  CapsuleArrays out{arrays_of(found->p0), arrays_of(found->p1), found->radius0, found->radius1, found->materials};
+  for (const glm::vec2& u : found->u) out.u.push_back({u.x, u.y});
+  return out;
 }
 
 void Scene::set_capsules(std::uint32_t shape, const CapsuleArrays& capsules) {
@@ -433,7 +437,7 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters, co
   data.model.framing = one.framing;
   if (!one.unit.empty()) data.model.unit = one.unit;
   data.open_camera = false;
-  if (data.model.automatic_camera && !bounds_of(data.model).empty()) frame_camera(data.model);
+  if (data.model.automatic_camera && can_be_framed(data.model)) frame_camera(data.model);
 }
 
 Transform Scene::camera() const { return to_public(data_->model.camera.world_from_camera); }
@@ -471,7 +475,8 @@ void Scene::present() {
   if (data_->presented == data_->origin) return;
   Data& data = changed();
   caplet::Scene& model = data.model;
-  if (model.shapes.empty() && model.instances.empty()) throw InputError("the scene is empty: it has no shapes");
+  if (model.shapes.empty() && model.instances.empty() && data.open_camera && !is_lit(model))
+    throw InputError("the scene is empty: it has no shapes, no light and no camera");
   Diagnostics diagnostics;
   validate(model, diagnostics);
   diagnostics.finish();

@@ -33,6 +33,7 @@ struct FlatScene {
   bool has_media() const;  // or surfaces that light passes
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
   bool sky_is_unseen = false;  // by camera rays: there is a backdrop
+  bool has_chains = false;     // capsules with u at their ends, operands of csg among them
 
   // For `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;

@@ -92,7 +92,6 @@ class GeometryLowering {
         if (!part.primitives.empty())
           place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(i), top, lowered.placed);
     }
-    if (top.primitives.empty()) throw InputError(SourceLocation{scene_.source}, "the scene has no shapes");
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
     add_emitters(top, CAPLET_NONE, Matrix(1), lowered.emitters);
@@ -152,19 +151,25 @@ class GeometryLowering {
     check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
   }
 
-  /// FlatScene::shapes: every kind that is to be encoded, and those within csg shapes.
+  /// FlatScene::shapes and has_chains: every kind that is to be encoded, and those within csg shapes.
   void find_shapes(const LoweredGeometry& lowered) {
     out_.shapes = 0;
+    out_.has_chains =
+        std::ranges::any_of(out_.geometries, [](const GeometryRecord& one) { return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0; });
     const auto add = [&](const LoweredShapes& shapes) {
       for (const Part& part : shapes.parts)
         for (const FlatPrimitive& p : part.primitives) {
           out_.shapes |= shape_bit(p.shape);
-          if (p.shape == shape_csg) out_.shapes |= csg_operand_shapes(p, out_.leaves);
+          if (p.shape != shape_csg) continue;
+          out_.shapes |= csg_operand_shapes(p, out_.leaves);
+          out_.has_chains = out_.has_chains || csg_has_chain(p, out_.leaves);
         }
     };
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
     if (lowered.world.parts.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    // Kernels have one kind at least.
+    if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
     kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
   }
 
@@ -264,6 +269,13 @@ class GeometryLowering {
     const double scale = similarity_scale(m);
     std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
     const bool identity = m == Matrix(1);
+    GeometryRecord of_all = record;
+    if (!capsules.u.empty()) {
+      of_all.flags |= CAPLET_GEOMETRY_CHAIN;
+      of_all.uv_begin = narrow<uint>(out_.mesh_uvs.size());
+      reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
+      for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
+    }
     reserve_more(part.primitives, capsules.p0.size());
     for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
       const FlatPrimitive flat = flat_capsule(capsules, i, identity ? nullptr : &m, scale);
@@ -271,7 +283,7 @@ class GeometryLowering {
       const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
       const auto [found, fresh] = geometry_of.try_emplace({kind, material}, 0);
       if (fresh) {
-        GeometryRecord own = record;
+        GeometryRecord own = of_all;
         own.material = material;
         found->second = add_geometry(own, kind);
       }

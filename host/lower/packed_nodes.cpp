@@ -61,6 +61,7 @@ PackedAxis pack_axis(const float* low, const float* high, std::uint32_t children
       greatest = std::max(greatest, high[i]);
     }
   PackedAxis out;
+  if (children == 0) return out;
   if (!(least >= -farthest && greatest <= farthest)) return out;
   const auto exponent_of = [](double x) { return x > 0 ? std::ilogb(x) : least_exponent; };
   const int last_place = exponent_of(std::max(std::abs(double(least)), std::abs(double(greatest)))) - 23;

@@ -193,6 +193,11 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
 }
 
 void set_world_bounds(const EncodedTree& tree, WorldRecord& world) {
+  if (!(tree.min[0] <= tree.max[0])) {
+    world.center_x = world.center_y = world.center_z = 0;
+    world.radius = 1;
+    return;
+  }
   dvec3 low(tree.min[0], tree.min[1], tree.min[2]), high(tree.max[0], tree.max[1], tree.max[2]);
   const dvec3 center = (low + high) * 0.5;
   world.center_x = static_cast<float>(center.x);

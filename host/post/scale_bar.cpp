@@ -76,6 +76,7 @@ ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
 
 BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag) {
   const auto& [scene, bounds] = sight;
+  if (bounds.empty()) throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
   const double footprint = pixel_footprint(scene, middle);
   if (!(footprint > 0)) throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");

@@ -38,7 +38,8 @@ struct Ball {
   double radius;
 };
 
-/// Spheres whose hull holds every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything else.
+/// Spheres whose hull holds every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything else. Where
+/// there is nothing, the unit ball, as in bounds_or_unit_of.
 std::vector<Ball> balls_of(const Scene& scene) {
   std::vector<Ball> balls;
   const auto add_corners = [&balls](const Bounds& bounds) {
@@ -79,6 +80,7 @@ std::vector<Ball> balls_of(const Scene& scene) {
     placed.instances = scene.instances;
     add_corners(bounds_of(placed));
   }
+  if (balls.empty()) balls.push_back({glm::dvec3(0), 1});
   return balls;
 }
 
@@ -226,7 +228,6 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
 
 void frame_camera(Scene& scene) {
   const std::vector<Ball> balls = balls_of(scene);
-  if (balls.empty()) return;
   const View view = framed_view(scene, balls);
   if (scene.framing.is_orthographic) return frame_orthographic(scene, view, balls);
   const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
@@ -256,6 +257,17 @@ void frame_camera(Scene& scene) {
   const double y = (vertical.right - vertical.left) / (2 * vertical.cosine);
   const glm::dvec3 eye = x * view.right + y * view.up + z * view.forward;
   set_camera(scene, view, eye, kFieldOfView);
+}
+
+Bounds bounds_or_unit_of(const Scene& scene) {
+  const Bounds bounds = bounds_of(scene);
+  return bounds.empty() ? Bounds{glm::dvec3(-1), glm::dvec3(1)} : bounds;
+}
+
+bool can_be_framed(const Scene& scene) {
+  if (scene.shapes.empty() && scene.instances.empty()) return true;
+  const Bounds bounds = bounds_of(scene);
+  return !bounds.empty() && std::isfinite(glm::length(bounds.max - bounds.min));
 }
 
 bool is_lit(const Scene& scene) {

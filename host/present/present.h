@@ -25,8 +25,16 @@ inline constexpr double frame_margin = 0.05;
 
 /// Points the camera at the shapes and moves it so that they just fit the film's size, with a margin; sets automatic_camera. To
 /// be called again when the film's size has changed. Scene::framing says from where, which way up, and whether in perspective;
-/// where it does not, flat scenes are seen face-on with a slight tilt, others three-quarter, by the shapes alone.
+/// where it does not, flat scenes are seen face-on with a slight tilt, others three-quarter, by the shapes alone. A scene without
+/// shapes is seen as if the unit ball stood at its origin.
 void frame_camera(Scene& scene);
+
+/// The box around all shapes. A scene without any counts as the unit ball about the origin: what looks at it, or turns around it,
+/// then needs no case of its own.
+Bounds bounds_or_unit_of(const Scene& scene);
+
+/// False where shapes have no finite extent, which validate() reports.
+bool can_be_framed(const Scene& scene);
 
 /// Moves an automatic camera; the studio light that belongs to it goes with it.
 void move_camera(Scene& scene, const Camera& to);

@@ -55,7 +55,7 @@ struct Swept {
 }  // namespace
 
 Turntable::Turntable(const Scene& scene) : camera_(scene.camera), is_automatic_(scene.automatic_camera) {
-  const Bounds bounds = bounds_of(scene);
+  const Bounds bounds = bounds_or_unit_of(scene);
   middle_ = 0.5 * (bounds.min + bounds.max);
   axis_ = glm::normalize(glm::dvec3(camera_.world_from_camera[1]));
   if (!scene.has_no_up) {

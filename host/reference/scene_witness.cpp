@@ -250,10 +250,11 @@ dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
   return placed.reversed != placed.turned ? -out : out;
 }
 
-glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point) const {
+glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point, const dvec3& direction) const {
   const Placed& placed = placed_.at(hit.index);
   const dvec3 own(object_from_world_[placed.space] * glm::dvec4(point, 1));
-  const glm::dvec2 at = uv_at(placed.primitive, own, static_cast<int>(hit.surface));
+  const glm::dvec2 at =
+      uv_at(placed.primitive, own, static_cast<int>(hit.surface), glm::dmat3(object_from_world_[placed.space]) * direction);
   if (corner_uvs_[placed.space].empty()) return at;
   const auto& corners = corner_uvs_[placed.space][placed.identity.primitive];
   if (std::holds_alternative<Triangle>(placed.primitive))

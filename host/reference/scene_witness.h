@@ -46,9 +46,9 @@ class SceneWitness {
   /// winding or as given of open shapes, turned by ReverseOrientation. By differences of the implicit function over 1e-6 of the
   /// primitive's size: no meaning that close to an edge.
   glm::dvec3 normal(const SceneHit& hit, const glm::dvec3& point) const;
-  /// (u, v) at a point of the world on (or next to) the surface of a hit: uv_at of the point in the primitive's own space,
-  /// interpolated in the uvs of meshes that have some.
-  glm::dvec2 uv(const SceneHit& hit, const glm::dvec3& point) const;
+  /// (u, v) at a point of the world on (or next to) the surface of a hit of a ray in this direction: uv_at of the point in the
+  /// primitive's own space, interpolated in the uvs of meshes that have some.
+  glm::dvec2 uv(const SceneHit& hit, const glm::dvec3& point, const glm::dvec3& direction) const;
   /// closest() for many rays, in parallel.
   std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
   std::size_t size() const { return placed_.size(); }

@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -30,6 +31,7 @@ struct Sphere {
 struct Capsule {
   glm::dvec3 p0{0}, p1{0, 0, 1};
   double radius0 = 1, radius1 = 1;
+  std::optional<glm::dvec2> u = {};  // of chains: at p0 and p1
 };
 struct Triangle {
   glm::dvec3 v0, v1, v2;

@@ -106,9 +106,9 @@ std::string stage_source(Stage stage, const RowMasks& rows) {
 }
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
-  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}", device.encoding() == Encoding::wide ? 8 : 1,
+  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}", device.encoding() == Encoding::wide ? 8 : 1,
                       scene.leaf_kind_bits, !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
-                      scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : ""),
+                      scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "", scene.has_chains ? " -DCAPLET_CHAINS" : ""),
           {{"shapes", shapes_on_trial(scene.shapes)},
            {"materials", scene.material_kinds()},
            {"textures", scene.texture_kinds()},

@@ -76,7 +76,10 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["primitives"] = nlohmann::ordered_json::object();
   for (const auto& [kind, count] : count_primitives(scene)) out["primitives"][kind] = count;
   const Bounds bounds = bounds_of(scene);
-  out["bounds"] = {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}};
+  if (bounds.empty())
+    out["bounds"] = nullptr;
+  else
+    out["bounds"] = {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}};
   out["materials"] = scene.materials.size();
   out["lights"] = light_count(flat);
   out["objects"] = scene.objects.size();

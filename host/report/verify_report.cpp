@@ -77,6 +77,8 @@ std::string table_of(const Statistics& s) {
   return out;
 }
 
+constexpr const char* nothing_to_verify = "nothing to verify: the scene has no shapes";
+
 std::string verdict_of(const DeviceReport& device) {
   const Statistics& s = device.statistics;
   if (s.disagreements == 0)
@@ -97,6 +99,7 @@ std::string verdict_of(const DeviceReport& device) {
 
 std::string plain_text(const Report& report, const std::string& scene) {
   std::string out = fmt::format("scene      {}\n", scene);
+  if (report.is_empty) return out + fmt::format("verdict    {}\n", nothing_to_verify);
   for (const DeviceReport& device : report.devices) {
     const Statistics& s = device.statistics;
     out += fmt::format("device     {}\nrays       {}, of which {} hit something; {:.1f} s on the device\n\n",
@@ -133,7 +136,7 @@ std::string json_text(const Report& report, const std::string& scene, const veri
   out["rays"] = report.devices.empty() ? 0 : report.devices[0].statistics.rays;
   out["disagreements"] = report.disagreements();
   out["seconds"] = report.seconds;
-  out["verdict"] = report.disagreements() == 0 ? "agrees" : "disagrees";
+  out["verdict"] = report.is_empty ? nothing_to_verify : report.disagreements() == 0 ? "agrees" : "disagrees";
   out["interrupted"] = report.interrupted;
   add_statistics(out, sum);
   out["devices"] = Json::array();

@@ -30,11 +30,6 @@ const CapsulesShape& capsules_of(const Shape& shape) {
 void check_alone(Scene scene, const Scene& of) {
   scene.source = of.source;
   if (scene.materials.empty()) scene.materials.emplace_back();
-  if (scene.shapes.empty() && scene.instances.empty()) {
-    Shape ball;
-    ball.geometry = SphereShape{};
-    scene.shapes.push_back(std::move(ball));
-  }
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();

@@ -128,7 +128,7 @@ Bounds bounds_of(const Scene& scene);
 std::map<std::string, std::uint64_t> count_primitives(const Scene& scene);
 
 /// Reports everything that cannot be rendered: non-finite numbers, non-positive sizes, singular transforms, indices out of range,
-/// an image larger than 2^28 pixels, an empty scene. Places are those of the statements.
+/// an image larger than 2^28 pixels. Places are those of the statements.
 void validate(const Scene& scene, Diagnostics& diagnostics);
 
 }  // namespace caplet

@@ -56,8 +56,6 @@ class Validator {
     for (const Light& one : scene_.lights) light(one);
     camera(file);
     film(file);
-    if (!diagnostics_.has_errors() && scene_.shapes.empty() && scene_.instances.empty())
-      error(file, "the scene is empty: it has no shapes");
   }
 
  private:

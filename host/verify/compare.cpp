@@ -122,6 +122,18 @@ Solid solid_of(const reference::SceneWitness::PlacedPrimitive& placed, std::uint
   return out;
 }
 
+/// By how much v of a chain may be off where its axis and the ray are off by `angle` (radians): both say what is across, which is
+/// undefined where one runs along the other.
+double turn_of_v(const reference::Primitive& primitive, const dvec3& direction, double angle) {
+  const auto* capsule = std::get_if<reference::Capsule>(&primitive);
+  if (!capsule || !capsule->u) return 0;
+  const double length = glm::length(capsule->p1 - capsule->p0), growth = std::abs(capsule->radius1 - capsule->radius0);
+  const dvec3 axis = length > 0 ? (capsule->p1 - capsule->p0) / length : dvec3(0, 0, 1);
+  const double sine = glm::length(glm::cross(direction, axis)) / glm::length(direction);
+  const double cosine = length > growth ? std::sqrt((length - growth) * (length + growth)) / length : 1;
+  return std::min(1.0, angle / std::max(sine * cosine, 1e-300));
+}
+
 }  // namespace
 
 struct Comparison::Pair {
@@ -207,13 +219,16 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::normal, off, allowed, 0x1p-23);
 
   const auto uv_there = [&](const dvec3& there) {
-    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)));
+    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)),
+                       ray.direction);
   };
   const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
   const auto apart_by = [](const dvec2& a, const dvec2& b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };
   // Half a dozen operations on numbers of the size of a uv, an arc tangent (6 ulp) among them; the frame that angles begin at,
   // with a quotient that makes the rounding of an axis (4 eps) up to ten times larger, and 1 / 2 pi of that.
-  double allowed_uv = 64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index);
+  double allowed_uv = 64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index) +
+                      turn_of_v(primitive, dmat3(solid.object_from_world) * ray.direction,
+                                bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps);
   if (!(apart_by(own_uv, uv) <= 0.25 * allowed_uv)) {
     const auto [least, most] = range_around<dvec2>(x, reach, uv_there);
     // Around poles, centres and seams u may be anything in its turn.

@@ -161,6 +161,7 @@ class Maker {
         chain.p1.push_back(at);
         chain.radius0.push_back(0.05f);
         chain.radius1.push_back(i % 3 == 0 ? 0.02f : 0.05f);
+        chain.u.emplace_back(static_cast<float>(i) / 24, static_cast<float>(i + 1) / 24);
       }
       add(std::move(chain));
     } else if (which == 1) {  // a wall of boxes, and balls that rest on it

@@ -154,6 +154,10 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
     const Scene torture = scene ? Scene{} : torture_scene(options.seed, round);
     const Scene& shown = scene ? *scene : torture;
     SceneCheck check(shown, devices);
+    if (check.witness().size() == 0) {
+      report.is_empty = true;
+      break;
+    }
     const RaySource source(shown, check.witness(), options.seed + (scene ? 0 : round));
     const std::uint64_t end = scene ? options.rays : std::min(options.rays, done + rays_a_round);
     while (done < end) {

@@ -85,6 +85,7 @@ struct Report {
   std::vector<Difference> differences;  // of every two devices
   double seconds = 0;
   bool interrupted = false;
+  bool is_empty = false;                // the scene has no shapes: no ray was asked
   std::uint64_t disagreements() const;  // of all devices
 };
 

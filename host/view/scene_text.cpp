@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "lower/identity.h"
+#include "present/present.h"
 #include "scene/bounds.h"
 #include "scene/edit.h"
 
@@ -41,7 +42,7 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   out["name"] = std::filesystem::path(scene.source).filename().string();
   out["device"] = device;
   out["samples"] = samples;
-  out["bounds"] = to_json(bounds_of(scene));
+  out["bounds"] = to_json(bounds_or_unit_of(scene));
   // By the numbers of the layer object.id (lower/identity.h).
   Json things = Json::array();
   for (const Shape& shape : scene.shapes) {

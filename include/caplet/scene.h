@@ -141,8 +141,8 @@ class CAPLET_API Scene {
   /// Film, filter, sampler or integrator; what `parameters` leaves out is as a file that leaves it out has it.
   void set_option(Statement statement, const std::string& type, const Parameters& parameters);
   /// What no one has given: a camera that frames the shapes, and studio light. They follow when shapes are added and this is
-  /// called again, and go where a camera or light is given. Throws InputError for what cannot be rendered, a scene without shapes
-  /// among it.
+  /// called again, and go where a camera or light is given. Throws InputError for what cannot be rendered, and for a scene that
+  /// has no shape, no light and no camera.
   void present();
   /// Makes capsules and spheres as wide as the film's "leastwidth" says, in pixels of its size and camera, as render() does with
   /// a copy. Of a scene without one: nothing.

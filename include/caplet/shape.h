@@ -26,11 +26,12 @@ struct Capsule {
 };
 
 /// Many of them, one entry each; spheres have p0 = p1. `radius1` is empty when none is tapered; `materials`, by number, are empty
-/// where all have the shape's.
+/// where all have the shape's. `u` is empty, or u at p0 and at p1 of the capsules of a chain (docs/shapes.md, "Chains").
 struct CapsuleArrays {
   std::vector<std::array<float, 3>> p0, p1;
   std::vector<float> radius0, radius1;
   std::vector<std::uint32_t> materials;
+  std::vector<std::array<float, 2>> u = {};
 };
 
 /// Triangles: corners by their numbers, counter-clockwise from outside. Normals (any length) and uvs: empty or one a vertex.

@@ -22,9 +22,9 @@ enum {
 };
 
 // The shading normal of material number `material` at a place whose own is ns, of unit length, on the side of the geometric normal of
-// the place. dpdu, dpdv: derivatives of the point.
+// the place. dpdu, dpdv, dndu, dndv: derivatives of the point and of ns, the latter for displacements.
 static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float3 ns, float3 dpdu,
-                                 float3 dpdv) {
+                                 float3 dpdv, float3 dndu, float3 dndv) {
   const uint bump = materials->materials[material].bump;
   if (bump == CAPLET_NONE) return ns;
   TexturePoint at = {materials, spectra, *place, (float4)(550.0f)};
@@ -36,6 +36,9 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
     const float4 turned = texture_eval(bump, &at);
     n = to_world(&frame, turned.xyz);
   } else {
+    // Across the shading normal, so that even heights leave it as it is.
+    dpdu -= dot(dpdu, ns) * ns;
+    dpdv -= dot(dpdv, ns) * ns;
     const float3 normal = cross(dpdu, dpdv);
     if (!(dot(normal, normal) > 0.0f)) return ns;
     // Half of what is seen at once, or little where that is not known.
@@ -49,7 +52,9 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
       at.place.p = place->p + move.x * dpdu + move.y * dpdv;
       height[i] = texture_eval(bump, &at).x;
     }
-    n = cross(dpdu + (height[1] - height[0]) / step.x * ns, dpdv + (height[2] - height[0]) / step.y * ns);
+    // Of the point moved by the height along the normal, the derivatives.
+    const float2 slope = (float2)(height[1] - height[0], height[2] - height[0]) / step;
+    n = cross(dpdu + slope.x * ns + height[0] * dndu, dpdv + slope.y * ns + height[0] * dndv);
   }
   const float scale = max3(fabs(n));
   if (!(scale > 0.0f && scale < INFINITY)) return ns;

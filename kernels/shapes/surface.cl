@@ -19,16 +19,22 @@ typedef struct {
   float error;
   uint geometry, primitive, surface, material, light, primitive_light;
   int leaving;
+  int along_u;  // LocalSurface
 } Surface;
 
+static inline LocalSurface surface_of_shape(uint shape, const SurfaceQuery* q) {
+  LocalSurface s = surface_shape(shape, q);
+  s.along_u = any_chain && q->chain_u != 0;
+  return s;
+}
 static inline LocalSurface surface_local(const SurfaceQuery* q) {
-  if (!CAPLET_HAS_SHAPE(shape_csg)) return surface_shape(q->geometry->shape, q);
+  if (!CAPLET_HAS_SHAPE(shape_csg)) return surface_of_shape(q->geometry->shape, q);
   uint shape = q->geometry->shape;
   SurfaceQuery own = *q;
   CsgOperand operand;
   const int csg = shape == shape_csg;
   if (csg) shape = csg_operand(q, &operand, &own);
-  const LocalSurface s = surface_shape(shape, &own);
+  const LocalSurface s = surface_of_shape(shape, &own);
   return csg ? csg_surface(&operand, s) : s;
 }
 
@@ -47,9 +53,13 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
+  // u at both ends of a capsule of a chain.
+  __global const float* chain_u = 0;
+  if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
+    chain_u = surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin);
   const SurfaceQuery query = {
       surfaces, tree->leaves, &geometry, primitive, surface, lane_data(tree->leaves, hit->slot), o + hit->t * d,
-      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0};
+      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0, d, chain_u};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;
@@ -72,6 +82,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   s.primitive = primitive;
   s.surface = surface;
   s.leaving = leaving;
+  s.along_u = found.along_u;
   uint base = 0u;
   if (placed) base = tree->instances[hit->instance].light_base;
   s.light = s.primitive_light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE

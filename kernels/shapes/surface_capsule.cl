@@ -3,7 +3,7 @@
 //
 // Capsule and tapered capsule: the convex hull of two spheres, which is the envelope of the spheres with centre and radius
 // interpolated along the axis. A point is refined to the one of those spheres that touches the envelope nearest to it.
-// uv: u around the axis p0 -> p1, v along the profile by arc length from p0's pole (0) to p1's pole (1).
+// uv: u around the axis p0 -> p1, v along the profile by arc length from p0's pole (0) to p1's pole (1). Chains: chain_uv.
 #ifndef CAPLET_SHAPES_SURFACE_CAPSULE_CL
 #define CAPLET_SHAPES_SURFACE_CAPSULE_CL
 
@@ -17,7 +17,7 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
   const float taper = r0 - r1;
   if (!(axis_length > fabs(taper))) {
     // One sphere holds the other (or the ends are equal).
-    return taper >= 0.0f ? sphere_point(query, p0, r0, unit_axis) : sphere_point(query, p1, r1, unit_axis);
+    return taper >= 0.0f ? sphere_point(query, p0, r0, unit_axis, 0.0f) : sphere_point(query, p1, r1, unit_axis, 1.0f);
   }
   // Normals of the tangent cone make a constant angle with the axis: sine `k` of its complement.
   const float k = taper / axis_length;
@@ -61,6 +61,7 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
   out.dpdv = profile * unit_or(unit_axis - dot(unit_axis, out.ng) * out.ng, (float3)(0.0f));
   out.dpdu = along_turn(&turn, radius * out.ng);
   out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
+  if (any_chain && query->chain_u) chain_uv(query, unit_axis, s, c, radius, side, &out);
   return out;
 }
 

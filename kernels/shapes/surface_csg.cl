@@ -45,8 +45,10 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   const uint space = as_uint(own->data[-8]);
   own->space = space != CAPLET_NONE ? leaves + space : 0;
   own->fallback = operand->subtracted ? -q->fallback : q->fallback;
+  own->chain_u = any_chain && row[5] != CAPLET_NONE ? leaves + row[5] + 2u * (found - row[3]) : 0;
   if (operand->placed) {
     own->x = transform_point(operand->transform, own->x);
+    own->direction = transform_vector(operand->transform, own->direction);
     own->fallback = unit_or(transform_transposed(operand->transform + 12, own->fallback), own->fallback);
   }
   return row[0];

@@ -17,7 +17,15 @@ typedef struct {
   float3 dpdu, dpdv;  // derivatives of the point by uv; zero where they are undefined (poles)
   float2 uv;
   float error;  // bound on the distance of p from the true surface (docs/numerics.md, "Surface points")
+  int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders, cones lie along dpdv
 } LocalSurface;
+
+// Whether there may be capsules with u at their ends (FlatScene::has_chains): programs for other scenes have no text of it.
+#ifdef CAPLET_CHAINS
+enum { any_chain = 1 };
+#else
+enum { any_chain = 0 };
+#endif
 
 // What a surface function answers: the point of a shape's surface `surface` nearest to x, in the space its data is stored in.
 typedef struct {
@@ -30,6 +38,8 @@ typedef struct {
   float3 fallback;  // unit normal where x leaves it undefined
   // A rotation or reflection (3x4 row-major, no translation) that the shape is stored under, where its uv tells it from none; or 0.
   __global const float* space;
+  float3 direction;                // of the ray, of any length, in the space of x
+  __global const float* chain_u;  // u at p0 and at p1 of a capsule of a chain; 0: it is in none
 } SurfaceQuery;
 
 static inline float norm1(float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
@@ -72,6 +82,29 @@ static inline float turn_around(const Frame* f, float3 n) {
 // Derivative by that turn of a point at v from somewhere on the axis. Reflections turn the other way.
 static inline float3 along_turn(const Frame* f, float3 v) {
   return (dot(cross(f->s, f->t), f->n) < 0.0f ? -2.0f : 2.0f) * CAPLET_PI * cross(f->n, v);
+}
+
+// uv of a chain's capsules, which are those of pbrt's curves: u is linear along the axis and constant on the caps, so that
+// neighbours agree at their joint; v runs across the tube from 0 to 1 as the ray sees it. out->ng is the normal at the ball that
+// stands `s` of the way from p0 to p1 and has `radius`; `c` is what of the side's normal is across the axis (unit), and `side`
+// the length of the side.
+static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c, float radius, float side,
+                            LocalSurface* out) {
+  const float u0 = q->chain_u[0], u1 = q->chain_u[1];
+  // Both neighbours have the same number at their joint.
+  const float u = s < 1.0f ? u0 + s * (u1 - u0) : u1;
+  // On the caps dp/du goes on as at the rim: in the plane of the axis, with the length that it has there.
+  const float rate = side / (u1 - u0);
+  const float along = dot(axis, out->ng);
+  out->dpdu = (fabs(rate) < INFINITY ? rate : side) * unit_or(axis - along * out->ng, (float3)(0.0f));
+  // e is across the axis as the ray sees it, and f points against the ray: v = (1 + sin a) / 2 at sin a e + cos a f.
+  const float3 e = unit_or(cross(q->direction, axis), (float3)(0.0f)), f = cross(e, axis);
+  const float3 across = out->ng - along * axis;
+  const float turned =
+      q->space && dot(cross(load3(q->space), load3(q->space + 4)), load3(q->space + 8)) < 0.0f ? -1.0f : 1.0f;
+  out->uv = (float2)(u, clamp(0.5f + 0.5f * turned * dot(across, e) / c, 0.0f, 1.0f));
+  const float cosine = dot(unit_or(across, f), f), steep = fabs(cosine) > 1e-3f ? cosine : copysign(1e-3f, cosine);
+  out->dpdv = turned * (2.0f * radius * c / steep) * unit_or(cross(axis, across), (float3)(0.0f));
 }
 
 // Angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.

@@ -18,7 +18,7 @@ static inline LocalSurface surface_shape(uint shape, const SurfaceQuery* q) {
 #undef SHAPE
     default: break;
   }
-  const LocalSurface none = {q->x, q->fallback, q->fallback, (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), 0.0f};
+  const LocalSurface none = {q->x, q->fallback, q->fallback, (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), 0.0f, 0};
   return none;
 }
 

@@ -7,8 +7,9 @@
 
 #include "shapes/surface_local.cl"
 
-// The sphere of `radius` around `center` at q->x projected from its centre. uv about `axis` (unit).
-static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius, float3 axis) {
+// The sphere of `radius` around `center` at q->x projected from its centre. uv about `axis` (unit). end: which of a capsule's
+// it is, 0 or 1.
+static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius, float3 axis, float end) {
   const Frame turn = turn_frame(q->space, axis);
   LocalSurface s;
   s.ng = unit_or(q->x - center, q->fallback);
@@ -19,11 +20,12 @@ static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, fl
   // v rises from the pole against the axis to the one along it.
   s.dpdv = CAPLET_PI * radius * unit_or(axis - dot(axis, s.ng) * s.ng, (float3)(0.0f));
   s.error = CAPLET_EPS * (32.0f * radius + 4.0f * norm1(s.p));
+  if (any_chain && q->chain_u) chain_uv(q, axis, end, 1.0f, radius, radius, &s);
   return s;
 }
 
 static inline LocalSurface surface_sphere(const SurfaceQuery* q) {
-  return sphere_point(q, sphere_c(q->data), sphere_r(q->data), own_z(q->space));
+  return sphere_point(q, sphere_c(q->data), sphere_r(q->data), own_z(q->space), 0.0f);
 }
 
 #endif

@@ -101,6 +101,7 @@ enum {
 // GeometryRecord.flags
 #define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
 #define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
+#define CAPLET_GEOMETRY_CHAIN 4u           // capsules with u at their ends
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 #define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it

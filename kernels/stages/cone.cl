@@ -29,6 +29,18 @@ static inline void cone_footprint(TexturePlace* place, float3 d, float width, fl
   place->duvdy = (b - mixed * b.yx) / (determinant * (float2)(u_length, v_length));
 }
 
+// The surface point nearest to one beside a hit.
+static inline Surface surface_beside(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray,
+                                     const HitRecord* hit, float3 beside) {
+  RayRecord to = *ray;
+  to.ox = beside.x;
+  to.oy = beside.y;
+  to.oz = beside.z;
+  HitRecord at = *hit;
+  at.t = 0.0f;
+  return surface_at(tree, surfaces, &to, &at);
+}
+
 // How the surface bends at a hit of a ray, over a length of `reach`: the greater change of its normal along two directions across each
 // other, over the way there. Positive where it is convex as seen from the side that ng points to.
 static inline float surface_bend(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit, const Surface* s, float reach) {
@@ -37,20 +49,43 @@ static inline float surface_bend(const Tree* tree, const Surfaces* surfaces, con
 #pragma unroll 1
   for (int i = 0; i < 2; ++i) {
     const float3 along = i == 0 ? frame.s : frame.t;
-    // The surface point nearest to one beside it.
-    const float3 beside = s->p + reach * along;
-    RayRecord to = *ray;
-    to.ox = beside.x;
-    to.oy = beside.y;
-    to.oz = beside.z;
-    HitRecord at = *hit;
-    at.t = 0.0f;
-    const Surface there = surface_at(tree, surfaces, &to, &at);
+    const Surface there = surface_beside(tree, surfaces, ray, hit, s->p + reach * along);
     const float way = dot(there.p - s->p, along);
     const float change = dot(there.ng - s->ng, along);
     if (way > 0.1f * reach && fabs(change) > fabs(bend * way)) bend = change / way;
   }
   return bend;
+}
+
+// dn/du and dn/dv of the shading normal at a hit, by differences from surface points beside it. What a step led to is
+// measured, not taken from its length, so that they are exact for round shapes however long it is; where a triangle ends
+// the step goes back.
+static inline void normal_derivatives(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray,
+                                      const HitRecord* hit, const Surface* s, float3* dndu, float3* dndv) {
+  *dndu = *dndv = (float3)(0.0f);
+  const Frame frame = frame_from_tangent(s->ng, s->dpdu);
+  const float reach = 1024.0f * s->error;  // a normal's rounding is then a thousandth of its change
+  float3 way[2], change[2];
+  way[0] = way[1] = change[0] = change[1] = (float3)(0.0f);
+#pragma unroll 1
+  for (int i = 0; i < 4; ++i) {
+    if (i % 2 == 1 && dot(way[i / 2], way[i / 2]) > 0.5f) continue;
+    const float step = i % 2 == 0 ? reach : -reach;
+    const Surface there = surface_beside(tree, surfaces, ray, hit, s->p + step * (i < 2 ? frame.s : frame.t));
+    way[i / 2] = (there.p - s->p) / step;
+    change[i / 2] = (there.ns - s->ns) / step;
+  }
+  const float aa = dot(way[0], way[0]), ab = dot(way[0], way[1]), bb = dot(way[1], way[1]);
+  const float determinant = aa * bb - ab * ab;
+  if (!(determinant > 1e-6f * aa * bb)) return;
+  // Either derivative of the point is a sum of the two ways, and that of the normal the same sum of the changes.
+  const float ua = dot(s->dpdu, way[0]), ub = dot(s->dpdu, way[1]), va = dot(s->dpdv, way[0]), vb = dot(s->dpdv, way[1]);
+  const float3 of_u = ((ua * bb - ub * ab) * change[0] + (ub * aa - ua * ab) * change[1]) / determinant;
+  const float3 of_v = ((va * bb - vb * ab) * change[0] + (vb * aa - va * ab) * change[1]) / determinant;
+  if (!(norm1(of_u) + norm1(of_v) < INFINITY)) return;
+  // A unit vector changes across itself; differences over one step have a part along it.
+  *dndu = of_u - dot(of_u, s->ns) * s->ns;
+  *dndv = of_v - dot(of_v, s->ns) * s->ns;
 }
 
 // The cone that goes on from a surface it met with `width`, spreading by `spread`: turned by a mirror or an interface that bends, whose

@@ -191,8 +191,13 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (media_passes(g, out, path, material, &ray, &hit)) return;
 #endif
   const int bent = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
-  if (bent) s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv);
-  const Frame frame = frame_from_tangent(s.ns, s.dpdu);
+  if (bent) {
+    float3 dndu = (float3)(0.0f), dndv = dndu;
+    if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
+      normal_derivatives(&g->tree, &g->surfaces, &ray, &hit, &s, &dndu, &dndv);
+    s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv, dndu, dndv);
+  }
+  const Frame frame = frame_from_tangent(s.ns, bsdf_tangent(&g->materials, material, s.dpdu, s.ns, s.along_u));
   const float3 wo_local = to_local(&frame, wo);
   Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);

@@ -24,11 +24,11 @@ static inline float4 checkerboard_texture_at(const TexturePoint* at, __global co
   float checks;
   if (as_uint(mapping[0]) == CAPLET_MAPPING_SOLID) {
     const TextureXYZ c = texture_xyz(at, mapping + 1);
-    const float3 width = fmax(fabs(c.dx), fabs(c.dy));
+    const float3 width = CAPLET_FILTER_SIDES * fmax(fabs(c.dx), fabs(c.dy));
     checks = checks_mean(c.p.x, width.x) * checks_mean(c.p.y, width.y) * checks_mean(c.p.z, width.z);
   } else {
     const TextureST c = texture_st(at, mapping);
-    const float2 width = fmax(fabs(c.dx), fabs(c.dy));
+    const float2 width = CAPLET_FILTER_SIDES * fmax(fabs(c.dx), fabs(c.dy));
     checks = checks_mean(c.st.x, width.x) * checks_mean(c.st.y, width.y);
   }
   const float4 tex1 = values[checkerboard_texture_tex1(data)], tex2 = values[checkerboard_texture_tex2(data)];

@@ -15,7 +15,8 @@ static inline float4 imagemap_texture_at(const TexturePoint* at, __global const 
   __global const ImageRecord* image = at->materials->images + imagemap_texture_image(data);
   const uint filter = imagemap_texture_filter(data), use = imagemap_texture_use(data);
   float4 value = image_filtered(at->materials, image, filter, imagemap_texture_wrap(data), imagemap_texture_maxanisotropy(data),
-                                (float2)(c.st.x, 1.0f - c.st.y), (float2)(c.dx.x, -c.dx.y), (float2)(c.dy.x, -c.dy.y));
+                                (float2)(c.st.x, 1.0f - c.st.y), CAPLET_FILTER_SIDES * (float2)(c.dx.x, -c.dx.y),
+                                CAPLET_FILTER_SIDES * (float2)(c.dy.x, -c.dy.y));
   // A float of a picture in colour is the mean of its channels, or its alpha where it has one.
   if (use == CAPLET_USE_NUMBER && image->channels != 1u)
     value = (float4)(image->channels == 4u ? value.w : (value.x + value.y + value.z) * (1.0f / 3.0f));

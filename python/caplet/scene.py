@@ -66,13 +66,21 @@ class Shape:
         """Of both ends, float32 (n, 2), scene units."""
         return np.stack([self._part(2), self._part(3)], axis=1)
 
-    def set(self, p0=None, p1=None, radius=None):
-        """Other capsules: what is not given stays. Shapes as in Scene.add_capsules; their number may change with all three."""
+    @property
+    def u(self):
+        """Of capsules of a chain: what the texture coordinate u is at p0 and at p1, float32 (n, 2); none of others, (0, 2)."""
+        return self._part(5)
+
+    def set(self, p0=None, p1=None, radius=None, u=None):
+        """Other capsules: what is not given stays. Shapes as in Scene.add_capsules; their number may change with all three (materials and u,
+        where it is not given, then go)."""
         now = self._scene._native.capsule_arrays(self.number)
-        one, two, ends, more, count = _capsules(now[0] if p0 is None else p0, now[1] if p1 is None else p1,
-                                                np.stack(now[2:4], axis=1) if radius is None else radius)
+        one, two, ends, more, given, count = _capsules(now[0] if p0 is None else p0, now[1] if p1 is None else p1,
+                                                       np.stack(now[2:4], axis=1) if radius is None else radius, u=u)
         materials = now[4] if len(now[4]) == count else None
-        self._scene._native.set_capsules(self.number, count, one, two, ends, more, materials)
+        if u is None and len(now[5]) == count:
+            given = now[5]
+        self._scene._native.set_capsules(self.number, count, one, two, ends, more, materials, given)
         self._scene._changed()
 
     def set_material(self, material):
@@ -124,15 +132,16 @@ def _ends(radius):
     return arrays.scalars(array, "radius"), None
 
 
-def _capsules(p0, p1, radius, radius1=None):
+def _capsules(p0, p1, radius, radius1=None, u=None):
     p0, p1 = arrays.rows(p0, "p0", 3), arrays.rows(p1, "p1", 3)
     radius0, other = _ends(radius)
     if radius1 is not None:
         if other is not None:
             raise InputError("radius: of both ends already; leave radius1 out")
         other = arrays.scalars(radius1, "radius1")
-    count = arrays.common(p0=p0, p1=p1, radius=radius0, radius1=other)
-    return p0, p1, radius0, other, count
+    u = None if u is None else arrays.rows(u, "u", 2)
+    count = arrays.common(p0=p0, p1=p1, radius=radius0, radius1=other, u=u)
+    return p0, p1, radius0, other, u, count
 
 
 class Scene:
@@ -458,12 +467,15 @@ class Scene:
         numbers = np.array([self._material(base.with_color(tuple(map(float, one)))) for one in colors], dtype=np.uint32)
         return int(numbers[0]), np.ascontiguousarray(numbers[which.reshape(-1)])
 
-    def add_capsules(self, p0, p1, radius, radius1=None, *, color=None, material=None, name=None, transform=None, emission=None,
+    def add_capsules(self, p0, p1, radius, radius1=None, *, u=None, color=None, material=None, name=None, transform=None, emission=None,
                      inside=None, outside=None, object=None, reverse_orientation=False):
         """Capsules: the convex hulls of two spheres each, all of them one shape.
 
         p0, p1: (n, 3) or (3,), the ends. radius: one, (n,), or (n, 2) of both ends; radius1: the radius at p1. One of anything
         stands for all. Arrays of float32 and float64 are taken as they lie; scene units.
+
+        u: (n, 2), of capsules that make chains: what the texture coordinate u is at p0 and at p1. It is linear between, and v runs across
+        as it does on pbrt's curves. Without it u runs around each capsule and v along it, from 0 to 1.
 
         color: linear sRGB, (3,) or (n, 3) (more than 4096 different ones are rounded to 1/15 of the square root); of a grey
         diffuse material, or of `material`. material: one of caplet.materials, a name or a number. transform: (4, 4).
@@ -472,9 +484,9 @@ class Scene:
 
         Returns the Shape. In `trace`, "primitive" is the capsule's row.
         """
-        p0, p1, radius0, radius1, count = _capsules(p0, p1, radius, radius1)
+        p0, p1, radius0, radius1, u, count = _capsules(p0, p1, radius, radius1, u)
         material, each = self._colored(color, material, count)
-        number = self._native.add_capsules(count, p0, p1, radius0, radius1, each, self._options(
+        number = self._native.add_capsules(count, p0, p1, radius0, radius1, each, u, self._options(
             name, transform, material, emission, inside, outside, object, reverse_orientation))
         return self._one(number, object)
 

@@ -112,21 +112,23 @@ std::vector<caplet::Transform> transforms_of(const Array& array) {
 }
 
 caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array& radius0, const std::optional<Array>& radius1,
-                                  const std::optional<Array>& materials, std::size_t count) {
+                                  const std::optional<Array>& materials, const std::optional<Array>& u, std::size_t count) {
   caplet::CapsuleArrays out;
   out.p0 = rows_of<3>(p0, count);
   out.p1 = rows_of<3>(p1, count);
   out.radius0 = floats_of(radius0, count);
   if (radius1) out.radius1 = floats_of(*radius1, count);
   if (materials) out.materials = numbers_of(*materials);
+  if (u) out.u = rows_of<2>(*u, count);
   return out;
 }
 
-nb::ndarray<nb::numpy, float, nb::ndim<2>> points_array(const std::vector<std::array<float, 3>>& points) {
-  std::vector<float> flat(3 * points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    std::copy(points[i].begin(), points[i].end(), flat.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  return array_of<float, 2>(std::move(flat), {points.size(), 3});
+template <std::size_t K>
+nb::ndarray<nb::numpy, float, nb::ndim<2>> rows_array(const std::vector<std::array<float, K>>& rows) {
+  std::vector<float> flat(K * rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    std::copy(rows[i].begin(), rows[i].end(), flat.begin() + static_cast<std::ptrdiff_t>(K * i));
+  return array_of<float, 2>(std::move(flat), {rows.size(), K});
 }
 
 nb::ndarray<nb::numpy, double, nb::ndim<2>> transform_array(const caplet::Transform& transform) {
@@ -323,31 +325,32 @@ void bind_scene(nb::module_& m) {
       .def(
           "add_capsules",
           [](Scene& scene, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-             const std::optional<Array>& radius1, const std::optional<Array>& materials, const nb::dict& options) {
+             const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u,
+             const nb::dict& options) {
             const caplet::ShapeOptions given = options_of(options);
             const nb::gil_scoped_release released;
-            return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, count), given);
+            return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, u, count), given);
           },
           nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
-          nb::arg("materials").none(), nb::arg("options"))
+          nb::arg("materials").none(), nb::arg("u").none(), nb::arg("options"))
       .def(
           "set_capsules",
           [](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-             const std::optional<Array>& radius1, const std::optional<Array>& materials) {
+             const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u) {
             const nb::gil_scoped_release released;
-            scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, count));
+            scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, u, count));
           },
           nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
-          nb::arg("materials").none())
+          nb::arg("materials").none(), nb::arg("u").none())
       .def("capsule_arrays",
            [](const Scene& scene, std::uint32_t shape) {
              caplet::CapsuleArrays arrays = scene.capsule_arrays(shape);
              if (arrays.radius1.empty()) arrays.radius1 = arrays.radius0;
              const std::size_t count = arrays.p0.size(), named = arrays.materials.size();
-             return nb::make_tuple(points_array(arrays.p0), points_array(arrays.p1),
+             return nb::make_tuple(rows_array(arrays.p0), rows_array(arrays.p1),
                                    array_of<float, 1>(std::move(arrays.radius0), {count}),
                                    array_of<float, 1>(std::move(arrays.radius1), {count}),
-                                   array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}));
+                                   array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}), rows_array(arrays.u));
            })
       .def(
           "add_mesh",

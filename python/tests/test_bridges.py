@@ -212,6 +212,13 @@ def test_streamlines_are_their_points(name):
     assert len(shape) == sum(len(line) - 1 for line in lines)
     assert np.array_equal(shape.p0, np.concatenate([line[:-1] for line in lines])) and np.array_equal(shape.p1, np.concatenate([line[1:] for line in lines]))
     assert (shape.radius == np.float32(0.2)).all() and len(scene.info["streamline"]) == len(shape)
+    # u rises with the length from 0 to 1 along each.
+    row = 0
+    for line in lines:
+        u, length = shape.u[row:row + len(line) - 1], np.linalg.norm(np.diff(line.astype(float), axis=0), axis=1)
+        assert u[0, 0] == 0 and u[-1, 1] == 1 and np.array_equal(u[1:, 0], u[:-1, 1])
+        assert np.allclose(u[:, 1] - u[:, 0], length / length.sum(), atol=1e-6)
+        row += len(line) - 1
 
 
 def test_meshes_are_their_faces(rng):
@@ -467,6 +474,8 @@ def test_neurons_of_morphio():
     first = sections[0]
     assert np.array_equal(scene["neurites"].p0[0], first.points[0]) and scene.info["type"][0] == int(first.type)
     assert np.allclose(scene["neurites"].radius[0], first.diameters[:2] / 2)
+    u = scene["neurites"].u[:len(first.points) - 1]
+    assert u[0, 0] == 0 and u[-1, 1] == 1 and np.array_equal(u[1:, 0], u[:-1, 1]) and (u[:, 0] <= u[:, 1]).all()
     assert scene["soma"].radius[0, 0] == pytest.approx(neuron.soma.diameters[0] / 2)
     # What the program reads has these segments, and those to the soma.
     own = caplet.load(path)

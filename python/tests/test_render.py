@@ -29,6 +29,23 @@ def equal(a, b):
     return all(np.array_equal(a[name].view(np.uint32), b[name].view(np.uint32)) for name in a.channels)
 
 
+def test_a_scene_without_shapes_is_its_sky():
+    scene = caplet.Scene()
+    scene.add_light(lights.infinite(L=(2, 2, 2)))
+    scene.size = 16, 16
+    image = caplet.render(scene, spp=256)
+    assert abs(image.rgb.mean() - 2) < 0.02 and not image.alpha.any()  # 65,536 samples of four wavelengths: 0.003
+    assert (scene.bounds[0] > scene.bounds[1]).all()
+    report = caplet.verify(scene)
+    assert report.agrees and "nothing to verify" in report.text
+    scene.camera = cameras.perspective(eye=(0, 0, 5), target=(0, 0, 0), fov=40)
+    assert not (caplet.trace(scene, [[0, 0, 5]], [[0, 0, -1]])["t"] < np.inf).any()
+    scene.add_spheres((0, 0, 0), 1)
+    assert caplet.render(scene, spp=4).alpha.any()
+    with pytest.raises(caplet.InputError, match="no shapes, no light and no camera"):
+        caplet.render(caplet.Scene())
+
+
 def test_layers_are_arrays(ball):
     image = caplet.render(ball, spp=64)
     assert image.size == (32, 24) and image.shape == (24, 32) and image.spp == 64 and image.samples == [(0, 64)]
@@ -216,7 +233,7 @@ def test_the_interpreters_lock_is_released(ball, work, tmp_path):
     (tmp_path / "big.capsules").write_text("<0, 0, 0> <1, 0, 0> 0.5\n" * 100_000)
     calls = {"render": lambda: held.render(64, None, None), "trace": lambda: picker.nearest(n, origins, directions, *ends, out),
              "all": lambda: picker.crossings(n, origins, directions, *ends, 16), "pick": lambda: picker.pixel(1, 1),
-             "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, {}),
+             "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, None, {}),
              "load": lambda: caplet._caplet.load(str(tmp_path / "big.capsules"), {})}
     ticks, inside, stop = [0], [False], threading.Event()
 

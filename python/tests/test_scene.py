@@ -27,6 +27,24 @@ def test_capsules_are_the_arrays():
     assert np.array_equal(shape.radius, [[1, 0.5], [2, 0.5], [3, 0.5], [4, 0.5]])
 
 
+def test_u_of_chains():
+    scene = caplet.Scene()
+    shape = scene.add_capsules([[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [3, 0, 0]], 0.1, u=[[0, 0.25], [0.25, 1]])
+    assert shape.u.dtype == np.float32 and np.array_equal(shape.u, [[0, 0.25], [0.25, 1]])
+    # Down from above, 0.05 beside the axis: ray x axis is -y, and 1/2 - 0.05 / 0.2.
+    hits = caplet.trace(scene, [[0.5, 0.05, 1], [2, 0, 1]], [0, 0, -1])
+    assert np.allclose(hits["uv"], [[0.125, 0.25], [0.625, 0.5]], atol=1e-6)
+    shape.set(radius=0.2)
+    assert np.array_equal(shape.u, [[0, 0.25], [0.25, 1]])
+    shape.set(u=(0, 1))
+    assert np.array_equal(shape.u, [[0, 1], [0, 1]])
+    assert scene.add_capsules((0, 0, 0), np.eye(3), 1).u.shape == (0, 2)
+    with pytest.raises(caplet.InputError, match="u has 3 entries"):
+        scene.add_capsules(np.zeros((2, 3)), np.ones((2, 3)), 1, u=np.zeros((3, 2)))
+    with pytest.raises(caplet.InputError, match="u"):
+        scene.add_capsules((0, 0, 0), (1, 0, 0), 1, u=(0, np.nan))
+
+
 @pytest.mark.parametrize("given", [
     lambda a: a.astype(np.float32), lambda a: a.astype(np.float64), lambda a: a.astype(np.int32), lambda a: a.astype(np.float16),
     lambda a: a.astype(">f8"), lambda a: a.astype(np.longdouble), lambda a: np.asfortranarray(a), lambda a: np.repeat(a, 2, axis=0)[::2],

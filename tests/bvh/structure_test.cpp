@@ -113,6 +113,13 @@ TEST(Structure, OneReferenceIsARootWithALeaf) {
   EXPECT_EQ(tree.leaves.size(), 1u);
 }
 
+TEST(Structure, NoReferencesAreARootWithoutChildren) {
+  const Tree tree = check({});
+  EXPECT_EQ(tree.nodes.size(), 1u);
+  EXPECT_TRUE(tree.leaves.empty() && tree.order.empty());
+  EXPECT_EQ(tree.sah, 0);
+}
+
 TEST(Structure, SameTreeForOneAndTwoThreads) {
   const auto boxes = random_boxes(150000, 2, 0.01f);
   Tree one, two;

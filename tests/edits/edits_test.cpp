@@ -60,6 +60,8 @@ Shape random_capsules(Random& random, std::size_t count, double reach) {
   for (std::size_t i = 0; i < count; ++i) {
     if (i % 4 != 3) last = random_capsule(random, reach);
     add(capsules, last, static_cast<std::uint32_t>(i % 3));
+    const double u0 = random.uniform(0, 1), u1 = random.uniform(0, 2);
+    capsules.u.emplace_back(u0, u1);
   }
   Shape shape;
   shape.geometry = std::move(capsules);
@@ -105,7 +107,7 @@ ObjectBegin "lamp"
 ObjectEnd
 ObjectBegin "twig"
   Shape "capsule" "point3 p0" [ 0 0 0 ] "point3 p1" [ 0 0 1 ] "float radius" [ 0.08 ]
-  Shape "capsule" "point3 p0" [ 0 0 0 ] "point3 p1" [ 0 0 1 ] "float radius" [ 0.08 ]
+  Shape "capsule" "point3 p0" [ 0 0 0 ] "point3 p1" [ 0 0 1 ] "float radius" [ 0.08 ] "float u" [ 0.25 0.5 ]
   Scale 1 1 2
   Shape "sphere" "float radius" [ 0.2 ]
 ObjectEnd

@@ -126,6 +126,43 @@ TEST(EmbreeCurves, CubicOnesAreWithinTheirBound) {
     same("<" + name + ">" + kPoints + "<indices>0</indices></" + name + ">", read("bspline"));
 }
 
+// Curves that go on where the one before ends are one strand: u runs over all of them, the same from curve to curve.
+TEST(EmbreeCurves, UGoesOverStrands) {
+  const auto of = [](const std::string& basis, const std::string& indices) {
+    std::string points;
+    for (int i = 0; i < 9; ++i) points += std::to_string(i) + (i % 2 ? " 0.5 0 .1 " : " 0 0 .1 ");
+    return capsules("<Curves type=\"round\" basis=\"" + basis + "\"><positions>" + points + "</positions><indices>" + indices +
+                    "</indices></Curves>");
+  };
+  const CapsulesShape lines = of("linear", "0 1 2 4");
+  ASSERT_EQ(lines.u.size(), 4u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_FLOAT_EQ(lines.u[i].x, static_cast<float>(i) / 3);
+    EXPECT_FLOAT_EQ(lines.u[i].y, static_cast<float>(i + 1) / 3);
+  }
+  EXPECT_EQ(lines.u[3], glm::vec2(0, 1));
+  // Two strands of two and one curves, by the points at which the curves of each basis go on.
+  for (const auto& [basis, indices] :
+       {std::pair("bezier", "0 3 5"), std::pair("bspline", "0 1 5"), std::pair("catmull_rom", "0 1 5")}) {
+    const CapsulesShape all = of(basis, indices);
+    ASSERT_EQ(all.u.size(), all.p0.size());
+    std::vector<float> begins;
+    int halves = 0;
+    for (std::size_t i = 0; i < all.u.size(); ++i) {
+      EXPECT_LT(all.u[i].x, all.u[i].y);
+      const float before = i == 0 ? 1 : all.u[i - 1].y;
+      if (all.u[i].x == 0)
+        begins.push_back(before);
+      else
+        EXPECT_EQ(all.u[i].x, before) << basis << i;
+      halves += all.u[i].y == 0.5F;
+    }
+    EXPECT_EQ(begins, (std::vector<float>{1, 1})) << basis;
+    EXPECT_EQ(all.u.back().y, 1);
+    EXPECT_EQ(halves, 2) << basis;  // where the first strand's curves meet, and half way along the second
+  }
+}
+
 TEST(EmbreeCurves, EndsOfSplinesAreWhereThePointIsNan) {
   // 2 p1 - p2 in place of p0: the curve begins at p1.
   const std::string file = "e.xml";

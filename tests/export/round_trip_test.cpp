@@ -282,13 +282,15 @@ TEST(OurStatements, CapsulesInLists) {
       "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n";
   const Scene scene = scene_of(world + materials + R"(NamedMaterial "a"
 Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
-1 1 0] "float radius" [0.1 0.2] "float radius1" [0.1 0.3] "string capsulematerials" ["" "b"] "integer materialindices" [1 0])");
+1 1 0] "float radius" [0.1 0.2] "float radius1" [0.1 0.3] "string capsulematerials" ["" "b"] "integer materialindices" [1 0] "float u" [0 0.5
+0.5 -2])");
   const auto& read = std::get<CapsulesShape>(scene.shapes[0].geometry);
   EXPECT_EQ(read.p0, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}}));
   EXPECT_EQ(read.p1, (std::vector<glm::vec3>{{0, 1, 0}, {1, 1, 0}}));
   EXPECT_EQ(read.radius0, (std::vector<float>{0.1f, 0.2f}));
   EXPECT_EQ(read.radius1, (std::vector<float>{0.1f, 0.3f}));
   EXPECT_EQ(read.materials, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(read.u, (std::vector<glm::vec2>{{0, 0.5f}, {0.5f, -2}}));
   const auto said = [&](const std::string& parameters) {
     try {
       scene_of(world + materials + "Shape \"capsules\" \"point3 p0\" [0 0 0 1 0 0] " + parameters);
@@ -302,12 +304,39 @@ Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
   EXPECT_THAT(said("\"point3 p1\" [0 1 0] \"float radius\" [1 1]"), HasSubstr("has 1 points for 2"));
   EXPECT_THAT(said(ends + "\"float radius\" [1]"), HasSubstr("has 1 values for 2 capsules"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 -1]"), HasSubstr("must not be negative"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2]"), HasSubstr("\"u\" takes two values a capsule, 4, not 3"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2 1e20]"), HasSubstr("\"u\" is too large a number"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\""),
               HasSubstr("needs \"integer materialindices\""));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\" \"integer materialindices\" [0 1]"),
               HasSubstr("must be below"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"c\" \"integer materialindices\" [0 0]"),
               HasSubstr("\"c\" is not defined"));
+}
+
+TEST(OurStatements, OneCapsuleOfAChain) {
+  const Scene scene = scene_of(
+      world + "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 1 0] \"float radius\" 0.1 \"float u\" [0.1 0.7]");
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).u, (std::vector<glm::vec2>{{0.1f, 0.7f}}));
+  EXPECT_THAT(text_of(scene, "/tmp"), HasSubstr("\"float u\" [0.1 0.7]"));
+}
+
+// A curve, whose chain may be one capsule or many, as a shape, in an object, and as an operand.
+TEST(RoundTrip, CurvesKeepTheirU) {
+  const Scene scene = scene_of(world + R"(
+Shape "curve" "point3 P" [0 0 0 1 2 0 2 2 0 3 0 0 4 1 2 5 0 1 6 0 0] "float width0" 0.3 "float width1" 0.1
+Shape "curve" "point3 P" [0 0 1 1 0 1 2 0 1 3 0 1] "float width" 0.3
+ObjectBegin "straight" Shape "curve" "point3 P" [0 0 2 1 0 2 2 0 2 3 0 2] "float width" 0.3 ObjectEnd
+ObjectBegin "ball" Shape "sphere" ObjectEnd
+Shape "csg" "string operation" "union" "string operands" ["straight" "ball"]
+ObjectInstance "straight"
+)");
+  const auto& curve = std::get<CapsulesShape>(scene.shapes[0].geometry);
+  ASSERT_GT(curve.u.size(), 4u);
+  const Scene read = scene_of(text_of(scene, "/tmp"));
+  EXPECT_EQ(std::get<CapsulesShape>(read.shapes[0].geometry).u, curve.u);
+  EXPECT_EQ(std::get<CapsulesShape>(read.shapes[1].geometry).u, (std::vector<glm::vec2>{{0, 1}}));
+  EXPECT_EQ(different_buffers(scene, read), "");
 }
 
 TEST(OurStatements, InverseTransformIsNotComputed) {

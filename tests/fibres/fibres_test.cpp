@@ -111,6 +111,16 @@ TEST(Hair, SegmentsThicknessAndColours) {
   EXPECT_EQ(std::get<CapsulesShape>(colored.shapes.at(0).geometry).radius0[1], 2.0F);
 }
 
+TEST(Hair, UIsTheLengthAlongEachStrand) {
+  Writer arrays;
+  arrays.put(std::uint16_t{2}).put(std::uint16_t{1}).put(std::uint16_t{2});
+  for (const float x : {0.0F, 1.0F, 4.0F, 0.0F, 2.0F, 5.0F, 5.0F, 5.0F}) arrays.put(x).put(1.0F).put(0.0F);
+  const Scene scene = scene_of("u.hair", hair_file(3, 8, 3, arrays));
+  const auto& capsules = std::get<CapsulesShape>(scene.shapes.at(0).geometry);
+  // 1 of 4; a strand of one piece; one without length, by its points.
+  EXPECT_EQ(capsules.u, (std::vector<glm::vec2>{{0, 0.25F}, {0.25F, 1}, {0, 1}, {0, 0.5F}, {0.5F, 1}}));
+}
+
 /// How far a component of a capsule's colour is from the file's at most, of so many capsules with random colours, or with those
 /// of a line from black to white; and the number of materials.
 std::pair<double, std::size_t> worst_color(std::uint32_t count, bool is_line) {

@@ -86,6 +86,8 @@ inline void check_scene(const Scene& scene) {
         require(count > 0 && capsules->p1.size() == count && capsules->radius0.size() == count);
         require(capsules->radius1.empty() || capsules->radius1.size() == count);
         require(capsules->materials.empty() || capsules->materials.size() == count);
+        require(capsules->u.empty() || capsules->u.size() == count);
+        for (const glm::vec2& u : capsules->u) require(std::isfinite(u.x) && std::isfinite(u.y));
         for (std::size_t i = 0; i < count; ++i) {
           const float radius0 = capsules->radius0[i], radius1 = capsules->radius1.empty() ? radius0 : capsules->radius1[i];
           require(radius0 >= 0 && radius1 >= 0 && std::max(radius0, radius1) > 0);
@@ -100,7 +102,6 @@ inline void check_scene(const Scene& scene) {
       }
     }
   };
-  require(!scene.shapes.empty() || !scene.instances.empty());
   check_shapes(scene.shapes);
   for (const Object& object : scene.objects) check_shapes(object.shapes);
   for (const Instance& instance : scene.instances) require(instance.object < scene.objects.size());

@@ -111,6 +111,7 @@ decltype(Shape::geometry) ModelMaker::geometry(unsigned kind) {
       out.p1 = {small_point()};
       out.radius0 = {static_cast<float>(numbers_.length())};
       if (kind == 2) out.radius1 = {static_cast<float>(numbers_.length())};
+      if (numbers_.below(2) == 0) out.u = {glm::vec2{numbers_.coordinate(), numbers_.coordinate()}};
       return out;
     }
     case 3: {

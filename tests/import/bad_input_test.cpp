@@ -83,7 +83,7 @@ const Bad bad_scenes[] = {
     {"ShapeBeforeWorld", "Shape \"sphere\"\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:1: Shape is only allowed after WorldBegin"},
     {"NoWorld", "Camera \"perspective\"", "scene.pbrt: the scene is empty: there is no WorldBegin"},
-    {"EmptyScene", "Camera \"perspective\"\nWorldBegin\n# nothing", "scene.pbrt: the scene is empty: it has no shapes"},
+    {"EmptyScene", "WorldBegin\n# nothing", "scene.pbrt: the scene is empty: it has no shapes, no light and no camera"},
     {"MissingInclude", "WorldBegin\nInclude \"no-such.pbrt\"\nShape \"sphere\"", "scene.pbrt:2:9: no-such.pbrt: no such file"},
     {"MissingMesh", "WorldBegin\nShape \"plymesh\" \"string filename\" \"no-such.ply\"",
      "scene.pbrt:2:17: no-such.ply: no such file"},

@@ -428,6 +428,21 @@ TEST_P(Curves, StayWithinTheToleranceOfTheCurve) {
     expect_near(dvec3(chain.p0.front()), at(0), tolerance);
     expect_near(dvec3(chain.p1.back()), at(1), tolerance);
     for (std::size_t i = 1; i < chain.p0.size(); ++i) EXPECT_EQ(chain.p0[i], chain.p1[i - 1]);
+    // u is the parameter of each cubic, of which pbrt-v4 makes a curve: from 0 to 1, the same at both sides of each joint.
+    ASSERT_EQ(chain.u.size(), chain.p0.size());
+    std::size_t segment = 0;
+    for (std::size_t i = 0; i < chain.u.size(); ++i) {
+      if (i > 0 && chain.u[i].x == 0) {
+        EXPECT_EQ(chain.u[i - 1].y, 1);
+        ++segment;
+      } else {
+        EXPECT_EQ(chain.u[i].x, i == 0 ? 0 : chain.u[i - 1].y);
+      }
+      const double share = (static_cast<double>(segment) + static_cast<double>(chain.u[i].y)) / static_cast<double>(segments);
+      expect_near(dvec3(chain.p1[i]), at(std::min(share, 1 - 1e-12)), 1e-10 * size + 0x1p-23 * size);
+    }
+    EXPECT_EQ(segment + 1, segments);
+    EXPECT_EQ(chain.u.back().y, 1);
     EXPECT_EQ(chain.radius0.front(), static_cast<float>(width0 / 2));
     EXPECT_EQ(chain.radius1.empty(), width0 == width1);
     if (!chain.radius1.empty()) {
@@ -455,8 +470,22 @@ TEST(Curves, TypesAreAllRoundTubes) {
     ASSERT_EQ(chain.p0.size(), 1u);
     EXPECT_EQ(chain.p1[0], glm::vec3(3, 0, 0));
     EXPECT_EQ(chain.radius0[0], 0.25f);
+    EXPECT_EQ(chain.u, (std::vector<glm::vec2>{{0, 1}}));
   }
   EXPECT_EQ(count_primitives(scene), (std::map<std::string, std::uint64_t>{{"capsule", 3}}));
+}
+
+TEST(Curves, UGoesOverAllPiecesWhereThatIsAskedFor) {
+  const std::string curve =
+      "Shape \"curve\" \"string urange\" \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 0 0 7 0 0 8 0 0 9 0 0]";
+  const Scene scene = world_of(curve);
+  const auto& chain = geometry_of<CapsulesShape>(scene);
+  // Three straight pieces of even speed.
+  EXPECT_EQ(chain.u, (std::vector<glm::vec2>{{0, 1.0f / 3}, {1.0f / 3, 2.0f / 3}, {2.0f / 3, 1}}));
+  EXPECT_THAT(
+      complaints(
+          "Camera \"perspective\"\nWorldBegin\nShape \"curve\" \"string urange\" \"all\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]"),
+      testing::ElementsAre(testing::HasSubstr("\"urange\" must be \"piece\" or \"curve\", not \"all\"")));
 }
 
 TEST(Curves, OfOnePointAreSpheres) {

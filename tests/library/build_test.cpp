@@ -284,6 +284,16 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   const auto hit = session.nearest(caplet::Ray{{0, 9, 0}, {0, -1, 0}, 0, 100});
   ASSERT_TRUE(hit);
   EXPECT_FLOAT_EQ(hit->t, 7);
+  // With u at their ends: a quarter up the tube from y = 0 to 1. Scenes that come to have chains get kernels that know of them.
+  balls.u = {{0, 2}};
+  EXPECT_THROW(scene.set_capsules(0, balls), caplet::InputError);
+  balls.u.push_back({2, 3});
+  scene.set_capsules(0, balls);
+  EXPECT_EQ(scene.capsule_arrays(0).u, balls.u);
+  session.update(scene);
+  const auto side = session.nearest(caplet::Ray{{0, 0.25, 9}, {0, 0, -1}, 0, 100});
+  ASSERT_TRUE(side);
+  EXPECT_FLOAT_EQ(side->uv[0], 0.5F);
   caplet::Scene box;
   box.add_shape("box", {{"p0", std::array<double, 3>{0, 0, 0}}, {"p1", std::array<double, 3>{1, 1, 1}}});
   EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);

@@ -125,21 +125,22 @@ __kernel void chances(SCENE, __global const float* at, __global float* out, uint
 }
 )";
 
-Program& program_of(const Device& device, const RowMasks& rows, bool has_tree) {
-  static std::map<std::pair<RowMasks, bool>, Program> built;
-  const auto found = built.find({rows, has_tree});
+Program& program_of(const Device& device, const RowMasks& rows, const FlatScene& scene) {
+  static std::map<std::pair<RowMasks, std::string>, Program> built;
+  const std::string options =
+      fmt::format("-DCAPLET_REAL_WIDTH={}{}{}", test_width(), scene.light_nodes.empty() ? "" : " -DCAPLET_LIGHT_TREE",
+                  scene.has_chains ? " -DCAPLET_CHAINS" : "");
+  const auto found = built.find({rows, options});
   if (found != built.end()) return found->second;
   return built
-      .emplace(std::pair(rows, has_tree), Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows),
-                                                               fmt::format("-DCAPLET_REAL_WIDTH={}{}", test_width(),
-                                                                           has_tree ? " -DCAPLET_LIGHT_TREE" : "")))
+      .emplace(std::pair(rows, options), Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows), options))
       .first->second;
 }
 
 }  // namespace
 
 LightBench::LightBench(const FlatScene& scene, const RowMasks& rows)
-    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows, !scene.light_nodes.empty())) {}
+    : device_(test_device()), scene_(device_, scene), program_(&program_of(device_, rows, scene)) {}
 
 cl_uint LightBench::bind_scene(cl::Kernel& kernel) {
   cl_uint index = 0;

@@ -219,6 +219,43 @@ TEST(TexturedArea, IsItsImageOverUv) {
   EXPECT_NEAR(found.mean / white(), expected, 4 * found.error / white() + 1e-3 * expected);
 }
 
+// Over a capsule of a chain the image lies as over pbrt's curve: u from end to end, v by where the ray passes the axis.
+TEST(TexturedArea, OfAChainIsItsImageAlongIt) {
+  constexpr double r = 0.3, height = 0.6;
+  CapsulesShape capsule{
+      {{-1, 0, static_cast<float>(height)}}, {{1, 0, static_cast<float>(height)}}, {static_cast<float>(r)}, {}, {}, {{0, 1}}};
+  Shape shape;
+  shape.geometry = capsule;
+  shape.emission = AreaEmission{};
+  shape.emission->image = picture_image(2, 2, grey(corners));
+  LightBench bench(lower(scene_of(shape)));
+  const dvec3 p(0.4, -0.2, 0);
+  const Estimate found = irradiance(bench, p, up);
+  const auto radiance = [&](const dvec3& x) {
+    const double offset = glm::dot(p - dvec3(0, 0, height), glm::normalize(glm::cross(x - p, dvec3(1, 0, 0))));
+    return bilinear(corners, std::clamp(0.5 + 0.5 * x.x, 0.0, 1.0), 0.5 + offset / (2 * r));
+  };
+  double expected = 0;
+  constexpr int steps = 1000;
+  const auto add = [&](const dvec3& x, const dvec3& n, double area) {
+    const dvec3 to = x - p;
+    const double squared = glm::dot(to, to), here = -glm::dot(to, n), there = to.z;
+    if (here > 0 && there > 0) expected += radiance(x) * here * there / (squared * squared) * area;
+  };
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const double phi = 2 * pi * (i + 0.5) / steps, share = (j + 0.5) / steps;
+      const dvec3 side(0, std::cos(phi), std::sin(phi)), middle(0, 0, height);
+      add(middle + dvec3(2 * share - 1, 0, 0) + r * side, side, 2 * 2 * pi * r / (steps * steps));
+      for (const double end : {-1, 1}) {  // caps, by height along the axis, over which areas are even
+        const dvec3 n = end * share * dvec3(1, 0, 0) + std::sqrt(1 - share * share) * side;
+        // On a cap v is by the distance from the axis over the radius, wherever on it the ray comes to.
+        add(middle + dvec3(end, 0, 0) + r * n, n, 2 * pi * r * r / (steps * steps));
+      }
+    }
+  EXPECT_NEAR(found.mean / white(), expected, 4 * found.error / white() + 1e-3 * expected);
+}
+
 TEST(TexturedArea, PowerIsThatOfTheImagesMean) {
   Shape shape = lamp();
   const double area = glm::length(glm::cross(dvec3(2, 0, 0.5), dvec3(0, 1, 0)));

@@ -122,6 +122,13 @@ TEST(Traces, GoThroughTheAlphaCarbons) {
   // ATOM 2 CA THR A 1 and ATOM 324 CA ASN A 46 of the file.
   EXPECT_EQ(tube.p0.front(), glm::vec3(16.967F, 12.784F, 4.338F));
   for (std::size_t i = 1; i < tube.p0.size(); ++i) EXPECT_EQ(tube.p0[i], tube.p1[i - 1]);
+  // u is the same from residue to residue.
+  ASSERT_EQ(tube.u.size(), tube.p0.size());
+  for (std::size_t i = 0; i < tube.u.size(); ++i) {
+    EXPECT_FLOAT_EQ(tube.u[i].y, static_cast<float>(i + 1) / (6 * 45));
+    EXPECT_EQ(tube.u[i].x, i == 0 ? 0 : tube.u[i - 1].y);
+  }
+  EXPECT_EQ(tube.u.back().y, 1);
   const Molecule molecule = read_pdb(bytes_of(test::data_folder() / "mol/pdb/1crn.pdb"), "1crn.pdb", {});
   const auto alpha = [&](std::size_t r) {
     return molecule.atoms[static_cast<std::size_t>(molecule.residues[r].trace_atom)].position;

@@ -181,6 +181,25 @@ TEST(SwcSegments, UntaperedFilesHoldOneRadius) {
   EXPECT_TRUE(capsules.radius1.empty());
 }
 
+TEST(SwcSegments, UIsTheLengthAlongEachBranch) {
+  const auto near = [](const std::vector<glm::vec2>& found, const std::vector<glm::vec2>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_FLOAT_EQ(found[i].x, expected[i].x) << i;
+      EXPECT_FLOAT_EQ(found[i].y, expected[i].y) << i;
+    }
+  };
+  // From the soma 2, 1 and 3 long to a fork; from there 1, and 1 and 2.
+  const CapsulesShape capsules = capsules_of(import_text(
+      "1 1 0 0 0 1 -1\n2 3 2 0 0 .2 1\n3 3 3 0 0 .2 2\n4 3 6 0 0 .2 3\n5 3 6 1 0 .2 4\n6 3 7 0 0 .2 4\n7 3 9 0 0 .2 6\n"));
+  near(capsules.u, {{0, 1.0F / 3}, {1.0F / 3, 0.5F}, {0.5F, 1}, {0, 1}, {0, 1.0F / 3}, {1.0F / 3, 1}});
+  EXPECT_EQ(capsules.u[1].x, capsules.u[0].y);
+  // A soma of two segments and one neurite that goes on from it, children before parents.
+  near(capsules_of(import_text("5 3 9 0 0 .2 4\n4 3 5 0 0 .2 3\n3 1 4 0 0 2 2\n2 1 3 0 0 2 1\n1 1 0 0 0 2 -1\n")).u,
+       {{0.2F, 1}, {0, 0.2F}, {0.75F, 1}, {0, 0.75F}});
+  near(capsules_of(import_text("1 2 5 5 5 2 -1\n2 2 5 5 5 1 1\n")).u, {{0, 1}});
+}
+
 TEST(SwcSegments, KeepZeroLengths) {
   const CapsulesShape capsules = capsules_of(import_text("1 2 5 5 5 2 -1\n2 2 5 5 5 1 1\n"));
   ASSERT_EQ(capsules.p0.size(), 1U);

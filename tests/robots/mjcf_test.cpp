@@ -165,6 +165,27 @@ TEST(Mjcf, KeyframesHaveTheNumbersOfAllJoints) {
   expect_near(at(free.shapes[0]), {0, 1, 7});
 }
 
+// Mocap bodies stand where a keyframe's mpos and mquat put them, each by its own numbers in the order of the bodies; a quarter
+// turn about x takes y to z, one about z takes x to y.
+TEST(Mjcf, KeyframesPlaceMocapBodies) {
+  const std::string text =
+      R"(<worldbody><body mocap="true" pos="9 9 9"><geom size=".1" pos="0 1 0"/></body><body pos="5 5 5"><geom size=".1"/></body>
+<body mocap="true"><geom size=".1" pos="1 0 0"/></body></worldbody>
+<keyframe><key name="k" mpos="1 2 3 40 50 60" mquat="1 1 0 0 2 0 0 2"/><key name="first" mpos="1 2 3"/></keyframe>)";
+  const Scene scene = scene_of_text(text, {{{"pose", "k"}}});
+  expect_near(at(scene.shapes[0]), {1, 2, 4});
+  expect_near(at(scene.shapes[1]), {5, 5, 5});
+  expect_near(at(scene.shapes[2]), {40, 51, 60});
+  // Without: as written.
+  const Scene written = scene_of_text(text);
+  expect_near(at(written.shapes[0]), {9, 10, 9});
+  expect_near(at(written.shapes[2]), {1, 0, 0});
+  // Numbers for the first alone leave the second where it is.
+  const Scene first = scene_of_text(text, {{{"pose", "first"}}});
+  expect_near(at(first.shapes[0]), {1, 3, 3});
+  expect_near(at(first.shapes[2]), {1, 0, 0});
+}
+
 TEST(Mjcf, FilesAreIncludedWhereTheyAreNamed) {
   const std::string part = test::write_file("part.xml", "<mujocoinclude><geom name='a' size='1'/></mujocoinclude>").string();
   const std::string settings =
@@ -302,6 +323,7 @@ TEST(Mjcf, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_THAT(said("<worldbody><geom size='1' class='x'/></worldbody>"), HasSubstr("no default class 'x'"));
   EXPECT_THAT(said("<worldbody><ball/></worldbody>"), HasSubstr("a body has no 'ball'"));
   EXPECT_THAT(said("<worldbody/>"), HasSubstr("holds no geoms"));
+  EXPECT_THAT(said("<option/>"), HasSubstr("robot.xml:1:2: holds no geoms"));
   EXPECT_THAT(said("<compiler coordinate='global'/>"), HasSubstr("only 'local'"));
   EXPECT_THAT(said("<default class='x'/>"), HasSubstr("'main'"));
   EXPECT_THAT(said("<default><default class='x'/><default class='x'/></default>"), HasSubstr("was there before"));

@@ -49,6 +49,43 @@ TEST(Urdf, JointsTurnAboutTheirAxis) {
   EXPECT_THAT(complaint([] { scene_of_text(arm, {{{"pose", "j"}}}); }), HasSubstr("JOINT=VALUE"));
 }
 
+// A chain of slides along x: b is moved itself, c follows b, and d follows c (wiki.ros.org/urdf/XML/joint: multiplier times the
+// other's value plus offset).
+TEST(Urdf, MimicJointsFollowOthers) {
+  const auto slide = [](const std::string& name, const std::string& child, const std::string& mimic,
+                        const std::string& type = "prismatic") {
+    return "<joint name='" + name + "' type='" + type + "'><parent link='a'/><child link='" + child + "'/>" + mimic + "</joint>";
+  };
+  const auto robot = [&](const std::string& of_c, const std::string& of_d, const std::string& type = "prismatic") {
+    std::string text = "<robot><link name='a'><visual><geometry><box size='1 1 1'/></geometry></visual></link>";
+    for (const char* name : {"b", "c", "d"})
+      text += std::string("<link name='") + name + "'><visual><geometry><sphere radius='.1'/></geometry></visual></link>";
+    return text + slide("jb", "b", "") + slide("jc", "c", of_c) + slide("jd", "d", of_d, type) + "</robot>";
+  };
+  const auto places = [&](const std::string& text, const std::string& pose) {
+    ImportOptions options{{{"up", "y"}}};
+    if (!pose.empty()) options.set("pose", pose);
+    std::vector<double> out;
+    const Scene scene = scene_of_text(text, options);
+    for (const char* name : {"b", "c", "d"})
+      for (const Shape& shape : scene.shapes)
+        if (shape.name == name) out.push_back(at(shape, {0, 0, 0}).x);
+    return out;
+  };
+  const std::string half = "<mimic joint='jb' multiplier='-0.5' offset='0.25'/>", same = "<mimic joint='jc'/>";
+  using Places = std::vector<double>;
+  EXPECT_EQ(places(robot(half, same), "jb=3"), (Places{3, -1.25, -1.25}));
+  // The joint that is followed stands at 0, but the offset is there.
+  EXPECT_EQ(places(robot(half, same), ""), (Places{0, 0.25, 0.25}));
+  EXPECT_EQ(places(robot(half, same), "jc=2"), (Places{0, 2, 2}));  // posed itself: it follows no more
+  EXPECT_EQ(places(robot("<mimic joint='jb'/>", "<mimic joint='jc' multiplier='3'/>"), "jb=1"), (Places{1, 1, 3}));
+  const auto said = [&](const std::string& text) { return complaint([&] { places(text, ""); }); };
+  EXPECT_THAT(said(robot("<mimic joint='nobody'/>", same)),
+              testing::AllOf(HasSubstr("robot.urdf:1:"), HasSubstr("follows 'nobody'")));
+  EXPECT_THAT(said(robot("<mimic joint='jd'/>", same)), HasSubstr("in a circle"));
+  EXPECT_THAT(said(robot(half, same, "fixed")), HasSubstr("of type 'fixed' is not moved"));
+}
+
 TEST(Urdf, GroupsAreOnChoice) {
   const Scene scene = scene_of_text(arm, {{{"groups", "collision"}}});
   ASSERT_EQ(scene.shapes.size(), 1U);

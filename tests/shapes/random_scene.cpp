@@ -19,6 +19,17 @@ std::vector<glm::vec2> own_uvs(double r) {
   return {{0.1f, 0.2f}, {0.9f, -0.3f}, {-0.2f, 2}, {1.5f, 2.5f}};
 }
 
+void keep_first(CapsulesShape& capsules) {
+  const auto keep = [](auto& values) {
+    if (values.size() > 1) values.erase(values.begin() + 1, values.end());
+  };
+  keep(capsules.p0);
+  keep(capsules.p1);
+  keep(capsules.radius0);
+  keep(capsules.radius1);
+  keep(capsules.u);
+}
+
 }  // namespace
 
 decltype(Shape::geometry) SceneMaker::geometry(int kind) {
@@ -29,7 +40,13 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
     case 0:
       return SphereShape{r};
     case 1:
-      return CapsulesShape{{a, b}, {b, c}, {0.3f * f, 0.2f * f}, {0.3f * f, 0.4f * f}, {}};
+      // Of chains, half of them.
+      return CapsulesShape{{a, b},
+                           {b, c},
+                           {0.3f * f, 0.2f * f},
+                           {0.3f * f, 0.4f * f},
+                           {},
+                           r < 0.6 ? std::vector<glm::vec2>{} : std::vector<glm::vec2>{{-0.5f, f}, {f, 3}}};
     case 2:
       return TriangleMeshShape{{a, b, c, -a}, {{0, 1, 2}, {1, 2, 3}}, {}, own_uvs(r)};
     case 3:
@@ -54,9 +71,10 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
     default: {
       CsgShape csg;
       csg.operation = static_cast<CsgShape::Operation>(below(3));
-      for (const int operand : {0, 7, 8}) {
+      for (const int operand : {0, 7, 8, 1}) {
         auto one = std::make_shared<Shape>();
         one->geometry = geometry(operand);
+        if (auto* capsules = std::get_if<CapsulesShape>(&one->geometry)) keep_first(*capsules);
         one->world_from_object = glm::translate(dmat4(1), 0.3 * r * direction());
         one->material = static_cast<std::uint32_t>(below(20));
         csg.operands.push_back(one);

@@ -93,14 +93,15 @@ FlatScene lower_shapes(std::vector<Shape> shapes) {
 
 namespace {
 
-cl::Kernel kernel_of(const char* name, int width) {
-  static std::map<int, Program> programs;
-  auto found = programs.find(width);
+cl::Kernel kernel_of(const char* name, int width, bool has_chains) {
+  static std::map<std::pair<int, bool>, Program> programs;
+  const std::pair key{width, has_chains};
+  auto found = programs.find(key);
   if (found == programs.end()) {
-    const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
+    const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width) + (has_chains ? " -DCAPLET_CHAINS" : "");
     found = programs
-                .emplace(width, Program::from_source(test_device(), "scene probe",
-                                                     flatten_kernels(std::string(scene_parameters) + kernel_text), options))
+                .emplace(key, Program::from_source(test_device(), "scene probe",
+                                                   flatten_kernels(std::string(scene_parameters) + kernel_text), options))
                 .first;
   }
   return found->second.kernel(name);
@@ -109,7 +110,7 @@ cl::Kernel kernel_of(const char* name, int width) {
 }  // namespace
 
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
-  cl::Kernel kernel = kernel_of("scene_trace", width);
+  cl::Kernel kernel = kernel_of("scene_trace", width, scene.has_chains);
   const Buffer<SceneHit> hits(test_device(), rays.size());
   const SceneOnDevice buffers(test_device(), scene, width);
   const auto ray_buffer = upload(test_device(), rays);
@@ -119,7 +120,7 @@ std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>
 }
 
 std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most) {
-  cl::Kernel kernel = kernel_of("scene_walk", test_width());
+  cl::Kernel kernel = kernel_of("scene_walk", test_width(), scene.has_chains);
   const Buffer<WalkStep> steps(test_device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(test_device(), rays.size());
   const SceneOnDevice buffers(test_device(), scene, test_width());

@@ -97,6 +97,7 @@ TEST(Scenes, OfTurnedFacesAndBalls) {
     if (i % 3 == 0) shape.geometry = TriangleMeshShape{{a, b, c, d}, {{0, 1, 2}, {1, 2, 3}}, normals, {}};
     if (i % 3 == 1) shape.geometry = BilinearMeshShape{{a, b, c, d}, {{0, 1, 2, 3}}, normals, {}};
     if (i % 3 == 2) shape.geometry = CapsulesShape{{a, b}, {a, b + 0.1f * c}, {0.6f, 0.5f}, {0.3f, 0.9f}, {}};
+    if (i % 6 == 5) std::get<CapsulesShape>(shape.geometry).u = {{0.25f, 0.5f}, {0.5f, 2}};
     scene.shapes.push_back(shape);
   }
   Tally tally;

@@ -134,6 +134,28 @@ TEST(Uv, Meshes) {
   expect_uv(patch, {4 * uv.x, 2 * uv.y, 3 * uv.x * uv.y}, 0, uv);
 }
 
+// A tapered capsule of a chain: u is that of the ball that touches there, v by the ray's distance from the axis.
+TEST(Uv, OfChains) {
+  // Radii 1 and 0.5 over a length of 1.3: the sine of the taper is 5 / 13, its cosine 12 / 13.
+  const Capsule capsule{{0, 0, 0}, {1.3, 0, 0}, 1, 0.5, dvec2(2, 4)};
+  const double sine = 5.0 / 13, cosine = 12.0 / 13, s = 0.25, r = 1 - 0.5 * s;
+  const dvec3 x(1.3 * s + r * sine, 0, r * cosine);
+  const auto expect = [&](const dvec3& at, const dvec3& direction, const dvec2& expected) {
+    const dvec2 found = uv_at(capsule, at, 0, direction);
+    EXPECT_NEAR(found.x, expected.x, 1e-12);
+    EXPECT_NEAR(found.y, expected.y, 1e-12);
+  };
+  expect(x, {0, 0, -2}, {2.5, 0.5});
+  // A ray down and to -y: down x axis is -y, and it passes the axis r cos 45 from it, at +y.
+  expect(x, {0, -1, -1}, {2.5, 0.5 - 0.5 * std::sqrt(0.5)});
+  expect(x, {3, 0, 0}, {2.5, 0.5});  // along the axis
+  expect({-1, 0, 0}, {0, 0, -1}, {2, 0.5});
+  expect({-0.6, 0.8 * cosine * 0.5, 0.5}, {0, 0, -1}, {2, 0.5 - 0.8 / 4});
+  expect({1.8, 0, 0}, {0, 0, -1}, {4, 0.5});
+  EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 1, 1, dvec2(2, 4)}, {1, 0, 0}, 0, {-1, 0, 0}).x, 2);
+  EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0.1, 0, 0}, 0.2, 1, dvec2(2, 4)}, {1.1, 0, 0}, 0, {-1, 0, 0}).x, 4);
+}
+
 TEST(Uv, OfScenes) {
   Scene scene;
   Shape mesh;
@@ -150,7 +172,7 @@ TEST(Uv, OfScenes) {
   SceneHit hit;
   const auto expect = [&](std::size_t index, const dvec3& point, const dvec2& expected) {
     hit.index = index;
-    const dvec2 found = witness.uv(hit, point);
+    const dvec2 found = witness.uv(hit, point, {});
     EXPECT_NEAR(found.x, expected.x, 1e-12);
     EXPECT_NEAR(found.y, expected.y, 1e-12);
   };
@@ -158,7 +180,7 @@ TEST(Uv, OfScenes) {
   expect(1, {0.5, 0.25, 0}, {1.5, 1.25});
   expect(2, {0, 0, 6}, {0.25, 0.5});  // its y axis is up, its z axis is -y
   hit.index = 2;
-  EXPECT_NEAR(witness.uv(hit, {0, -1, 5}).y, 1, 1e-12);
+  EXPECT_NEAR(witness.uv(hit, {0, -1, 5}, {}).y, 1, 1e-12);
 }
 
 }  // namespace

@@ -141,8 +141,12 @@ TextureTrial imagemap_texture_trial() {
            {0.5, 0.5, 0.46875},  // between four
            {0, 0.25, 0.75},      // between the first and the last: it repeats
            {-0.75, 5.25, 0.5},
-           // What is as wide as both texels is their mean, of all four.
-           {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {1, 0}, {0, 0.01f}}}};
+           // Looks are over twice the sides: what is as wide, or as high, as both texels is their mean, of all four.
+           {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0.5f, 0}, {0, 0.01f}},
+           {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0, 0.5f}, {0.01f, 0}},
+           {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0, 0.01f}, {0.5f, 0}},
+           {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0.01f, 0}, {0, 0.5f}},
+           {0.25, 0.25, 0.5, {}, {0, 0, 1}, {}, {}, {0.24f, 0}, {0, 0.24f}}}};
 }
 
 // Amounts by the cosine of the normal and the direction: 0.6 (0.5) + 0.4 (0.125) and so on.
@@ -159,20 +163,38 @@ TextureTrial directionmix_texture_trial() {
 }
 
 // Cells about (0, 1) and (3, 2) have a dot, those about (0, 0) and (1, 1) have none: by the noise at their corners, worked out
-// apart. The dot about (5, 5) has its centre at (4.9993, 5.0013).
+// apart, as is how far dots are moved: the dot about (5, 5) has its centre at (4.9993, 5.0013), that about (19, 37) is moved by
+// (-0.09756, 0.10598), that about (10, 18) by (-0.09539, -0.06783), that about (-2, -5) by (-0.07636, 0.11315). Of these a point
+// 0.345 away on each side is inside and one 0.355 away is not.
 TextureTrial dots_texture_trial() {
   DotsTexture dots;
   dots.inside = 0.75;
   dots.outside = operand_of(0);
   dots.mapping.uscale = 2;
   return {{floats(board()), floats(dots)},
-          {{0.01, 0.93, 0.75},     // (0.02, 0.93); the centre is (0.0256, 0.9342)
-           {0.01, 0.601, 0.75},    // 0.333 below it
-           {0.01, 0.565, 0.5},     // 0.369 below it, in the board's even square
-           {0.05, 0.02, 0.5},      // no dot
-           {0.5, 1.02, 0.125},     // none about (1, 1); the odd square
-           {2.49, 5.345, 0.75},    // 0.344 above the centre
-           {2.49, 5.36, 0.125}}};  // 0.359; (2.49, 5.36) is in an odd square
+          {{0.01, 0.93, 0.75},           // (0.02, 0.93); the centre is (0.0256, 0.9342)
+           {0.01, 0.601, 0.75},          // 0.333 below it
+           {0.01, 0.565, 0.5},           // 0.369 below it, in the board's even square
+           {0.05, 0.02, 0.5},            // no dot
+           {0.5, 1.02, 0.125},           // none about (1, 1); the odd square
+           {2.49, 5.345, 0.75},          // 0.344 above the centre
+           {2.49, 5.36, 0.125},          // 0.359; (2.49, 5.36) is in an odd square
+           {9.623721, 37.105984, 0.75},  // (18.902442 + 0.345, 37.105984)
+           {9.628721, 37.105984, 0.5},   // 0.355; (9, 37)
+           {9.278721, 37.105984, 0.75},
+           {9.273721, 37.105984, 0.5},
+           {9.451221, 37.450984, 0.75},
+           {9.451221, 37.460984, 0.5},
+           {9.451221, 36.760984, 0.75},
+           {9.451221, 36.750984, 0.125},  // (9, 36)
+           {5.124807, 17.932168, 0.75},   // (9.904614 + 0.345, 17.932168)
+           {5.129807, 17.932168, 0.5},    // (5, 17)
+           {4.952307, 18.277168, 0.75},
+           {4.952307, 18.287168, 0.5},    // (4, 18)
+           {-0.865680, -4.886848, 0.75},  // (-2.076361 + 0.345, -4.886848)
+           {-0.860680, -4.886848, 0.5},   // (-1, -5)
+           {-1.038180, -5.231848, 0.75},
+           {-1.038180, -5.241848, 0.5}}};  // (-2, -6)
 }
 
 // Noise at three points by another program (Perlin's definition with pbrt-v4's gradients): its sum over one octave is itself.

@@ -20,7 +20,7 @@ namespace caplet::test {
 namespace {
 
 // Measured with footprints and without, and between the two.
-constexpr double far_floor_error = 0.0045, ball_error = 0.0019;
+constexpr double far_floor_error = 0.006, ball_error = 0.003;
 
 const char* const kernel_text = R"CL(
 #include "bsdf/bsdf.cl"
@@ -419,10 +419,18 @@ TEST(Images, HaveMipLevelsOfTheirMeans) {
   map.filter = CAPLET_FILTER_TRILINEAR;
   TextureTrial::Value at{0.5 / 8, 0.5 / 8, 0};
   EXPECT_EQ(number_of(map, at), 1);  // the bottom row's first
-  at.duvdx = {0.25f, 0};             // two texels: the first level
-  EXPECT_EQ(number_of(map, at), 0.5f);
-  at.duvdx = {std::sqrt(2.f) / 8, 0};  // half way to it
-  EXPECT_NEAR(number_of(map, at), 0.75, 1e-6);
+  // Looks are over twice the sides: two texels, the first level, along either side and in either direction; half way to it.
+  for (const bool is_x : {true, false})
+    for (const bool is_u : {true, false}) {
+      const auto along = [&](float way) {
+        at.duvdx = at.duvdy = {0, 0};
+        (is_x ? at.duvdx : at.duvdy)[is_u ? 0 : 1] = way;
+        return number_of(map, at);
+      };
+      EXPECT_EQ(along(0.125f), 0.5f);
+      EXPECT_EQ(along(-0.125f), 0.5f);
+      EXPECT_NEAR(along(std::sqrt(2.f) / 16), 0.75, 1e-6);
+    }
   at.duvdx = {100, 0};
   EXPECT_EQ(number_of(map, at), 0.5f);
   map.image = image_of(3, 5, 1, {0, 0.5f, 1, 0, 0.5f, 1, 0, 0.5f, 1, 0, 0.5f, 1, 0, 0.5f, 1});
@@ -436,7 +444,7 @@ TEST(Images, EwaKeepsWhatOneSideIsNarrowEnoughFor) {
   ImagemapTexture map;
   map.image = image_of(8, 8, 1, stripes);
   TextureTrial::Value at{1.5 / 8, 0.5, 0};
-  at.duvdy = {0, 1};
+  at.duvdy = {0, 0.5f};
   map.filter = CAPLET_FILTER_BILINEAR;
   EXPECT_EQ(number_of(map, at), 0.625f);
   map.filter = CAPLET_FILTER_EWA;
@@ -450,6 +458,43 @@ TEST(Images, EwaKeepsWhatOneSideIsNarrowEnoughFor) {
   map.maxanisotropy = 8;
   EXPECT_GT(number_of(map, at), 0.05f);
   EXPECT_LT(number_of(map, at), 0.5f);
+  // The same of columns, along u.
+  for (int i = 0; i < 64; ++i) rows[static_cast<std::size_t>(i)] = i % 8 < 2 ? 1.f : 0.f;
+  map.image = image_of(8, 8, 1, rows);
+  at = {0.5, 1.5 / 8, 0};
+  at.duvdx = {0.5f, 0};
+  EXPECT_GT(number_of(map, at), 0.05f);
+  EXPECT_LT(number_of(map, at), 0.5f);
+}
+
+// Alpha is a share whatever the colours' encoding: 0 and 255 are clear and opaque, 128 is 0.502, not the 0.216 of a colour. So it
+// is in the first level, in smaller ones, and in images whose sides are resampled.
+TEST(Images, HaveTheirAlphaAsAShare) {
+  const auto rgba = [](int width, int height, const std::vector<std::uint8_t>& alpha) {
+    auto image = std::make_shared<TextureImage>();
+    image->width = width;
+    image->height = height;
+    image->channels = 4;
+    for (const std::uint8_t a : alpha)
+      for (const std::uint8_t byte : {std::uint8_t{200}, std::uint8_t{100}, std::uint8_t{50}, a}) image->bytes.push_back(byte);
+    for (int i = 0; i < 256; ++i) {
+      const double x = i / 255.0;  // sRGB, IEC 61966-2-1
+      image->decoded[static_cast<std::size_t>(i)] =
+          static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+    }
+    return image;
+  };
+  ImagemapTexture map;
+  map.filter = CAPLET_FILTER_TRILINEAR;
+  map.image = rgba(2, 2, {128, 64, 255, 26});
+  EXPECT_NEAR(number_of(map, 0.25, 0.75), 128 / 255.0, 1e-6);
+  EXPECT_NEAR(number_of(map, 0.75, 0.75), 64 / 255.0, 1e-6);
+  EXPECT_NEAR(number_of(map, 0.75, 0.25), 26 / 255.0, 1e-6);
+  TextureTrial::Value wide{0.5, 0.5, 0};
+  wide.duvdx = {8, 0};
+  EXPECT_NEAR(number_of(map, wide), (128 + 64 + 255 + 26) / 4 / 255.0, 0.5 / 255 + 1e-6);  // rounded to a byte
+  map.image = rgba(3, 1, {128, 128, 128});
+  EXPECT_NEAR(number_of(map, 0.5, 0.5), 128 / 255.0, 0.5 / 255 + 1e-6);
 }
 
 TEST(Images, AreOnTheDeviceOnceForEachWrap) {
@@ -548,7 +593,7 @@ TEST(Mappings, HaveTheirCoordinates) {
 }
 
 // As wide as one square, about its middle, a footprint sees that square alone, as wide as two both as much: along each
-// coordinate.
+// coordinate. Boards are means over twice the sides of what is seen.
 TEST(Mappings, ChangeAlongTheSidesOfWhatIsSeen) {
   constexpr float pi = 3.14159265f;
   struct Side {
@@ -572,7 +617,7 @@ TEST(Mappings, ChangeAlongTheSidesOfWhatIsSeen) {
       const std::uint32_t step = step_of({{{board, true, "t", {}}}, {}, 0, "step"}, flat);
       TextureTrial::Value at{0, 0, 0, side.p};
       const auto seen = [&](float share) {
-        for (std::size_t k = 0; k < 3; ++k) (is_x ? at.dpdx : at.dpdy)[k] = share * side.one[k];
+        for (std::size_t k = 0; k < 3; ++k) (is_x ? at.dpdx : at.dpdy)[k] = 0.5f * share * side.one[k];
         return look_up(flat, at, every_kind, step).step[0];
       };
       EXPECT_NEAR(seen(0.999f), 1, 1e-5);
@@ -596,8 +641,8 @@ TEST(Checkerboards, AreTheMeanOfWhatIsSeen) {
                                                                      {0.5, 0.5, 2, 2},
                                                                      {0.5, 0.5, 1, 1}}) {
     TextureTrial::Value at{u, v, 0};
-    at.duvdx = {static_cast<float>(w), 0};
-    at.duvdy = {0, static_cast<float>(h)};
+    at.duvdx = {static_cast<float>(0.5 * w), 0};
+    at.duvdy = {0, static_cast<float>(0.5 * h)};
     const auto mean = [](double x, double width) {
       int odd = 0;
       for (int i = 0; i < 100'000; ++i) odd += static_cast<int>(std::floor(x + ((i + 0.5) / 100'000 - 0.5) * width)) & 1;
@@ -737,8 +782,8 @@ constexpr const char* far_floor =
     "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
     "Shape \"bilinearmesh\" \"point3 P\" [-900 -900 0  900 -900 0  -900 900 0  900 900 0]\n";
 
-// Squares to the horizon: few samples are near what many say, by less than a third of what points are off (without footprints
-// 0.0136; with them 0.0018).
+// Squares to the horizon: few samples are near what many say, by less than half of what points are off (without footprints
+// 0.0136; with them 0.0034).
 TEST(TexturedPictures, OfAFarFloorDoNotAlias) {
   const LayeredImage few = render_model(scene_of_text(far_floor), 16).image,
                      many = render_model(scene_of_text(far_floor), 1024).image;
@@ -747,7 +792,7 @@ TEST(TexturedPictures, OfAFarFloorDoNotAlias) {
   EXPECT_LT(error, far_floor_error);
 }
 
-// The same floor in a mirror ball: cones spread where it bends (0.0014; where they do not, 0.0023).
+// The same floor in a mirror ball: cones spread where it bends (0.0024; where they do not, 0.0036; without footprints 0.0105).
 TEST(TexturedPictures, OfAFarFloorInABall) {
   const std::string text =
       std::string(far_floor) +

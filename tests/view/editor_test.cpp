@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "live_pictures.h"
+#include "view/detail/scene_text.h"
 
 namespace caplet::view {
 namespace {
@@ -119,6 +120,22 @@ TEST(Editor, DuplicatesAndDeletes) {
   EXPECT_EQ(picture_of(live), first);
 }
 
+// What is left is the sky; pages look at the unit ball's place.
+TEST(Editor, DeletesEverything) {
+  LiveScene live(some_scene());
+  Editor editor(live);
+  const std::vector<std::uint64_t> first = picture_of(live);
+  editor.make(Delete{{0, 1, 2, 3, 4, 5, 6}});
+  EXPECT_TRUE(live.scene().shapes.empty() && live.scene().instances.empty());
+  EXPECT_EQ(picture_of(live), fresh_picture_of(live.scene()));
+  const auto bounds = scene_text(live.scene(), "", 1).at("bounds");
+  EXPECT_EQ(bounds, nlohmann::ordered_json::parse("[[-1.0,-1.0,-1.0],[1.0,1.0,1.0]]"));
+  EXPECT_TRUE(editor.undo());
+  EXPECT_EQ(picture_of(live), first);
+  EXPECT_TRUE(editor.redo());
+  EXPECT_NE(picture_of(live), first);
+}
+
 TEST(Editor, RefusesWhatCannotBe) {
   LiveScene live(some_scene());
   Editor editor(live);
@@ -134,7 +151,6 @@ TEST(Editor, RefusesWhatCannotBe) {
   EXPECT_THAT([&] { editor.make(Paint{{1}, 0, 9}); }, ThrowsMessage<InputError>(HasSubstr("material")));
   EXPECT_THAT([&] { editor.make(Paint{{1}, 5, 0}); }, ThrowsMessage<InputError>(HasSubstr("surface")));
   EXPECT_THROW(editor.make(Paint{{5}, std::nullopt, 0}), InputError);
-  EXPECT_THROW(editor.make(Delete{{0, 1, 2, 3, 4, 5, 6}}), InputError);
   EXPECT_FALSE(editor.can_undo());
   EXPECT_EQ(live.scene().shapes.size(), 5u);
   EXPECT_EQ(picture_of(live), first);

@@ -22,15 +22,20 @@ class CubicChain {
  public:
   explicit CubicChain(CapsulesShape& out) : out_(out) {}
   void start(const glm::dvec4& p);
-  void add(const CubicTube& c, double tolerance) { add(c, tolerance, 0); }
+  /// The chords' u run from u0 to u1 as the cubic's parameter does from 0 to 1.
+  void add(const CubicTube& c, double tolerance, double u0, double u1);
 
  private:
-  void add(const CubicTube& c, double tolerance, int depth);
-  void add_chord(const glm::dvec4& to);
+  struct Part {
+    CubicTube c;
+    double u0, u1;
+  };
+  void add(const Part& part, double tolerance, int depth);
+  void add_chord(const glm::dvec4& to, double u);
 
   CapsulesShape& out_;
   glm::vec3 p_{0};
-  float radius_ = 0;
+  float radius_ = 0, u_ = 0;
 };
 
 }  // namespace caplet

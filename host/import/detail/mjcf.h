@@ -112,6 +112,7 @@ class Model {
 
   /// The sections of this name.
   std::vector<pugi::xml_node> sections(std::string_view name) const;
+  pugi::xml_node root() const { return root_; }
   const Class* root_class() const { return &classes_.at("main"); }
   /// The class that `node` names by `attribute`, or `otherwise`.
   const Class* class_of(pugi::xml_node node, const char* attribute, const Class* otherwise) const;

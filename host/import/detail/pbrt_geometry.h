@@ -77,6 +77,8 @@ Type read_fields(Parameters& parameters) {
 Geometry make_sphere(Parameters& parameters);
 DiskShape make_disk(Parameters& parameters);
 CapsulesShape make_capsule(Parameters& parameters);
+/// "float u": two a capsule, at p0 and at p1; none where it is not there or wrong (reported).
+std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules);
 /// The capsules of a statement's own lists.
 CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index);
 /// With "p0" or "p1" ours, otherwise pbrt's open one.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "import/detail/cubic_chain.h"
 #include "import/detail/embree.h"
@@ -119,6 +120,7 @@ class CurveSet {
       else
         curve(first);
     }
+    end_strand();
     return shapes(look);
   }
 
@@ -128,7 +130,7 @@ class CurveSet {
       file_.fail(node_, fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
     if (type != "sphere") notes_.add("points that are discs are drawn as balls", file_.place(node_));
     points_ = rows4(file_, first_list(node_, "positions", file_, notes_), false);
-    for (const dvec4& p : points_) segment(p, p);
+    for (const dvec4& p : points_) segment(p, p, {});
     return shapes(look);
   }
 
@@ -141,7 +143,8 @@ class CurveSet {
     return p;
   }
 
-  void segment(const dvec4& a, const dvec4& b) {
+  /// u: at both ends, where it is part of a curve.
+  void segment(const dvec4& a, const dvec4& b, const std::optional<glm::vec2>& u) {
     if (!(a.w > 0) && !(b.w > 0)) {
       if (a.w < 0 || b.w < 0) file_.fail(node_, "a radius is negative");
       notes_.add("what has no thickness is left out", file_.place(node_));
@@ -152,6 +155,7 @@ class CurveSet {
     capsules_.p1.emplace_back(b);
     capsules_.radius0.push_back(static_cast<float>(a.w));
     capsules_.radius1.push_back(static_cast<float>(b.w));
+    if (u) capsules_.u.push_back(*u);
   }
 
   /// Bezier control points.
@@ -169,8 +173,19 @@ class CurveSet {
     return {(p0 + 4.0 * p1 + p2) / 6.0, (2.0 * p1 + p2) / 3.0, (p1 + 2.0 * p2) / 3.0, (p1 + 4.0 * p2 + p3) / 6.0};
   }
 
+  /// The curves so far that each begin at the point where the one before ends are one strand: u runs over all of them.
+  void end_strand() {
+    for (std::size_t i = strand_begin_; i < capsules_.u.size(); ++i)
+      capsules_.u[i] = glm::vec2(glm::dvec2(capsules_.u[i]) / static_cast<double>(strand_curves_));
+    strand_begin_ = capsules_.u.size();
+    strand_curves_ = 0;
+  }
+
   void curve(std::size_t first) {
-    if (basis_ == Basis::linear) return segment(point(first), point(first + 1));
+    if (first != strand_next_) end_strand();
+    strand_next_ = first + (basis_ == Basis::bezier ? 3 : 1);
+    const auto u0 = static_cast<double>(strand_curves_++);
+    if (basis_ == Basis::linear) return segment(point(first), point(first + 1), glm::vec2(u0, u0 + 1));
     const CubicTube c = tube(first);
     glm::dvec3 low(c[0]), high(c[0]);
     double widest = 0;
@@ -182,9 +197,10 @@ class CurveSet {
     CapsulesShape chords;
     CubicChain chain(chords);
     chain.start(c[0]);
-    chain.add(c, std::max(2e-3 * widest, 1e-5 * glm::length(high - low)));
+    chain.add(c, std::max(2e-3 * widest, 1e-5 * glm::length(high - low)), u0, u0 + 1);
     for (std::size_t i = 0; i < chords.p0.size(); ++i)
-      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]));
+      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]),
+              chords.u[i]);
   }
 
   /// Bits of flags: a neighbour at the first, and at the second end, where there is no cap then.
@@ -226,6 +242,8 @@ class CurveSet {
   Basis basis_ = Basis::linear;
   std::vector<dvec4> points_, tangents_;
   CapsulesShape capsules_;
+  std::size_t strand_begin_ = 0, strand_curves_ = 0;  // its first capsule, and how many curves it has so far
+  std::size_t strand_next_ = 0;                       // the point at which its next curve would begin
   std::vector<Geometry> cones_;
 };
 

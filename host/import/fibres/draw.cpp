@@ -140,6 +140,16 @@ class Colors {
   std::vector<std::uint32_t> keys_;  // a colour in steps of 1/255
 };
 
+/// How far along a fibre its points are, from 0 to 1: by length, or by their number where it has none.
+std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
+  std::vector<double> way(count, 0);
+  for (std::size_t i = 1; i < count; ++i) way[i] = way[i - 1] + glm::length(glm::dvec3(points[i]) - glm::dvec3(points[i - 1]));
+  std::vector<float> out(count, 0);
+  for (std::size_t i = 1; i < count; ++i)
+    out[i] = static_cast<float>(way.back() > 0 ? way[i] / way.back() : static_cast<double>(i) / static_cast<double>(count - 1));
+  return out;
+}
+
 struct Usual {
   float radius = 0;  // 0: by the extent
   ColorBy color = ColorBy::direction;
@@ -185,6 +195,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   std::size_t begin = 0;
   for (std::size_t f = 0; f < fibres.ends.size(); ++f) {
     const std::size_t end = fibres.ends[f];
+    const std::vector<float> u = shares_along(fibres.points.data() + begin, end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       // A fibre of one point is a ball.
       const std::size_t next = i + 1 < end ? i + 1 : i;
@@ -213,6 +224,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
       capsules.p1.push_back(p1);
       capsules.radius0.push_back(radius_at(i));
       capsules.radius1.push_back(radius_at(next));
+      capsules.u.emplace_back(u[i - begin], u[next - begin]);
       tapered |= capsules.radius0.back() != capsules.radius1.back();
     }
     begin = end;

@@ -107,6 +107,11 @@ struct Part {
     capsules.materials.push_back(material);
     tapered |= r0 != r1;
   }
+  /// Of a tube: u at both ends.
+  void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material, const glm::vec2& u) {
+    add(p0, p1, r0, r1, material);
+    capsules.u.push_back(u);
+  }
 };
 
 class Drawing {
@@ -208,11 +213,15 @@ class Drawing {
     if (run.empty()) return;
     if (run.size() == 1) {
       const float radius = tube_radius(*run[0]);
-      part(*run[0], " trace").add(run[0]->position, run[0]->position, radius, radius, painter_.material(*run[0]));
+      part(*run[0], " trace").add(run[0]->position, run[0]->position, radius, radius, painter_.material(*run[0]), glm::vec2(0));
       return;
     }
     const auto at = [&run](std::ptrdiff_t i) {
       return run[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(run) - 1))]->position;
+    };
+    // The same from residue to residue.
+    const auto u_at = [&run](std::ptrdiff_t i, int step) {
+      return (static_cast<float>(i) + static_cast<float>(step) / kTraceSteps) / static_cast<float>(std::ssize(run) - 1);
     };
     for (std::ptrdiff_t i = 0; i + 1 < std::ssize(run); ++i) {
       const Atom &a = *run[static_cast<std::size_t>(i)], &b = *run[static_cast<std::size_t>(i) + 1];
@@ -227,7 +236,9 @@ class Drawing {
                                            (3.0F * p1 - p0 - 3.0F * p2 + p3) * (t * t * t));
         const glm::vec3 p = step == kTraceSteps ? p2 : on_curve;
         const float radius = r1 + (r2 - r1) * t;
-        part(a, " trace").add(before, p, radius_before, radius, painter_.material(2 * step <= kTraceSteps ? a : b));
+        part(a, " trace")
+            .add(before, p, radius_before, radius, painter_.material(2 * step <= kTraceSteps ? a : b),
+                 {u_at(i, step - 1), u_at(i, step)});
         before = p;
         radius_before = radius;
       }

@@ -103,8 +103,7 @@ class Reader {
     bodies_["world"] = glm::dmat4(1);
     contents(worlds, scope, glm::dmat4(1));
     values_.finish();
-    if (robot_.geoms.empty())
-      throw InputError({model_.place(model_.sections("worldbody").empty() ? pugi::xml_node() : worlds[0])}, "holds no geoms");
+    if (robot_.geoms.empty()) throw InputError(model_.place(worlds.empty() ? model_.root() : worlds[0]), "holds no geoms");
     for (const auto& [light, target] : aimed_) aim(robot_.lights[light].direction, robot_.lights[light].position, target);
     for (const auto& [camera, target] : watching_) look(robot_.cameras[camera].world, target);
     tendons(scope);

@@ -26,7 +26,7 @@ class UrdfReader {
       if (!links.emplace(link.attribute("name").value(), link).second) fail(link, "a link of this name was there before");
     if (links.empty()) fail(root, "holds no links");
     std::multimap<std::string, pugi::xml_node> joints;
-    std::set<std::string> children, moved;
+    std::set<std::string> children;
     for (const pugi::xml_node joint : root.children("joint")) {
       const std::string parent = joint.child("parent").attribute("link").value();
       const std::string child = joint.child("child").attribute("link").value();
@@ -34,14 +34,14 @@ class UrdfReader {
       if (!links.contains(child)) fail(joint, "its child link '" + child + "' is none of the file");
       if (!children.insert(child).second) fail(joint, "the link '" + child + "' has another parent");
       joints.emplace(parent, joint);
-      moved.insert(joint.attribute("name").value());
+      joints_.emplace(joint.attribute("name").value(), joint);
     }
     if (pose_.keyframe)
       throw InputError({"--pose"}, "'" + *pose_.keyframe + "' is not JOINT=VALUE, and the file has no keyframes");
     for (const auto& [name, values] : pose_.joints)
       if (values.size() != 1)
         throw InputError({"--pose"}, name + ": one number is needed");
-      else if (!moved.contains(name))
+      else if (!joints_.contains(name))
         throw InputError({"--pose"}, "the file has no joint '" + name + "'");
     std::vector<std::pair<std::string, glm::dmat4>> open;
     for (const auto& [name, link] : links)
@@ -86,28 +86,34 @@ class UrdfReader {
     out = glm::rotate(out, rpy.y, {0.0, 1.0, 0.0});
     return glm::rotate(out, rpy.x, {1.0, 0.0, 0.0});
   }
+  /// What the pose says of a joint, or of the one that it follows; 0 where that says nothing. `followers`: joints that follow it.
+  double joint_value(pugi::xml_node joint, std::size_t followers = 0) const {
+    const auto own = pose_.joints.find(joint.attribute("name").value());
+    if (own != pose_.joints.end()) return own->second[0];
+    const pugi::xml_node mimic = joint.child("mimic");
+    if (!mimic) return 0;
+    const auto other = joints_.find(mimic.attribute("joint").value());
+    if (other == joints_.end())
+      fail(mimic, "it follows '" + std::string(mimic.attribute("joint").value()) + "', no joint of the file");
+    if (followers == joints_.size()) fail(mimic, "joints follow each other in a circle");
+    const auto number = [&](const char* name, double otherwise) {
+      return mimic.attribute(name) ? numbers(mimic, name, 1)[0] : otherwise;
+    };
+    return number("multiplier", 1) * joint_value(other->second, followers + 1) + number("offset", 0);
+  }
   glm::dmat4 joint_pose(pugi::xml_node joint) const {
     const glm::dmat4 at = origin(joint);
-    double value = 0;
-    const auto own = pose_.joints.find(joint.attribute("name").value());
-    if (own != pose_.joints.end()) {
-      value = own->second[0];
-    } else if (const pugi::xml_node mimic = joint.child("mimic")) {
-      const auto other = pose_.joints.find(mimic.attribute("joint").value());
-      if (other == pose_.joints.end()) return at;
-      const auto number = [&](const char* name, double otherwise) {
-        return mimic.attribute(name) ? numbers(mimic, name, 1)[0] : otherwise;
-      };
-      value = number("multiplier", 1) * other->second[0] + number("offset", 0);
-    }
+    const double value = joint_value(joint);
     if (value == 0) return at;
     const std::string_view type = joint.attribute("type").value();
     const glm::dvec3 axis = vector(joint.child("axis"), "xyz", {1, 0, 0});
     if (!(glm::length(axis) > 0)) fail(joint, "its axis has no length");
     if (type == "revolute" || type == "continuous") return glm::rotate(at, value, glm::normalize(axis));
     if (type == "prismatic") return glm::translate(at, value * glm::normalize(axis));
-    throw InputError({"--pose"}, std::string(joint.attribute("name").value()) + ": a joint of type '" + std::string(type) +
-                                     "' is not moved by one number");
+    const std::string message = "a joint of type '" + std::string(type) + "' is not moved by one number";
+    const std::string name = joint.attribute("name").value();
+    if (pose_.joints.contains(name)) throw InputError({"--pose"}, name + ": " + message);
+    fail(joint, message);
   }
 
   void add_link(pugi::xml_node link, const glm::dmat4& world) {
@@ -175,6 +181,7 @@ class UrdfReader {
   const Pose& pose_;
   Robot out_;
   std::map<std::string, glm::dvec4> colors_;
+  std::map<std::string, pugi::xml_node> joints_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 //
 // Capsules in lists: what a .capsules file holds, within the statement.
 #include <algorithm>
+#include <cmath>
 
 #include "import/detail/pbrt_geometry.h"
 
@@ -54,6 +55,27 @@ void read_materials(Parameters& parameters, const MaterialIndex& material_index,
 
 }  // namespace
 
+std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules) {
+  const Parameter* given = parameters.values("u", {"float"});
+  if (!given) return {};
+  const std::vector<double>& numbers = given->numbers;
+  if (numbers.size() != 2 * capsules) {
+    parameters.error("u",
+                     "takes two values a capsule, " + std::to_string(2 * capsules) + ", not " + std::to_string(numbers.size()));
+    return {};
+  }
+  std::vector<glm::vec2> out;
+  out.reserve(capsules);
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    if (!(std::abs(numbers[i]) <= largest_length && std::abs(numbers[i + 1]) <= largest_length)) {
+      parameters.error("u", "is too large a number (above 1e18)");
+      return {};
+    }
+    out.emplace_back(numbers[i], numbers[i + 1]);
+  }
+  return out;
+}
+
 CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index) {
   CapsulesShape capsules;
   for (const char* name : {"p1", "radius"})
@@ -71,6 +93,7 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
   capsules.radius1 = radii(parameters, "radius1", count);
   if (capsules.radius1 == capsules.radius0) capsules.radius1.clear();
   read_materials(parameters, material_index, capsules);
+  capsules.u = chain_u(parameters, count);
   return capsules;
 }
 

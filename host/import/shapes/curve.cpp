@@ -94,6 +94,7 @@ CapsulesShape make_curve(Parameters& parameters) {
   const std::size_t segments = segments_of(parameters, points.size(), order, bezier);
   check_type_and_normals(parameters, segments);
   parameters.values("splitdepth", {"integer", "float"});
+  const bool u_is_whole = is_second(parameters, "urange", "piece", "curve");
   const double width = length(parameters, "width", 1);
   const std::array<double, 2> widths{length(parameters, "width0", width), length(parameters, "width1", width)};
   const double widest = std::max(widths[0], widths[1]);
@@ -117,7 +118,11 @@ CapsulesShape make_curve(Parameters& parameters) {
     const Cubic cubic = bezier ? of_bezier(points, i, order) : of_b_spline(points, i, order);
     const CubicTube tube = tube_of(cubic, radius(i), radius(i + 1));
     if (i == 0) out.start(tube[0]);
-    out.add(tube, tolerance);
+    const auto number = static_cast<double>(i), count = static_cast<double>(segments);
+    if (u_is_whole)
+      out.add(tube, tolerance, number / count, (number + 1) / count);
+    else
+      out.add(tube, tolerance, 0, 1);  // pbrt-v4 makes a curve of each cubic
   }
   if (widths[0] == widths[1]) chain.radius1.clear();
   return chain;

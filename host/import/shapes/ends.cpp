@@ -67,6 +67,7 @@ CapsulesShape make_capsule(Parameters& parameters) {
   if (r.empty()) return {};
   CapsulesShape capsule{{p0}, {p1}, {static_cast<float>(r[0])}, {}, {}};
   if (r.size() == 2 && r[1] != r[0]) capsule.radius1 = {static_cast<float>(r[1])};
+  capsule.u = chain_u(parameters, 1);
   return capsule;
 }
 

@@ -95,7 +95,7 @@ void set_instance_box(const Part& part, const glm::dmat4& world_from_part, FlatP
 void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_part,
                   std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
 
-/// Bounding sphere of the world.
+/// Bounding sphere of the world; the unit sphere where the tree is empty, so that lights have a power.
 void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
 
 /// One shape, lowered by itself into empty arrays `out` under `baked`: its primitives, with ids from 0 on.

@@ -56,6 +56,8 @@ FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const g
 FlatPrimitive flat_partial_disk(const DiskShape& disk);
 /// The kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);
+/// Whether an operand is a capsule with u at its ends.
+bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves);
 
 /// A primitive without data.
 inline FlatPrimitive make_primitive(int shape) { return FlatPrimitive{static_cast<std::uint32_t>(shape), 0, {}}; }

@@ -12,6 +12,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "base/check.h"
@@ -40,6 +42,7 @@ struct Operand {
   FlatPrimitive flat, grown;
   std::uint32_t surface;  // with CAPLET_CSG_SUBTRACTED
   std::uint32_t uv_space;
+  std::optional<glm::vec2> u;  // at the ends of a chain's capsule
   bool placed;
   Matrix csg_from_object{1};
   double error;  // in csg space
@@ -149,6 +152,8 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
   out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
   out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
+  if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry); capsules && !capsules->u.empty())
+    out.u = capsules->u[0];
   out.grown = grown_by(out.flat, error, leaves);
   out.error = error * scale;
   out.surface = solid.surface_begin | (solid.subtracted ? CAPLET_CSG_SUBTRACTED : 0u);
@@ -171,7 +176,8 @@ std::vector<Group> grouped(const std::vector<Operand>& operands) {
     const auto fits = [&](const Group& group) {
       const Operand& first = operands[group.operands[0]];
       return group.operands.size() < lanes_per_group && first.flat.shape == operands[i].flat.shape &&
-             first.placed == operands[i].placed && first.csg_from_object == operands[i].csg_from_object;
+             first.placed == operands[i].placed && first.csg_from_object == operands[i].csg_from_object &&
+             first.u.has_value() == operands[i].u.has_value();
     };
     const auto found = std::find_if(groups.begin(), groups.end(), fits);
     if (found != groups.end())
@@ -213,7 +219,15 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
     write_matrix(&leaves[transform], glm::inverse(one.csg_from_object));
     write_matrix(&leaves[transform + 12], one.csg_from_object);
   }
-  const std::size_t values[] = {one.flat.shape, block, group.operands.size(), first, transform};
+  std::size_t chain = CAPLET_NONE;
+  if (one.u) {
+    chain = append_rows(leaves, 2 * lanes_per_group);
+    for (std::size_t lane = 0; lane < group.operands.size(); ++lane) {
+      leaves[chain + 2 * lane] = operands[group.operands[lane]].u->x;
+      leaves[chain + 2 * lane + 1] = operands[group.operands[lane]].u->y;
+    }
+  }
+  const std::size_t values[] = {one.flat.shape, block, group.operands.size(), first, transform, chain};
   for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = bits(values[k]);
 }
 
@@ -224,6 +238,13 @@ std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<flo
   std::uint64_t shapes = 0;
   for (std::size_t group = 0; group < number(4); ++group) shapes |= shape_bit(number(8 * (1 + group)));
   return shapes;
+}
+
+bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves) {
+  const auto number = [&](std::size_t at) { return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]); };
+  for (std::size_t group = 0; group < number(4); ++group)
+    if (number(8 * (1 + group) + 5) != CAPLET_NONE) return true;
+  return false;
 }
 
 // Operands hold their own transforms.

@@ -22,6 +22,11 @@ namespace caplet::reference {
 #define GEOMETRY(Type, name) std::vector<Primitive> witnesses_of(const Type& geometry);
 #include "scene/geometries.def"
 
+// --- uv that depend on the direction of the ray: of chains, and of csg shapes with them ---
+
+glm::dvec2 chain_uv_of(const Capsule& capsule, const glm::dvec3& x, const glm::dvec3& direction);
+glm::dvec2 csg_uv_of(const Csg& csg, const glm::dvec3& x, int surface, const glm::dvec3& direction);
+
 // --- Of more than one kind; of more than one surface; csg shapes ---
 
 std::size_t which_kind(const Capsule& capsule);

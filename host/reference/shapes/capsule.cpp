@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "reference/detail/angles.h"
@@ -55,12 +56,31 @@ dvec2 uv_of(const Capsule& c, const dvec3& x, int) {
   return {at.u, share(arc, first + side + last)};
 }
 
+// pbrt's curves: u as at the ball that touches the surface there, v by how far to the side of the axis the ray goes by, over how
+// far it may at that ball.
+dvec2 chain_uv_of(const Capsule& c, const dvec3& x, const dvec3& direction) {
+  dvec3 axis = c.p1 - c.p0;
+  const double length = glm::length(axis), growth = c.radius1 - c.radius0;
+  axis = length > 0 ? axis / length : dvec3(0, 0, 1);
+  double s = growth > 0 && length > 0 ? 1 : 0, cosine = 1;  // where one ball holds the other; where they are one, u is that of p0
+  if (length > std::abs(growth)) {
+    cosine = std::sqrt((length - growth) * (length + growth)) / length;
+    const double along = glm::dot(x - c.p0, axis), across = glm::length(x - c.p0 - along * axis);
+    s = std::clamp((along + across * growth / (length * cosine)) / length, 0.0, 1.0);
+  }
+  const dvec3 sideways = glm::cross(direction, axis);
+  const double radius = c.radius0 + s * growth, offset = glm::dot(x - c.p0, sideways) / std::max(glm::length(sideways), 1e-300);
+  return {glm::mix(c.u->x, c.u->y, s), std::clamp(0.5 + 0.5 * offset / std::max(radius * cosine, 1e-300), 0.0, 1.0)};
+}
+
 std::vector<Primitive> witnesses_of(const CapsulesShape& capsules) {
   std::vector<Primitive> out;
   for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
     const double radius0 = capsules.radius0[i];
     const double radius1 = capsules.radius1.empty() ? radius0 : static_cast<double>(capsules.radius1[i]);
-    out.push_back(Capsule{dvec3(capsules.p0[i]), dvec3(capsules.p1[i]), radius0, radius1});
+    std::optional<dvec2> u;
+    if (!capsules.u.empty()) u = dvec2(capsules.u[i]);
+    out.push_back(Capsule{dvec3(capsules.p0[i]), dvec3(capsules.p1[i]), radius0, radius1, u});
   }
   return out;
 }

@@ -129,11 +129,14 @@ int surfaces_of(const Csg& csg) {
   return last.surface_begin + surface_count(last.primitive);
 }
 
-dvec2 uv_of(const Csg& csg, const dvec3& x, int surface) {
+dvec2 uv_of(const Csg& csg, const dvec3& x, int surface) { return csg_uv_of(csg, x, surface, dvec3(0)); }
+
+dvec2 csg_uv_of(const Csg& csg, const dvec3& x, int surface, const dvec3& direction) {
   for (const CsgOperand& operand : csg.body->operands) {
     const int own = surface - operand.surface_begin;
     if (own >= 0 && own < surface_count(operand.primitive))
-      return uv_at(operand.primitive, dvec3(operand.operand_from_csg * glm::dvec4(x, 1)), own);
+      return uv_at(operand.primitive, dvec3(operand.operand_from_csg * glm::dvec4(x, 1)), own,
+                   dvec3(operand.operand_from_csg * glm::dvec4(direction, 0)));
   }
   return {0, 0};
 }

@@ -96,7 +96,7 @@ void check(const CapsulesShape& capsules, ShapeCheck& report) {
   const std::size_t count = capsules.p0.size();
   if (capsules.p1.size() != count || capsules.radius0.size() != count ||
       (!capsules.radius1.empty() && capsules.radius1.size() != count) ||
-      (!capsules.materials.empty() && capsules.materials.size() != count))
+      (!capsules.materials.empty() && capsules.materials.size() != count) || (!capsules.u.empty() && capsules.u.size() != count))
     return report.error("the capsules' lists differ in length");
   for (std::size_t i = 0; i < count; ++i) {
     const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
@@ -104,6 +104,9 @@ void check(const CapsulesShape& capsules, ShapeCheck& report) {
     if (!is_finite(capsules.p0[i]) || !is_finite(capsules.p1[i]) || !std::isfinite(r0) || !std::isfinite(r1))
       return report.error(capsule() + " is not finite");
     if (r0 < 0 || r1 < 0) return report.error(capsule() + " has a negative radius");
+    if (!capsules.u.empty() &&
+        !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f && std::abs(capsules.u[i].y) <= 1e18f))
+      return report.error(capsule() + "'s u is not finite or beyond 1e18");
     if (!capsules.materials.empty() && capsules.materials[i] >= report.materials())
       return report.error(capsule() + " has a material that does not exist");
   }
@@ -122,6 +125,9 @@ CapsulesShape drawn(std::type_identity<CapsulesShape>, Draws& draws) {
     out.p1.push_back(draws.one_in(6) ? out.p0.back() : draws.point());
     out.radius0.push_back(static_cast<float>(draws.thin()));
     out.radius1.push_back(draws.one_in(2) ? out.radius0.back() : static_cast<float>(draws.thin()));
+    if (draws.sort == 0) continue;
+    const double u0 = draws.uniform(-1, 2), u1 = draws.one_in(6) ? u0 : draws.uniform(-1, 2);
+    out.u.emplace_back(u0, u1);
   }
   return out;
 }

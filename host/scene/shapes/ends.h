@@ -14,11 +14,13 @@ namespace caplet {
 
 /// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres each. Also the bulk form.
 /// All vectors have one entry a capsule; `radius1` is empty when no capsule is tapered; `materials` is empty or holds an index
-/// into Scene::materials a capsule (overriding Shape::material).
+/// into Scene::materials a capsule (overriding Shape::material). `u` is empty, or holds what u is at p0 and at p1 of each capsule
+/// of a chain, whose uv then are those of pbrt's curves (docs/shapes.md, "Chains").
 struct CapsulesShape {
   std::vector<glm::vec3> p0, p1;
   std::vector<float> radius0, radius1;
   std::vector<std::uint32_t> materials;
+  std::vector<glm::vec2> u = {};
 };
 
 /// How an end of a cylinder or cone is closed. The solid is the convex hull of its two ends: flat ones are disks across the axis,
@@ -45,7 +47,10 @@ inline bool closed(const CapsulesShape&) { return true; }
 Bounds bounds_under(const CapsulesShape& capsules, const glm::dmat4& m);
 void check(const CapsulesShape& capsules, ShapeCheck& report);
 Beyond beyond(const CapsulesShape& capsules, const glm::dvec3& p);  // of the first
+/// Without u, and with it.
 CapsulesShape drawn(std::type_identity<CapsulesShape>, Draws& draws);
+template <>
+inline constexpr int drawn_sorts<CapsulesShape> = 2;
 
 inline std::size_t count_of(const CylinderShape&) { return 1; }
 inline std::size_t surfaces_of(const CylinderShape&) { return 3; }

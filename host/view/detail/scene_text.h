@@ -19,8 +19,8 @@ inline constexpr std::size_t most_named = 5000;
 /// How the page says it, too (messages.h).
 nlohmann::ordered_json camera_text(const Look& look);
 
-/// Its name, bounds, shapes and instances by their object.id, materials, the device's name, and the samples of a pixel at
-/// which a picture is done.
+/// Its name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials, the device's name, and the samples
+/// of a pixel at which a picture is done.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
 
 /// Names of what is hidden: shapes, then instances.

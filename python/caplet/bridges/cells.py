@@ -109,11 +109,12 @@ class Look:
         return cls(which.reshape(-1), different, given)
 
 
-def add_cell(scene, look, cell_class, name, p0, p1, radii, kinds, object=None):
-    """Segments as capsules, a shape for each SWC type: (its name, rows of the segments that it shows)."""
+def add_cell(scene, look, cell_class, name, p0, p1, radii, kinds, object=None, u=None):
+    """Segments as capsules, a shape for each SWC type: (its name, rows of the segments that it shows). u: (n, 2), of all but somata."""
     shown = radii.max(axis=1) > 0
     for kind in np.unique(kinds[shown]):
         rows = np.flatnonzero(shown & (kinds == kind))
         shape = f"{name} {TYPE_NAMES.get(int(kind), f'type {kind}')}"
-        scene.add_capsules(p0[rows], p1[rows], radii[rows], material=look.of(cell_class, int(kind)), name=shape, object=object)
+        scene.add_capsules(p0[rows], p1[rows], radii[rows], u=None if u is None or kind == 1 else u[rows],
+                           material=look.of(cell_class, int(kind)), name=shape, object=object)
         yield shape, rows

@@ -7,6 +7,7 @@ from .. import materials
 from ..errors import InputError
 from ..scene import Scene
 from .cells import OTHER_COLOR, TYPE_COLORS
+from .chains import along
 
 
 def soma_of(soma):
@@ -24,8 +25,9 @@ def soma_of(soma):
 
 
 def neurites(morphology):
-    """Segments of all sections, as (p0, p1, radii, sections, types)."""
+    """Segments of all sections, as (p0, p1, radii, sections, types, u)."""
     p0, p1, radii, sections, types = [np.empty((0, 3))], [np.empty((0, 3))], [np.empty((0, 2))], [np.empty(0, int)], [np.empty(0, int)]
+    u = [np.empty((0, 2))]
     for section in morphology.iter():
         points = np.asarray(section.points, dtype=np.float64)
         ends = np.asarray(section.diameters, dtype=np.float64) / 2
@@ -34,12 +36,13 @@ def neurites(morphology):
         radii.append(np.stack([ends[:-1], ends[1:]], 1))
         sections.append(np.full(len(points) - 1, section.id))
         types.append(np.full(len(points) - 1, int(section.type)))
-    return tuple(map(np.concatenate, (p0, p1, radii, sections, types)))
+        u.append(along(points))
+    return tuple(map(np.concatenate, (p0, p1, radii, sections, types, u)))
 
 
 def from_morphio(morphology):
     """A scene of a morphio.Morphology, in its units (micrometres): shapes "soma" (spheres) and "neurites" (tapered capsules, one a
-    segment), coloured by type as files of neurons are.
+    segment), coloured by type as files of neurons are; u runs from 0 to 1 along each section.
 
     A soma of one point or three is a sphere, an outline the sphere of its mean distance, a chain of cylinders a sphere a point.
     scene.info: "section" and "type" of each capsule of the neurites. Segments of no radius at both ends are left out.
@@ -49,12 +52,12 @@ def from_morphio(morphology):
     shown = balls > 0
     if shown.any():
         scene.add_spheres(centers[shown], balls[shown], color=TYPE_COLORS[1], name="soma")
-    p0, p1, radii, sections, types = neurites(morphology)
+    p0, p1, radii, sections, types, u = neurites(morphology)
     kept = radii.max(axis=1) > 0
     if kept.any():
         kinds, which = np.unique(types[kept], return_inverse=True)
         colors = np.array([TYPE_COLORS.get(int(kind), OTHER_COLOR) for kind in kinds])
-        scene.add_capsules(p0[kept], p1[kept], radii[kept], color=colors[which], material=materials.diffuse(), name="neurites")
+        scene.add_capsules(p0[kept], p1[kept], radii[kept], u=u[kept], color=colors[which], material=materials.diffuse(), name="neurites")
         scene.info.update(section=sections[kept], type=types[kept])
     if not scene.shapes:
         raise InputError("the morphology has nothing to show")

@@ -6,6 +6,7 @@ import numpy as np
 from .. import arrays, colors, materials, textures
 from ..errors import InputError
 from ..scene import Scene
+from .chains import along
 
 _RADIUS, _SCALARS = "caplet radius", "caplet scalars"  # of arrays that are given beside the dataset
 _THIN = 300  # the extent over the radius that no one has said
@@ -99,7 +100,8 @@ class _Look:
         if not len(ends):
             return
         radius = self.radius(ends, cells)
-        scene.add_capsules(self.points[ends[:, 0]], self.points[ends[:, 1]], radius, color=self.mean(ends, cells),
+        u = np.concatenate([along(self.points[one]) for one in np.split(points, np.cumsum(sizes)[:-1]) if len(one) > 1])
+        scene.add_capsules(self.points[ends[:, 0]], self.points[ends[:, 1]], radius, u=u, color=self.mean(ends, cells),
                            material=materials.diffuse(), name=f"{name}lines")
         scene.info[f"{name}lines"] = line[first]
 

@@ -495,11 +495,12 @@ def _cells(scene, look, files, numbers, places, recentered):
             radii = np.concatenate([np.stack([balls, balls], axis=1), segments[2]])
             sections = np.concatenate([np.full(len(balls), -1), segments[3]]).astype(np.int32)
             kinds = np.concatenate([np.ones(len(balls), np.int64), segments[4]])
+            u = np.concatenate([np.zeros((len(balls), 2)), segments[5]])
         name = stem = " ".join(filter(None, [files[file][1] or os.path.splitext(os.path.basename(files[file][0]))[0], look.name(cell_class)]))
         while name in names:
             name = f"{stem} {len(names)}"
         names.add(name)
-        added = list(add_cell(scene, look, cell_class, name, p0, p1, radii, kinds, object=name))
+        added = list(add_cell(scene, look, cell_class, name, p0, p1, radii, kinds, name, u))
         if not added:
             raise wrong(files[file][0], "the morphology has nothing to show")
         scene.info["section"].update((shape, sections[shown]) for shape, shown in added)

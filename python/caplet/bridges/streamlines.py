@@ -6,6 +6,7 @@ import numpy as np
 from .. import arrays, materials
 from ..errors import InputError
 from ..scene import Scene
+from .chains import along
 
 
 def from_nibabel(tractogram, radius=0.1, color="direction"):
@@ -29,12 +30,13 @@ def from_nibabel(tractogram, radius=0.1, color="direction"):
     p0 = np.concatenate([line[:-1] for _, line in held])
     p1 = np.concatenate([line[1:] for _, line in held])
     which = np.repeat([i for i, _ in held], [len(line) - 1 for _, line in held])
+    u = np.concatenate([along(line) for _, line in held])
     radii = np.broadcast_to(np.asarray(radius, dtype=np.float64), len(lines))[which]
     if isinstance(color, str) and color == "direction":
-        along = np.abs(p1 - p0)
-        length = np.linalg.norm(along, axis=1, keepdims=True)
-        color = np.clip(np.divide(along, length, out=np.full_like(along, 0.5), where=length > 0), 0.02, 0.9)
+        axes = np.abs(p1 - p0)
+        length = np.linalg.norm(axes, axis=1, keepdims=True)
+        color = np.clip(np.divide(axes, length, out=np.full_like(axes, 0.5), where=length > 0), 0.02, 0.9)
     scene = Scene()
-    scene.add_capsules(p0, p1, radii, color=color, material=materials.diffuse(), name="streamlines")
+    scene.add_capsules(p0, p1, radii, u=u, color=color, material=materials.diffuse(), name="streamlines")
     scene.info["streamline"] = which
     return scene
