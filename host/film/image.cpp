@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/spelling.h"
 #include "film/detail/image_files.h"
+#include "film/detail/image_module.h"
 
 namespace caplet {
 

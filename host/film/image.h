@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Images in memory and on disk. EXR goes through OpenEXR; every other file type through OpenImageIO, which only image_oiio.cpp
-// knows.
+// Images in memory and on disk. EXR goes through OpenEXR, PNG through libpng; every other file type through OpenImageIO, a module
+// that is loaded when it is needed.
 #pragma once
 
 #include <cstdint>
@@ -86,10 +86,10 @@ void check_preview_alpha(const std::filesystem::path& path, const std::string& f
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);
 /// Throws InputError naming `flag` when that format cannot hold a picture of this size.
 void check_preview_size(const std::filesystem::path& path, int width, int height, const std::string& flag);
-/// True when OpenImageIO is built in.
+/// True when the build has the module of OpenImageIO.
 bool has_image_io();
 
-/// Reads EXR through OpenEXR and the rest (hdr, png...) through OpenImageIO. Files of integers are linearised from sRGB unless
+/// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO. Files of integers are linearised from sRGB unless
 /// they say otherwise; floats are linear. One channel is grey; alpha is multiplied in (over black); an EXR's chromaticities are
 /// kept when they are a space of ours and converted to sRGB otherwise. Negative values become 0; NaN and infinity are errors.
 class FileImageReader : public ImageReader {

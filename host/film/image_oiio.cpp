@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Image files other than EXR through OpenImageIO: the one file that knows it.
+// The module of image files (film/detail/image_module.h): OpenImageIO, which this file alone knows. It links no room.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -15,15 +15,16 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
-#include "base/spelling.h"
-#include "film/detail/image_files.h"
-#include "film/detail/limits.h"
+#include "film/detail/image_module.h"
 #include "film/transfer.h"
 
-namespace caplet::image_files {
+namespace caplet::image_module {
 
 namespace {
+
+using image_files::Pixels;
+using image_files::SizeCheck;
+using image_files::StoredPixels;
 
 /// The exponent that linearises a file's values: 0 stands for the sRGB curve, 1 for none.
 float decoding_exponent(const OIIO::ImageSpec& spec) {
@@ -36,16 +37,16 @@ float decoding_exponent(const OIIO::ImageSpec& spec) {
   return spec.format.is_floating_point() ? 1.0f : 0.0f;
 }
 
-float linear(float value, float exponent) {
-  if (exponent == 1) return value;
-  return exponent == 0 ? linear_from_srgb(value) : std::copysign(std::pow(std::abs(value), exponent), value);
-}
+/// Thrown within the module, and returned as a text by all that it exports.
+struct Failure {
+  std::string why;
+};
 
 /// A file in memory: the libraries of image formats write files by name, and not all of them tell that a disk is full.
 class MemoryFile {
  public:
   MemoryFile() : number_(::memfd_create("caplet picture", MFD_CLOEXEC)) {
-    if (number_ < 0) throw RunError(fmt::format("no file in memory: {}", std::strerror(errno)));
+    if (number_ < 0) throw Failure{fmt::format("no file in memory: {}", std::strerror(errno))};
   }
   ~MemoryFile() { ::close(number_); }
   MemoryFile(const MemoryFile&) = delete;
@@ -56,7 +57,7 @@ class MemoryFile {
     std::string out(static_cast<std::size_t>(std::max<off_t>(0, ::lseek(number_, 0, SEEK_END))), '\0');
     for (std::size_t at = 0; at < out.size();) {
       const ssize_t count = ::pread(number_, out.data() + at, out.size() - at, static_cast<off_t>(at));
-      if (count <= 0) throw RunError(fmt::format("a file in memory cannot be read: {}", std::strerror(errno)));
+      if (count <= 0) throw Failure{fmt::format("a file in memory cannot be read: {}", std::strerror(errno))};
       at += static_cast<std::size_t>(count);
     }
     return out;
@@ -84,30 +85,36 @@ OIIO::ImageSpec spec_of_8bit(int width, int height, int channels = 3) {
   return spec;
 }
 
-std::string error_text(const std::string& text) { return text.empty() ? "unknown reason" : first_line(text); }
+std::string error_text(const std::string& text) { return text.empty() ? "unknown reason" : text.substr(0, text.find('\n')); }
+
+std::string lower_case_extension(const std::filesystem::path& path) {
+  std::string out = path.extension().string();
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
 
 /// Alpha is asked for as it is.
 std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
-  OIIO::attribute("limits:imagesize_MB", static_cast<int>((max_image_pixels * 16) >> 20));
+  OIIO::attribute("limits:imagesize_MB", 1 << 12);  // 2^28 pixels of 16 bytes: the caller's own limit (film/detail/limits.h)
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &wanted);
   if (!input) {
     const std::string why = OIIO::geterror();
-    throw InputError(fmt::format("{}: not a readable image: {}", path.string(), error_text(why)));
+    throw Failure{"not a readable image: " + error_text(why)};
   }
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.deep || spec.depth > 1 || spec.nchannels < 1) throw InputError(fmt::format("{}: not a flat image", path.string()));
+  if (spec.deep || spec.depth > 1 || spec.nchannels < 1) throw Failure{"not a flat image"};
   return input;
 }
 
-/// The size of `out`, its channels, at most four, and which of these is alpha; refuses what is too large to hold with so many
-/// bytes a value.
+/// The size of `out`, its channels, at most four, and which of these is alpha. `check` throws where that is too large with so
+/// many bytes a value.
 template <class Out>
-void measure(const std::filesystem::path& path, const OIIO::ImageSpec& spec, std::uint64_t value_bytes, std::uintmax_t file_bytes,
-             Out& out) {
+void measure(const OIIO::ImageSpec& spec, std::uint64_t value_bytes, const SizeCheck& check, Out& out) {
   out.channels = std::min(spec.nchannels, 4);
-  check_image_size(path, spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * value_bytes, file_bytes);
+  check(spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * value_bytes);
   out.width = spec.width;
   out.height = spec.height;
   if (spec.alpha_channel >= 0 && spec.alpha_channel < out.channels) out.alpha = spec.alpha_channel;
@@ -118,48 +125,41 @@ std::size_t value_count(const Out& of) {
   return static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height) * static_cast<std::size_t>(of.channels);
 }
 
-void read_values(const std::filesystem::path& path, OIIO::ImageInput& input, int channels, OIIO::TypeDesc type, void* to) {
-  if (!input.read_image(0, 0, 0, channels, type, to))
-    throw InputError(fmt::format("{}: broken image: {}", path.string(), error_text(input.geterror())));
+void read_values(OIIO::ImageInput& input, int channels, OIIO::TypeDesc type, void* to) {
+  if (!input.read_image(0, 0, 0, channels, type, to)) throw Failure{"broken image: " + error_text(input.geterror())};
 }
 
-}  // namespace
-
-bool available() { return true; }
-
-StoredPixels read_stored(const std::filesystem::path& path) {
-  const std::uintmax_t file_bytes = readable_file_bytes(path);
+StoredPixels read_stored(const std::filesystem::path& path, const SizeCheck& check) {
   const std::unique_ptr<OIIO::ImageInput> input = opened(path);
   const OIIO::ImageSpec& spec = input->spec();
   const bool is_bytes = spec.format == OIIO::TypeDesc::UINT8;
   StoredPixels out;
-  measure(path, spec, is_bytes ? 1 : sizeof(float), file_bytes, out);
+  measure(spec, is_bytes ? 1 : sizeof(float), check, out);
   out.is_whole = !spec.format.is_floating_point();
   if (is_bytes) {
     out.bytes.resize(value_count(out));
-    read_values(path, *input, out.channels, OIIO::TypeDesc::UINT8, out.bytes.data());
+    read_values(*input, out.channels, OIIO::TypeDesc::UINT8, out.bytes.data());
   } else {
     out.floats.resize(value_count(out));
-    read_values(path, *input, out.channels, OIIO::TypeDesc::FLOAT, out.floats.data());
+    read_values(*input, out.channels, OIIO::TypeDesc::FLOAT, out.floats.data());
   }
   return out;
 }
 
-Pixels read_linear(const std::filesystem::path& path) {
-  const std::uintmax_t file_bytes = readable_file_bytes(path);
+Pixels read_linear(const std::filesystem::path& path, const SizeCheck& check) {
   const std::unique_ptr<OIIO::ImageInput> input = opened(path);
   const OIIO::ImageSpec& spec = input->spec();
 
   Pixels out;
-  measure(path, spec, sizeof(float), file_bytes, out);
+  measure(spec, sizeof(float), check, out);
   out.values.resize(value_count(out));
-  read_values(path, *input, out.channels, OIIO::TypeDesc::FLOAT, out.values.data());
+  read_values(*input, out.channels, OIIO::TypeDesc::FLOAT, out.values.data());
 
   const bool premultiplied = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
   const float exponent = decoding_exponent(spec);
   const std::size_t channels = static_cast<std::size_t>(out.channels);
   for (std::size_t i = 0; i < out.values.size(); ++i)
-    if (static_cast<int>(i % channels) != out.alpha) out.values[i] = linear(out.values[i], exponent);
+    if (static_cast<int>(i % channels) != out.alpha) out.values[i] = linear_from(out.values[i], exponent);
   // Associated alpha is in the values already.
   if (out.alpha >= 0 && premultiplied)
     for (std::size_t i = static_cast<std::size_t>(out.alpha); i < out.values.size(); i += channels) out.values[i] = 1;
@@ -174,7 +174,7 @@ bool can_write(const std::filesystem::path& path) {
 }
 
 bool can_hold(const std::filesystem::path& path, int width, int height) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = lower_case_extension(path);
   for (const Limit& limit : limits)
     if (limit.extension == extension) return width <= limit.side && height <= limit.side;
   // The other formats say so when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
@@ -195,11 +195,11 @@ bool can_write_alpha(const std::filesystem::path& path) {
 std::string encode_8bit(const std::filesystem::path& path, int width, int height, int channels,
                         const std::vector<std::uint8_t>& values) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
-  if (!output) throw RunError(fmt::format("{}: {}", path.string(), error_text(OIIO::geterror())));
+  if (!output) throw Failure{error_text(OIIO::geterror())};
   const auto write_to = [&](const std::string& name) {
     if (!output->open(name, spec_of_8bit(width, height, channels)) ||
         !output->write_image(OIIO::TypeDesc::UINT8, values.data()) || !output->close())
-      throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error_text(output->geterror())));
+      throw Failure{"cannot be written: " + error_text(output->geterror())};
   };
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
@@ -213,4 +213,36 @@ std::string encode_8bit(const std::filesystem::path& path, int width, int height
   return file.bytes();
 }
 
-}  // namespace caplet::image_files
+template <class Function>
+std::string failure_of(const Function& function) {
+  try {
+    function();
+    return {};
+  } catch (const Failure& failure) {
+    return failure.why;
+  }
+}
+
+}  // namespace
+
+}  // namespace caplet::image_module
+
+extern "C" __attribute__((visibility("default"))) const caplet::image_files::Module* caplet_image_module() {
+  using namespace caplet::image_module;
+  using caplet::image_files::Module;
+  static const Module module = {
+      .version = Module::current,
+      .read_linear = [](const std::filesystem::path& path, const SizeCheck& check,
+                        Pixels& out) { return failure_of([&] { out = read_linear(path, check); }); },
+      .read_stored = [](const std::filesystem::path& path, const SizeCheck& check,
+                        StoredPixels& out) { return failure_of([&] { out = read_stored(path, check); }); },
+      .can_write = &can_write,
+      .can_hold = [](const std::filesystem::path& path, int width, int height,
+                     bool& out) { return failure_of([&] { out = can_hold(path, width, height); }); },
+      .can_write_alpha = &can_write_alpha,
+      .encode_8bit =
+          [](const std::filesystem::path& path, int width, int height, int channels, const std::vector<std::uint8_t>& values,
+             std::string& out) { return failure_of([&] { out = encode_8bit(path, width, height, channels, values); }); },
+  };
+  return &module;
+}

@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "film/detail/image_files.h"
+#include "film/detail/image_module.h"
 #include "film/transfer.h"
 #include "film/under.h"
 
@@ -123,11 +124,12 @@ void check_preview_size(const fs::path& path, int width, int height, const std::
 }
 
 void check_preview_format(const fs::path& path, const std::string& flag) {
-  if (!image_files::available())
-    throw InputError(SourceLocation{flag}, "previews need OpenImageIO, and this build is without it (CAPLET_WITH_OIIO=OFF)");
   const std::string extension = path.extension().string();
   if (extension.empty())
     throw InputError(SourceLocation{flag}, fmt::format("'{}' has no extension to tell the format (try .png)", path.string()));
+  if (!image_files::available() && !image_files::can_write(path))
+    throw InputError(SourceLocation{flag},
+                     "previews other than PNG need OpenImageIO, and this build is without it (CAPLET_WITH_OIIO=OFF)");
   if (extension == ".exr" || !image_files::can_write(path))
     throw InputError(SourceLocation{flag}, fmt::format("'{}' is no preview format (try .png or .jpg)", extension));
 }

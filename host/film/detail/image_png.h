@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// PNG by libpng: what most textures and previews are, without OpenImageIO.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "film/detail/image_pixels.h"
+
+namespace caplet::image_files {
+
+/// What libpng writes by itself (PNG_USER_WIDTH_MAX).
+inline constexpr int max_png_side = 1000000;
+
+/// True when the file begins as a PNG file does.
+bool is_png(const std::filesystem::path& path);
+
+/// These return what went wrong, without the file's name, or an empty text, as the functions of Module do.
+std::string read_png_linear(const std::filesystem::path& path, const SizeCheck& check, Pixels& out);
+std::string read_png_stored(const std::filesystem::path& path, const SizeCheck& check, StoredPixels& out);
+/// `values`: sRGB, `channels` (3 or 4) bytes a pixel, row-major from the top; alpha is not multiplied in. `out`: the file's
+/// bytes.
+std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values, std::string& out);
+
+}  // namespace caplet::image_files
