@@ -89,9 +89,10 @@ void check_preview_size(const std::filesystem::path& path, int width, int height
 /// True when the build has the module of OpenImageIO.
 bool has_image_io();
 
-/// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO. Files of integers are linearised from sRGB unless
-/// they say otherwise; floats are linear. One channel is grey; alpha is multiplied in (over black); an EXR's chromaticities are
-/// kept when they are a space of ours and converted to sRGB otherwise. Negative values become 0; NaN and infinity are errors.
+/// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO. Files of integers are linearised
+/// from sRGB unless they say otherwise; floats are linear. One channel is grey; alpha is multiplied in (over black); an EXR's
+/// chromaticities are kept when they are a space of ours and converted to sRGB otherwise. Negative values become 0; NaN and
+/// infinity are errors.
 class FileImageReader : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override;
