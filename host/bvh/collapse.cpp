@@ -13,7 +13,7 @@ namespace {
 
 constexpr double node_cost = 1.0, leaf_cost = 1.0;
 constexpr std::uint32_t no_root = 0xffffffff;
-constexpr std::uint32_t parallel_threshold = 4096;
+constexpr std::uint32_t parallel_nodes = 4096;
 
 /// cost[i]: least cost of the subtree as at most i + 1 roots (each a wide node or a leaf). left[i]: how many of these the left
 /// child gets; 0: the subtree stays one root.
@@ -48,7 +48,7 @@ class Collapser {
       choice.left.fill(0);
       return;
     }
-    if (node.count > parallel_threshold) {
+    if (node.count > parallel_nodes) {
       tbb::parallel_invoke([&] { choose(node.left); }, [&] { choose(node.right); });
     } else {
       choose(node.left);

@@ -16,14 +16,14 @@ namespace caplet::cli {
 
 namespace {
 
-struct Options {
+struct ConvertFlags {
   std::vector<std::string> scenes;
   std::string output;
   ImportOptions import_options;
   bool quiet = false;
 };
 
-void run_convert(const Options& options) {
+void run_convert(const ConvertFlags& options) {
   log::set_quiet(options.quiet);
   const std::filesystem::path output = output_named(options.output);
   Outputs outputs;
@@ -40,7 +40,7 @@ void run_convert(const Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ConvertFlags>();
   CLI::App* command = app.add_subcommand("convert", "Write any scene file as pbrt text that gives the same picture");
   command
       ->add_option("FILES", o->scenes,

@@ -83,7 +83,7 @@ std::vector<Listed> list(bool measure) {
   return out;
 }
 
-void print_json(const std::vector<Listed>& devices, bool measured) {
+void print_devices_json(const std::vector<Listed>& devices, bool measured) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const Listed& device : devices) {
     out.push_back(report::device_json(device.info));
@@ -114,7 +114,7 @@ void add_devices(CLI::App& app) {
   command->add_flag("--measure", *measure, "Also how many rays a second each traces in a render, which takes seconds a device");
   command->callback([json, measure] {
     const std::vector<Listed> devices = list(*measure);
-    *json ? print_json(devices, *measure) : print_table(devices, *measure);
+    *json ? print_devices_json(devices, *measure) : print_table(devices, *measure);
   });
 }
 

@@ -27,7 +27,7 @@ void print_line(const doctor::Finding& finding) {
   std::fflush(stdout);  // a self-test takes a while, and children must not print what waits
 }
 
-void print_json(const doctor::Diagnosis& diagnosis) {
+void print_diagnosis_json(const doctor::Diagnosis& diagnosis) {
   nlohmann::ordered_json findings = nlohmann::ordered_json::array(), platforms = findings, devices = findings;
   for (const doctor::Finding& finding : diagnosis.findings)
     findings.push_back(
@@ -70,7 +70,7 @@ void add_doctor(CLI::App& app) {
         if (!json) print_line(finding);
       });
     });
-    if (json) print_json(diagnosis);
+    if (json) print_diagnosis_json(diagnosis);
     std::fflush(stdout);
     if (diagnosis.anything_wrong()) throw CLI::RuntimeError(1);
   });

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
 constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, whatever --limit allows a ray
 
-struct Options {
+struct PickFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::string pixel, ray, rays, out, device, size, crop;
@@ -56,7 +56,7 @@ RayRecord to_record(const RayNumbers& n) {
 
 // --- One ray ---
 
-void pick_one(const Options& options, const Scene& scene, const FlatScene& flat, const std::optional<std::array<int, 2>>& pixel,
+void pick_one(const PickFlags& options, const Scene& scene, const FlatScene& flat, const std::optional<std::array<int, 2>>& pixel,
               const RayRecord& ray, const Device& device) {
   Query query(flat, device);
   report::PickReport told;
@@ -79,7 +79,7 @@ void pick_one(const Options& options, const Scene& scene, const FlatScene& flat,
 // --- Lists of rays ---
 
 /// Rows of a chunk of rays, numbered from `first`; rays with more crossings than the limit are added to `overflowed`.
-std::vector<report::PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const Options& options,
+std::vector<report::PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const PickFlags& options,
                                     std::vector<std::uint64_t>& overflowed) {
   std::vector<report::PickRow> rows;
   if (options.all) {
@@ -97,7 +97,7 @@ std::vector<report::PickRow> answer(Query& query, std::span<const RayRecord> ray
   return rows;
 }
 
-void pick_many(const Options& options, const Scene& scene, const FlatScene& flat, RayFile& file, const fs::path& out,
+void pick_many(const PickFlags& options, const Scene& scene, const FlatScene& flat, RayFile& file, const fs::path& out,
                const Device& device) {
   const Clock::time_point start = Clock::now();
   const auto seconds = [start] { return seconds_since(start); };
@@ -145,7 +145,7 @@ void pick_many(const Options& options, const Scene& scene, const FlatScene& flat
 
 // --- The command ---
 
-void check_combination(const Options& o) {
+void check_combination(const PickFlags& o) {
   const int asked = !o.pixel.empty() + !o.ray.empty() + !o.rays.empty();
   if (asked != 1) throw InputError("pick needs one of --pixel X,Y, --ray ox,oy,oz,dx,dy,dz and --rays FILE");
   const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
@@ -159,7 +159,7 @@ void check_combination(const Options& o) {
   if (o.pixel.empty() && !(o.size.empty() && o.crop.empty())) refuse(o.size.empty() ? "--crop" : "--size", "goes with --pixel");
 }
 
-void run_pick(const Options& options, bool has_limit) {
+void run_pick(const PickFlags& options, bool has_limit) {
   log::set_quiet(options.quiet);
   check_combination(options);
   if (has_limit && !options.all) throw InputError(SourceLocation{"--limit"}, "goes with --all");
@@ -200,7 +200,7 @@ void run_pick(const Options& options, bool has_limit) {
 }  // namespace
 
 void add_pick(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<PickFlags>();
   CLI::App* command =
       app.add_subcommand("pick", "Tell what a pixel shows or rays hit: name, surface, material, point, normal, uv");
   add_scene_files(*command, o->scenes);

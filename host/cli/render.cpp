@@ -46,7 +46,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct RenderFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::vector<std::string> outputs;
@@ -95,7 +95,7 @@ void add_preview(Files& files, const fs::path& path, const std::string& flag) {
   files.all.add(flag, path);
 }
 
-void add_output(const Options& options, Files& files, const fs::path& path) {
+void add_output(const RenderFlags& options, Files& files, const fs::path& path) {
   if (is_stream(path) || path.extension() == ".exr") {
     files.pictures.push_back(path);
     files.all.add("-o", path);
@@ -120,7 +120,7 @@ void add_output(const Options& options, Files& files, const fs::path& path) {
   }
 }
 
-void check_frame_options(const Options& options, const Files& files) {
+void check_frame_options(const RenderFlags& options, const Files& files) {
   const auto refuse = [](const char* flag, const std::string& why) { throw InputError(SourceLocation{flag}, why); };
   if (!options.has_frames()) {
     if (options.skip_existing) refuse("--skip-existing", "goes with --turntable or --frames");
@@ -139,7 +139,7 @@ void check_frame_options(const Options& options, const Files& files) {
 }
 
 /// Reports what is wrong with options and outputs before anything is loaded.
-Overrides check_options(const Options& options, Files& files) {
+Overrides check_options(const RenderFlags& options, Files& files) {
   Overrides overrides;
   if (!options.size.empty()) overrides.size = parse_size(options.size);
   if (!options.crop.empty()) overrides.crop = parse_crop(options.crop);
@@ -167,7 +167,7 @@ Overrides check_options(const Options& options, Files& files) {
   return overrides;
 }
 
-report::StereoLayout layout_of(const Options& options) {
+report::StereoLayout layout_of(const RenderFlags& options) {
   const auto found = std::ranges::find(report::stereo_layout_names, options.layout);
   return found == report::stereo_layout_names.end()
              ? report::StereoLayout::side_by_side
@@ -176,7 +176,7 @@ report::StereoLayout layout_of(const Options& options) {
 
 /// What the scene tells of outputs: the picture's name (the scene's own film name, else the scene file's, in the current folder),
 /// its size, and the files that the scene was read from.
-void check_outputs(const Options& options, const Scene& scene, Layers layers, Files& files) {
+void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
   if (options.outputs.empty() && !options.has_frames()) {
     fs::path name = fs::path(scene.film.filename).filename();
     if (name.empty()) name = fs::path(options.scenes.front()).filename();
@@ -239,7 +239,7 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
 
 /// All that a picture is made of.
 struct Work {
-  const Options& options;
+  const RenderFlags& options;
   const Invocation& invocation;
   const Scene& scene;
   const FlatScene& flat;
@@ -353,7 +353,7 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   return std::move(out);
 }
 
-void tell_of_bar(const Options& options, const Scene& scene) {
+void tell_of_bar(const RenderFlags& options, const Scene& scene) {
   const post::BarOnPicture bar = post::bar_of(*options.overlays.scale_bar, scene, "--scale-bar");
   log::info("scale bar: {} are {:.1f} pixels{}", bar.label, bar.pixels,
             bar.distance ? fmt::format(" at {:.6g} before the camera, the middle of what is seen (--orthographic: everywhere)",
@@ -375,7 +375,7 @@ struct FrameSource {
   FrameRange range;
 };
 
-FrameSource source_of(const Options& options) {
+FrameSource source_of(const RenderFlags& options) {
   const auto refuse = [](const std::string& why) { throw InputError(SourceLocation{"--frames"}, why); };
   const std::optional<FrameRange> asked = options.frames.empty() ? std::nullopt : parse_frames(options.frames);
   FrameSource source;
@@ -413,7 +413,7 @@ FrameSource source_of(const Options& options) {
   return source;
 }
 
-Scene scene_of_frame(const Options& options, const FrameSource& source, std::uint32_t frame) {
+Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
   if (source.kind == FrameSource::Kind::turntable) return import_files(options.scenes, options.import_options);
   if (source.kind == FrameSource::Kind::files) return import_files(numbered_all(options.scenes, frame), options.import_options);
   ImportOptions of_frame = options.import_options;
@@ -422,7 +422,7 @@ Scene scene_of_frame(const Options& options, const FrameSource& source, std::uin
 }
 
 /// A camera that was found frames what moves: what is in some of the frames, the first and last among them.
-void frame_all(const Options& options, const FrameSource& source, const Overrides& overrides, Scene& first) {
+void frame_all(const RenderFlags& options, const FrameSource& source, const Overrides& overrides, Scene& first) {
   constexpr std::uint32_t most = 16;
   if (!first.automatic_camera) return;
   Scene all = first;
@@ -452,7 +452,7 @@ bool is_there(const Files& files) {
 /// once. Throws RunError when it is interrupted: frames that are written are whole, and the others are not there.
 RenderResult render_frames(const Work& of_all, const FrameSource& source, const Overrides& overrides, Scene scene,
                            report::RunSeconds& seconds) {
-  const Options& options = of_all.options;
+  const RenderFlags& options = of_all.options;
   std::optional<Movie> movie;
   if (!of_all.files.movie.empty()) movie.emplace(of_all.files.movie, options.frames_a_second, "-o");
   std::optional<Turntable> table;
@@ -506,7 +506,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source, const 
   return result;
 }
 
-void run_render(const Options& options, const Invocation& invocation) {
+void run_render(const RenderFlags& options, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
   log::set_quiet(options.quiet);
@@ -566,7 +566,7 @@ void run_render(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 void add_render(CLI::App& app, const Invocation& invocation) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<RenderFlags>();
   CLI::App* command = app.add_subcommand("render", "Render a scene file to an OpenEXR picture");
   add_scene_files(*command, o->scenes);
   command
@@ -650,7 +650,8 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   add_import_options(*command, o->import_options);
   add_overlays(*command, o->overlays);
   command->footer(
-      "Options override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at once.\n"
+      "RenderFlags override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at "
+      "once.\n"
       "The picture is scene-linear, with layers albedo, N, P, Z, object.id and primitive.id.");
   command->callback([o, &invocation] { run_render(*o, invocation); });
 }

@@ -32,7 +32,7 @@ namespace {
 
 constexpr int exit_disagreed = 3;
 
-struct Options {
+struct VerifyFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::string device, heatmap, failures, replay, size;
@@ -41,7 +41,7 @@ struct Options {
   bool all_devices = false, json = false, quiet = false;
 };
 
-std::vector<Device> devices_of(const Options& o) {
+std::vector<Device> devices_of(const VerifyFlags& o) {
   std::vector<Device> out;
   if (!o.all_devices) {
     out.push_back(choose_device(o.device, o.encoding));
@@ -65,7 +65,7 @@ std::string scene_label(const verify::SceneName& name) {
 }
 
 /// Asks every case again. True when all agree now.
-bool replay(const Options& o) {
+bool replay(const VerifyFlags& o) {
   const std::vector<verify::Case> cases = verify::load_cases(o.replay);
   const std::vector<Device> devices = devices_of(o);
   std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>> by_scene;
@@ -100,7 +100,7 @@ bool replay(const Options& o) {
   return wrong.empty();
 }
 
-void run_verify(const Options& o) {
+void run_verify(const VerifyFlags& o) {
   log::set_quiet(o.quiet);
   const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
   if (o.all_devices && !o.device.empty()) refuse("--device", "does not go with --all-devices");
@@ -135,7 +135,7 @@ void run_verify(const Options& o) {
 
   ProgressReporter progress(ProgressReporter::style_for_stderr(o.quiet));
   const Clock::time_point start = Clock::now();
-  verify::Options options;
+  verify::VerifyFlags options;
   options.rays = o.rays;
   options.seed = o.seed;
   options.progress = [&](std::uint64_t done) {
@@ -172,7 +172,7 @@ void run_verify(const Options& o) {
 }  // namespace
 
 void add_verify(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<VerifyFlags>();
   CLI::App* command = app.add_subcommand(
       "verify",
       "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");

@@ -31,7 +31,7 @@ namespace caplet::cli {
 
 namespace {
 
-struct Options {
+struct ViewFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::string device, size, host = "127.0.0.1";
@@ -67,7 +67,7 @@ view::Keeper::ReadAs read_as(const ImportOptions& options) {
 }
 
 /// What an address that others reach lets them do.
-std::string opened_to(const Options& options, bool saves, std::uint16_t port) {
+std::string opened_to(const ViewFlags& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
   for (const std::string& address : view::addresses_reached(options.host)) where.push_back(view::authority_of(address, port));
   const char* what = options.read_only ? "can look at the scene"
@@ -78,7 +78,7 @@ std::string opened_to(const Options& options, bool saves, std::uint16_t port) {
       options.host, fmt::join(where, ", "), what, options.read_only ? "" : " (--read-only: look alone)");
 }
 
-void run_view(const Options& options) {
+void run_view(const ViewFlags& options) {
   log::set_quiet(options.quiet);
   Overrides overrides;
   if (!options.size.empty()) overrides.size = parse_size(options.size);
@@ -121,7 +121,7 @@ void run_view(const Options& options) {
 }  // namespace
 
 void add_view(CLI::App& app) {
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<ViewFlags>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
   add_scene_files(*command, o->scenes);
   command

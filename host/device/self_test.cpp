@@ -237,7 +237,7 @@ When when_to_test() {
   return std::strcmp(value, "1") == 0 ? When::always : When::unless_passed;
 }
 
-std::string cache_key(const Device& device, const std::vector<std::string>& texts) {
+std::string trial_key(const Device& device, const std::vector<std::string>& texts) {
   const DeviceInfo& info = device.info();
   std::string key = "self test";
   for (const std::string& part : {info.name, info.driver, info.version, info.platform}) key += '\0' + part;
@@ -260,11 +260,11 @@ std::vector<std::string> self_test_failures(const Device& device, const std::str
 
 bool self_test_is_due(const Device& device, const std::vector<std::string>& texts) {
   const When when = when_to_test();
-  return when == When::always || (when == When::unless_passed && !cache_load(cache_key(device, texts), "passed"));
+  return when == When::always || (when == When::unless_passed && !cache_load(trial_key(device, texts), "passed"));
 }
 
 void remember_self_test(const Device& device, const std::vector<std::string>& texts) {
-  cache_store(cache_key(device, texts), "passed", {});
+  cache_store(trial_key(device, texts), "passed", {});
 }
 
 void refuse_device(const Device& device, const std::vector<std::string>& failures) {

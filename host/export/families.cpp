@@ -14,10 +14,6 @@ namespace caplet::pbrt_text {
 
 namespace {
 
-[[noreturn]] void refuse(const SourceLocation& where, const std::string& what) {
-  throw InputError(where, what + ": it cannot be written");
-}
-
 void transform(Statement& to, const glm::dmat4& matrix) {
   if (!has_inverse(matrix) || !is_affine(matrix)) refuse(to.where(), "the transform has no inverse");
   if (matrix != glm::dmat4(1)) to.within("Transform " + matrix_text(matrix) + "\n");

@@ -23,10 +23,6 @@ namespace pbrt_text {
 
 namespace {
 
-[[noreturn]] void refuse(const SourceLocation& where, const std::string& what) {
-  throw InputError(where, what + ": it cannot be written");
-}
-
 class SceneWriter {
  public:
   SceneWriter(const Scene& scene, Stream& stream) : scene_(scene), stream_(stream) {}

@@ -13,10 +13,6 @@ namespace {
 
 constexpr const char* cap_names[] = {"flat", "round", "open"};
 
-[[noreturn]] void refuse(const SourceLocation& where, const std::string& what) {
-  throw InputError(where, what + ": it cannot be written");
-}
-
 /// The parameters of shapes whose model names its fields.
 struct WriteFields : Fields {
   explicit WriteFields(Statement& statement) : to(statement) {}

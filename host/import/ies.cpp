@@ -24,9 +24,9 @@ bool starts_with_word(std::string_view line, std::string_view word) {
   return line.starts_with(word);
 }
 
-class Reader {
+class IesReader {
  public:
-  Reader(const std::string& name, std::string_view text) : name_(name), text_(text) {}
+  IesReader(const std::string& name, std::string_view text) : name_(name), text_(text) {}
 
   IesProfile run() {
     header();
@@ -193,7 +193,7 @@ class Reader {
 
 }  // namespace
 
-IesProfile parse_ies(const std::string& name, std::string_view text) { return Reader(name, text).run(); }
+IesProfile parse_ies(const std::string& name, std::string_view text) { return IesReader(name, text).run(); }
 
 IesProfile read_ies(const std::filesystem::path& path) {
   IesProfile profile = parse_ies(path.string(), TextFile(path).text());

@@ -52,9 +52,9 @@ constexpr std::uint16_t codec_none = 0, codec_zip = 1;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 34;
 
 /// Numbers of a memory that may end anywhere.
-class Bytes {
+class GridBytes {
  public:
-  Bytes(const std::vector<char>& bytes, const SourceLocation& where, const std::string& file)
+  GridBytes(const std::vector<char>& bytes, const SourceLocation& where, const std::string& file)
       : bytes_(bytes), where_(where), file_(file) {}
 
   template <class T>
@@ -79,7 +79,7 @@ class Bytes {
 /// A grid's memory -> its bricks.
 class GridReader {
  public:
-  GridReader(const Bytes& bytes) : bytes_(bytes) {}
+  GridReader(const GridBytes& bytes) : bytes_(bytes) {}
 
   SparseGrid read() {
     if ((bytes_.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask)) bytes_.fail("is no NanoVDB grid");
@@ -197,13 +197,13 @@ class GridReader {
     return out_.values;
   }
 
-  const Bytes& bytes_;
+  const GridBytes& bytes_;
   std::uint32_t type_ = 0;
   std::uint64_t leaves_ = 0;
   SparseGrid out_;
 };
 
-std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, const Bytes& bytes) {
+std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, const GridBytes& bytes) {
   std::vector<char> out(size);
   uLongf length = size;
   if (uncompress(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<const Bytef*>(from.data()), from.size()) !=
@@ -223,7 +223,7 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
   const auto total = static_cast<std::uint64_t>(stream.tellg());
   std::uint64_t at = 0;
   const std::vector<char> nothing;
-  const Bytes whole(nothing, where, file);
+  const GridBytes whole(nothing, where, file);
   const auto read = [&](std::uint64_t offset, std::uint64_t count) {
     if (offset > total || count > total - offset) whole.fail("ends in the middle of a grid");
     std::vector<char> out(count);
@@ -235,18 +235,18 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
     if (version >> 21 != 32) whole.fail("is of NanoVDB version " + std::to_string(version >> 21) + ", not 32");
   };
   const auto grid_of = [&](const std::vector<char>& memory) {
-    const Bytes bytes(memory, where, file);
+    const GridBytes bytes(memory, where, file);
     SparseGrid grid = GridReader(bytes).read();
     grid.file = file;
     return std::make_shared<const SparseGrid>(std::move(grid));
   };
   while (at < total) {
     const std::vector<char> head = read(at, file_header_bytes);
-    const Bytes header(head, where, file);
+    const GridBytes header(head, where, file);
     if (header.at<std::uint64_t>(0) == magic_grid) {
       // The memory of a grid and nothing else.
       const std::vector<char> begin = read(at, grid_bytes);
-      const Bytes grid(begin, where, file);
+      const GridBytes grid(begin, where, file);
       check_version(grid.at<std::uint32_t>(16));
       const auto size = grid.at<std::uint64_t>(32);
       if (size < grid_bytes || size > total - at) whole.fail("ends in the middle of a grid");
@@ -265,7 +265,7 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
     std::vector<Told> all;
     for (std::uint16_t i = 0; i < grids; ++i) {
       const std::vector<char> told = read(at, meta_bytes);
-      const Bytes meta(told, where, file);
+      const GridBytes meta(told, where, file);
       const auto length = meta.at<std::uint32_t>(136);
       const std::vector<char> named = read(at + meta_bytes, length);
       const std::string text(named.begin(), named.end());
@@ -278,7 +278,7 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       std::uint64_t bytes = one.bytes;
       if (prefix != 0) {
         const std::vector<char> length = read(at, prefix);
-        bytes = Bytes(length, where, file).at<std::uint64_t>(0);
+        bytes = GridBytes(length, where, file).at<std::uint64_t>(0);
         at += prefix;
       }
       if (bytes > total - at) whole.fail("ends in the middle of a grid");

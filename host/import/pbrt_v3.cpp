@@ -8,11 +8,11 @@ namespace caplet::pbrt {
 
 namespace {
 
-struct Row {
+struct RenamedStatement {
   std::string_view directive, name, now;  // now empty: there is none any more
 };
 
-constexpr Row names[] = {
+constexpr RenamedStatement names[] = {
     {"Material", "disney", "\"diffuse\" (\"color\" is \"reflectance\")"},
     {"Material", "fourier", "\"measured\" (\"bsdffile\" is \"filename\")"},
     {"Material", "glass", "\"dielectric\" (\"index\" is \"eta\")"},
@@ -41,7 +41,7 @@ constexpr Row names[] = {
     {"type", "xyz", ""},
 };
 
-constexpr Row parameters[] = {
+constexpr RenamedStatement parameters[] = {
     {"Material", "Kd", "\"reflectance\""},
     {"Material", "bumpmap", "\"displacement\""},
     {"Material", "index", "\"eta\""},
@@ -55,8 +55,8 @@ constexpr Row parameters[] = {
     {"Film", "scale", ""},
 };
 
-std::string found(std::span<const Row> rows, std::string_view directive, std::string_view name) {
-  for (const Row& row : rows)
+std::string found(std::span<const RenamedStatement> rows, std::string_view directive, std::string_view name) {
+  for (const RenamedStatement& row : rows)
     if (row.directive == directive && row.name == name)
       return row.now.empty() ? "pbrt-v3's, which pbrt-v4 does not have" : "pbrt-v3's name for " + std::string(row.now);
   return {};

@@ -20,9 +20,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the rewritten body is written in the host's byte order");
 
 /// One value after the other, from text or bytes.
-class Values {
+class PlyValues {
  public:
-  Values(const std::string& file, std::string_view bytes, const Header& header)
+  PlyValues(const std::string& file, std::string_view bytes, const Header& header)
       : file_(file), bytes_(bytes), at_(header.size), line_(header.lines + 1), encoding_(header.encoding) {}
 
   double number(Type type) {
@@ -245,7 +245,7 @@ class Walk {
   }
 
   const Header& header_;
-  Values values_;
+  PlyValues values_;
   std::string vertices_, faces_;
   Colors* colors_;
   bool with_color_ = false;

@@ -30,7 +30,6 @@ namespace {
 
 constexpr std::size_t kColumns = 7;
 constexpr std::array<const char*, kColumns> kColumnNames = {"id", "type", "x", "y", "z", "radius", "parent"};
-constexpr int kSoma = 1;
 /// A radius of 0 stands for "not measured" or "tapers off"; it becomes this part of the file's median positive radius.
 constexpr float kMissingRadiusPart = 0.25F;
 

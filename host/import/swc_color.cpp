@@ -24,13 +24,12 @@ namespace caplet {
 
 namespace {
 
-constexpr int kSoma = 1;
 constexpr int kMostOrders = 256;  // whole numbers that have a colour each
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// `value(sample, parent's value)` of each sample, parents before children.
 template <class Value>
-std::vector<double> along_branches(const std::vector<SwcSample>& samples, const Value& value) {
+std::vector<double> values_along_branches(const std::vector<SwcSample>& samples, const Value& value) {
   std::vector<double> out(samples.size(), kNoValue);
   std::vector<std::size_t> path;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -70,14 +69,14 @@ Palette palette_of_type(int type) {
 
 // --- Files of values ---
 
-struct Row {
+struct ColorRow {
   std::string_view key;  // empty: a number alone
   double value = 0;
   int line = 0;
 };
 
-std::vector<Row> rows_of(std::string_view text, const std::string& file, std::string& name) {
-  std::vector<Row> rows;
+std::vector<ColorRow> rows_of(std::string_view text, const std::string& file, std::string& name) {
+  std::vector<ColorRow> rows;
   Diagnostics diagnostics;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   for (int line = 1; !text.empty(); ++line) {
@@ -89,7 +88,7 @@ std::vector<Row> rows_of(std::string_view text, const std::string& file, std::st
     }
     one = trimmed(one);
     if (one.empty()) continue;
-    Row row;
+    ColorRow row;
     row.line = line;
     const std::size_t before = one.find_last_of(", \t");
     const std::string_view number = before == std::string_view::npos ? one : one.substr(before + 1);
@@ -109,13 +108,13 @@ std::vector<Row> rows_of(std::string_view text, const std::string& file, std::st
   return rows;
 }
 
-std::vector<double> by_ids(const std::vector<Row>& rows, const std::vector<SwcSample>& samples, const std::string& file) {
+std::vector<double> by_ids(const std::vector<ColorRow>& rows, const std::vector<SwcSample>& samples, const std::string& file) {
   std::unordered_map<std::int64_t, std::size_t> index;
   for (std::size_t i = 0; i < samples.size(); ++i) index.emplace(samples[i].id, i);
   std::vector<double> out(samples.size(), kNoValue);
   Diagnostics diagnostics;
   std::vector<bool> said(samples.size());
-  for (const Row& row : rows) {
+  for (const ColorRow& row : rows) {
     std::int64_t id = 0;
     const auto found = parse_number(row.key, id) ? index.find(id) : index.end();
     if (found == index.end()) {
@@ -137,7 +136,7 @@ std::vector<double> branch_orders(const std::vector<SwcSample>& samples) {
   std::vector<std::uint32_t> children(samples.size(), 0);
   for (const SwcSample& sample : samples)
     if (sample.parent >= 0) ++children[static_cast<std::size_t>(sample.parent)];
-  return along_branches(samples, [&](std::size_t i, double of_parent) {
+  return values_along_branches(samples, [&](std::size_t i, double of_parent) {
     const auto p = static_cast<std::size_t>(samples[i].parent);
     const bool forks = children[p] > 1 && samples[p].type != kSoma && samples[p].parent >= 0;
     return of_parent + (forks ? 1 : 0);
@@ -145,7 +144,7 @@ std::vector<double> branch_orders(const std::vector<SwcSample>& samples) {
 }
 
 std::vector<double> path_depths(const std::vector<SwcSample>& samples) {
-  return along_branches(samples, [&](std::size_t i, double of_parent) {
+  return values_along_branches(samples, [&](std::size_t i, double of_parent) {
     const SwcSample& parent = samples[static_cast<std::size_t>(samples[i].parent)];
     return of_parent + glm::length(glm::dvec3(samples[i].position) - glm::dvec3(parent.position));
   });
@@ -157,19 +156,20 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
   const TextFile text(path);
   Unproven in_file;  // a number is no sign of what it is
   if (!options.are_of_scene) in_file.prove();
-  const std::vector<Row> rows = rows_of(text.text(), file, name);
+  const std::vector<ColorRow> rows = rows_of(text.text(), file, name);
   if (name.empty()) name = path.filename().string();
   std::int64_t id = 0;
   if (!rows.front().key.empty()) {
-    if (std::ranges::all_of(rows, [&](const Row& row) { return parse_number(row.key, id); })) return by_ids(rows, samples, file);
+    if (std::ranges::all_of(rows, [&](const ColorRow& row) { return parse_number(row.key, id); }))
+      return by_ids(rows, samples, file);
     const std::string stem = neuron.stem().string(), whole = neuron.filename().string();
-    const auto found = std::ranges::find_if(rows, [&](const Row& row) { return row.key == stem || row.key == whole; });
+    const auto found = std::ranges::find_if(rows, [&](const ColorRow& row) { return row.key == stem || row.key == whole; });
     if (found == rows.end()) throw InputError({file, 0, 0}, "has no line for " + caplet::quoted(stem));
     return std::vector<double>(samples.size(), found->value);
   }
   std::vector<double> out;
   if (rows.size() == samples.size()) {
-    for (const Row& row : rows) out.push_back(row.value);
+    for (const ColorRow& row : rows) out.push_back(row.value);
     return out;
   }
   if (options.files == rows.size()) return std::vector<double>(samples.size(), rows[options.file].value);

@@ -20,7 +20,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Nodes and weights of Gauss's rule of 2^k points on [-1, 1], by Newton's method on Legendre's polynomials.
 struct GaussRule {

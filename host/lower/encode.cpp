@@ -25,7 +25,6 @@ static_assert(shape_count <= 64, "sets of shapes, and six bits of leaf reference
 
 constexpr std::uint64_t max_rows(int kind_bits) { return std::uint64_t(1) << (31 - kind_bits); }
 constexpr std::uint64_t max_nodes = std::uint64_t(1) << 31;
-constexpr float inf = std::numeric_limits<float>::infinity();
 
 ExactBox kept_box(const FlatPrimitive& p) {
   ExactBox box;
@@ -41,6 +40,7 @@ ExactBox exact_box(const FlatPrimitive& p) {
     if constexpr (((traits)&trait_kept_box) == 0) return name##_box(p); \
     break;
 #define COMPOUND(name, traits)
+#include "lower/detail/floats.h"
 #include "shared/shapes.def"
 #undef SHAPE
     default:
@@ -48,13 +48,6 @@ ExactBox exact_box(const FlatPrimitive& p) {
   }
   return kept_box(p);
 }
-
-// Of a finite x; beyond the largest number comes infinity.
-float next_up(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
-}
-float next_down(float x) { return -next_up(-x); }
 
 bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
   const ReferenceBox box = reference_box(p);

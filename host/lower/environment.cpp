@@ -19,7 +19,7 @@ namespace caplet {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Luminances of the texels, with the neighbours that bilinear interpolation sees beyond the edges.
 class Luminances {

@@ -47,7 +47,7 @@ Level halved(const Level& from, std::size_t channels) {
 }
 
 /// sin(pi x) / (pi x).
-double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
+double sinc_pi(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
 
 /// Along one axis: the four texels about a new one's centre, by Lanczos' filter.
 struct Taps {
@@ -57,7 +57,7 @@ struct Taps {
     double sum = 0;
     for (int j = 0; j < 4; ++j) {
       const double x = first + j + 0.5 - center;
-      weights[j] = std::abs(x) < 2 ? sinc(x) * sinc(x / 2) : 0;
+      weights[j] = std::abs(x) < 2 ? sinc_pi(x) * sinc_pi(x / 2) : 0;
       sum += weights[j];
     }
     for (double& weight : weights) weight /= sum;

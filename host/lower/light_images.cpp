@@ -19,7 +19,7 @@ namespace caplet {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// Of the rectified image of one radiance, which has no texels, but weights.
 constexpr int side_without_image = 64;
 

@@ -17,6 +17,7 @@
 
 #include "base/check.h"
 #include "bvh/bvh.h"
+#include "lower/detail/floats.h"
 
 namespace caplet {
 
@@ -64,13 +65,6 @@ class CosineBits {
   double cosine_ = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t bits_ = 0;
 };
-
-// Of a finite x.
-float next_up(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
-}
-float next_down(float x) { return -next_up(-x); }
 
 /// The grid of the boxes' ends.
 struct Grid {

@@ -19,13 +19,13 @@ namespace caplet {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 template <class Model>
-constexpr std::uint32_t kind_of = light_count;
+constexpr std::uint32_t light_kinds = light_count;
 #define LIGHT_MODEL(name, Type) \
   template <>                   \
-  constexpr std::uint32_t kind_of<Type> = light_##name;
+  constexpr std::uint32_t light_kinds<Type> = light_##name;
 // An InfiniteLight is one of three.
 enum { light_infinite = light_count };
 #include "scene/lights.def"
@@ -102,7 +102,7 @@ class LightLowering {
 
   template <class Model>
   double lower(const Model& light, LightRecord& record) {
-    record.kind = kind_of<Model>;
+    record.kind = light_kinds<Model>;
     double unit;
     if constexpr (HasImage<Model>)
       unit = integral_of(light);

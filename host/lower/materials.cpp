@@ -16,10 +16,10 @@ static_assert(std::ranges::all_of(material_floats, [](std::uint32_t floats) { re
               "material_stride is too small");
 
 template <class Model>
-constexpr std::uint32_t kind_of = material_count;
+constexpr std::uint32_t material_kinds = material_count;
 #define MATERIAL_MODEL(name, Type) \
   template <>                      \
-  constexpr std::uint32_t kind_of<Type> = material_##name;
+  constexpr std::uint32_t material_kinds<Type> = material_##name;
 #include "scene/materials.def"
 
 // Every row of materials.def has its model.
@@ -114,7 +114,7 @@ MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const Ima
   if (out.material_data.size() < record.data + material_stride) out.material_data.resize(record.data + material_stride);
   std::visit(
       [&](const auto& model) {
-        record.kind = kind_of<std::decay_t<decltype(model)>>;
+        record.kind = material_kinds<std::decay_t<decltype(model)>>;
         FamilyData data(material_fields[record.kind], &out.material_data[record.data]);
         model.fields(model, MaterialWriter{data, spectra, record, scene, material, images, out});
         data.finish();

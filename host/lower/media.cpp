@@ -19,10 +19,10 @@ namespace caplet {
 namespace {
 
 template <class Model>
-constexpr std::uint32_t kind_of = medium_count;
+constexpr std::uint32_t medium_kinds = medium_count;
 #define MEDIUM_MODEL(name, Type) \
   template <>                    \
-  constexpr std::uint32_t kind_of<Type> = medium_##name;
+  constexpr std::uint32_t medium_kinds<Type> = medium_##name;
 #include "scene/media.def"
 
 // Every row of media.def has its model.
@@ -128,7 +128,7 @@ void lower_media(const Scene& scene, SpectrumTable& spectra, FlatScene& out) {
     std::visit(
         [&](const auto& model) {
           MediumRecord record{};
-          record.kind = kind_of<std::decay_t<decltype(model)>>;
+          record.kind = medium_kinds<std::decay_t<decltype(model)>>;
           record.data = narrow<uint>(out.media_data.size());
           record.flags = medium.subsurface ? CAPLET_MEDIUM_SUBSURFACE : 0u;
           out.media_data.resize(out.media_data.size() + medium_floats[record.kind]);

@@ -13,22 +13,22 @@ namespace caplet {
 
 namespace {
 
-constexpr int sides = CAPLET_MAJORANT_CELLS;
+constexpr int majorant_cells = CAPLET_MAJORANT_CELLS;
 
 /// The greatest of `values` in each of the cells of the box: linear interpolation between centres reaches those around it.
 std::vector<float> most_within(const GridCounts& counts, const std::vector<float>& values) {
   const auto range = [&](std::size_t axis, int cell) {
     const double n = counts[axis];
     // A hundredth of a cell, for points that are rounded.
-    const int low = static_cast<int>(std::floor(n * cell / sides - 0.51)),
-              high = static_cast<int>(std::floor(n * (cell + 1) / sides - 0.49)) + 1;
+    const int low = static_cast<int>(std::floor(n * cell / majorant_cells - 0.51)),
+              high = static_cast<int>(std::floor(n * (cell + 1) / majorant_cells - 0.49)) + 1;
     return std::pair(std::clamp(low, 0, counts[axis] - 1), std::clamp(high, 0, counts[axis] - 1));
   };
   std::vector<float> out;
-  out.reserve(static_cast<std::size_t>(sides * sides * sides));
-  for (int z = 0; z < sides; ++z)
-    for (int y = 0; y < sides; ++y)
-      for (int x = 0; x < sides; ++x) {
+  out.reserve(static_cast<std::size_t>(majorant_cells * majorant_cells * majorant_cells));
+  for (int z = 0; z < majorant_cells; ++z)
+    for (int y = 0; y < majorant_cells; ++y)
+      for (int x = 0; x < majorant_cells; ++x) {
         const auto [x0, x1] = range(0, x);
         const auto [y0, y1] = range(1, y);
         const auto [z0, z1] = range(2, z);

@@ -12,13 +12,12 @@
 #include <limits>
 
 #include "base/check.h"
+#include "lower/detail/floats.h"
 
 namespace caplet {
 
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t no_child = 0x7fffffffu;
 constexpr double slack = 0x1p-13;     // of a step
 constexpr int least_exponent = -100;  // of a step: what is lost where subnormal numbers are zeros is little of it
 constexpr float farthest = 0x1p126f;  // of coordinates that kernels compute with

@@ -14,6 +14,7 @@
 
 #include "lower/detail/area.h"
 #include "lower/detail/flat_shapes.h"
+#include "lower/detail/floats.h"
 #include "lower/detail/parts.h"
 
 namespace caplet {
@@ -22,11 +23,6 @@ namespace {
 
 using Matrix = glm::dmat4;
 using glm::dvec3;
-
-void write_matrix(float* rows, const Matrix& m) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
-}
 
 /// Bounds of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
 Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {

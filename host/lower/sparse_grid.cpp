@@ -18,7 +18,7 @@ namespace caplet {
 namespace {
 
 constexpr std::size_t head = 20;  // kernels/media/nanovdb.cl
-constexpr int sides = CAPLET_SPARSE_MAJORANT_CELLS;
+constexpr int sparse_majorant_cells = CAPLET_SPARSE_MAJORANT_CELLS;
 
 float bits(std::uint32_t x) { return std::bit_cast<float>(x); }
 
@@ -54,10 +54,10 @@ std::vector<float> sparse_floats(const SparseGrid& grid, const glm::dmat4& world
 }
 
 std::vector<float> sparse_majorants(const SparseGrid& grid) {
-  std::vector<float> out(static_cast<std::size_t>(sides) * sides * sides);
+  std::vector<float> out(static_cast<std::size_t>(sparse_majorant_cells) * sparse_majorant_cells * sparse_majorant_cells);
   const glm::dvec3 extent = grid.box.max - grid.box.min;
-  const glm::dmat4 cells_from_voxels =
-      glm::scale(glm::dmat4(1), double{sides} / extent) * glm::translate(glm::dmat4(1), -grid.box.min) * grid.medium_from_voxels;
+  const glm::dmat4 cells_from_voxels = glm::scale(glm::dmat4(1), double{sparse_majorant_cells} / extent) *
+                                       glm::translate(glm::dmat4(1), -grid.box.min) * grid.medium_from_voxels;
   // How far a voxel reaches, one to each side, in cells; a thousandth more, for points that are rounded.
   glm::dvec3 reach(1e-3);
   for (int c = 0; c < 3; ++c) reach += glm::abs(glm::dvec3(cells_from_voxels[c]));
@@ -68,12 +68,13 @@ std::vector<float> sparse_majorants(const SparseGrid& grid) {
       const glm::dvec3 voxel(8.0 * grid.bricks[i][0] + (v & 7), 8.0 * grid.bricks[i][1] + (v >> 3 & 7),
                              8.0 * grid.bricks[i][2] + (v >> 6));
       const glm::dvec3 at(cells_from_voxels * glm::dvec4(voxel, 1));
-      const auto cell = [](double x) { return static_cast<int>(std::clamp(std::floor(x), 0.0, sides - 1.0)); };
+      const auto cell = [](double x) { return static_cast<int>(std::clamp(std::floor(x), 0.0, sparse_majorant_cells - 1.0)); };
       for (int z = cell(at.z - reach.z); z <= cell(at.z + reach.z); ++z)
         for (int y = cell(at.y - reach.y); y <= cell(at.y + reach.y); ++y)
           for (int x = cell(at.x - reach.x); x <= cell(at.x + reach.x); ++x) {
             float& most =
-                out[(static_cast<std::size_t>(z) * sides + static_cast<std::size_t>(y)) * sides + static_cast<std::size_t>(x)];
+                out[(static_cast<std::size_t>(z) * sparse_majorant_cells + static_cast<std::size_t>(y)) * sparse_majorant_cells +
+                    static_cast<std::size_t>(x)];
             most = std::max(most, value);
           }
     }

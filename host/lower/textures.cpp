@@ -17,10 +17,10 @@ namespace caplet {
 namespace {
 
 template <class Model>
-constexpr std::uint32_t kind_of = texture_count;
+constexpr std::uint32_t texture_kinds = texture_count;
 #define TEXTURE_MODEL(name, Type) \
   template <>                     \
-  constexpr std::uint32_t kind_of<Type> = texture_##name;
+  constexpr std::uint32_t texture_kinds<Type> = texture_##name;
 #include "scene/textures.def"
 
 // Every row of textures.def has its model: `constant` is a constant operand, `extinction`, `displacement` and `alpha` come after
@@ -169,7 +169,7 @@ std::uint32_t Steps::add(std::uint32_t texture, TextureUse use) {
         model.fields(model, Operands([&](const char* name, const TextureOperand& of, bool is_factor) {
                        operands[name] = operand(of, is_factor ? TextureUse::number : use);
                      }));
-        return add_step(kind_of<std::decay_t<decltype(model)>>,
+        return add_step(texture_kinds<std::decay_t<decltype(model)>>,
                         [&](FamilyData& data) { model.fields(model, Writer(data, operands, *this, use)); });
       },
       scene_.textures[texture].model);

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "base/check.h"
+#include "lower/detail/floats.h"
 #include "shared/shapes.h"
 
 namespace caplet {
 
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr ReferenceBox nothing{{inf, inf, inf}, {-inf, -inf, -inf}};
 
 void extend(ReferenceBox& box, const ReferenceBox& other) {
@@ -53,8 +53,6 @@ ReferenceBox bounds_of(const EncodedTree& tree) {
   std::copy_n(tree.max, 3, box.max);
   return box;
 }
-
-constexpr std::uint32_t no_child = 0x7fffffffu;
 
 }  // namespace
 

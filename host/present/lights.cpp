@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <numbers>
 
 #include "scene/transform.h"
@@ -12,9 +13,6 @@
 namespace caplet {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double radians(double degrees) { return degrees * kPi / 180; }
 
 /// A round soft light: `radiance` within `radius` of `direction`, falling to 0 over `edge`. Angles in radians; the direction is
 /// in the viewer's axes (right, up, toward the viewer).
@@ -37,7 +35,8 @@ EnvironmentImage image_of(const char* preset, const glm::dvec3& background, cons
   std::size_t texel = 0;
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {
-      const double theta = kPi * (row + 0.5) / image.height, phi = 2 * kPi * (column + 0.5) / image.width;
+      const double theta = std::numbers::pi * (row + 0.5) / image.height,
+                   phi = 2 * std::numbers::pi * (column + 0.5) / image.width;
       // Light space: z up, x toward the viewer, y to the viewer's right.
       const glm::dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
       glm::dvec3 radiance = background;
@@ -55,18 +54,20 @@ EnvironmentImage image_of(const char* preset, const glm::dvec3& background, cons
 /// it shows 0.53 of it, and with fill and background 0.6 to 0.7. All lights lie outside what the camera sees (up to 33 degrees
 /// off its axis in the corners of a 16:9 image).
 EnvironmentImage studio() {
-  return image_of(studio_preset, {0.020, 0.024, 0.032},
-                  {{from_angles(radians(-48), radians(42)), radians(24), radians(8), {4.2, 4.0, 3.7}},
-                   {from_angles(radians(62), radians(8)), radians(30), radians(14), {0.72, 0.8, 0.92}},
-                   {from_angles(radians(150), radians(58)), radians(18), radians(8), {2.8, 2.9, 3.1}}});
+  return image_of(
+      studio_preset, {0.020, 0.024, 0.032},
+      {{from_angles(glm::radians(-48.0), glm::radians(42.0)), glm::radians(24.0), glm::radians(8.0), {4.2, 4.0, 3.7}},
+       {from_angles(glm::radians(62.0), glm::radians(8.0)), glm::radians(30.0), glm::radians(14.0), {0.72, 0.8, 0.92}},
+       {from_angles(glm::radians(150.0), glm::radians(58.0)), glm::radians(18.0), glm::radians(8.0), {2.8, 2.9, 3.1}}});
 }
 
 /// A smaller key from further to the side, hardly a fill, and rims from behind on both sides.
 EnvironmentImage dramatic() {
-  return image_of(dramatic_preset, {0.004, 0.005, 0.007},
-                  {{from_angles(radians(-74), radians(36)), radians(9), radians(4), {30, 27.5, 23.5}},
-                   {from_angles(radians(140), radians(20)), radians(16), radians(8), {4.2, 5.0, 6.4}},
-                   {from_angles(radians(40), radians(-30)), radians(30), radians(20), {0.10, 0.13, 0.18}}});
+  return image_of(
+      dramatic_preset, {0.004, 0.005, 0.007},
+      {{from_angles(glm::radians(-74.0), glm::radians(36.0)), glm::radians(9.0), glm::radians(4.0), {30, 27.5, 23.5}},
+       {from_angles(glm::radians(140.0), glm::radians(20.0)), glm::radians(16.0), glm::radians(8.0), {4.2, 5.0, 6.4}},
+       {from_angles(glm::radians(40.0), glm::radians(-30.0)), glm::radians(30.0), glm::radians(20.0), {0.10, 0.13, 0.18}}});
 }
 
 }  // namespace

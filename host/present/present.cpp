@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <numbers>
@@ -24,10 +25,7 @@ namespace caplet {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double radians(double degrees) { return degrees * kPi / 180; }
-
-constexpr double kFieldOfView = radians(35);  // of the shorter side
+constexpr double kFieldOfView = glm::radians(35.0);  // of the shorter side
 /// Thinner than this part of its middle extent, a scene counts as flat (extents as standard deviations along the principal axes).
 constexpr double kFlat = 0.35;
 
@@ -169,12 +167,12 @@ View choose_view(const std::vector<Ball>& balls) {
     const double main = size.z >= size.x && size.z >= size.y ? n.z : (size.y >= size.x ? n.y : n.x);
     return main < 0 ? -n : n;
   };
-  if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), radians(10), radians(6));
+  if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), glm::radians(10.0), glm::radians(6.0));
   // A volume: across its widest level direction, three-quarter.
   glm::dvec3 wide(axes.axis[0].x, 0, axes.axis[0].z);
   if (glm::length(wide) < 0.5) wide = {axes.axis[1].x, 0, axes.axis[1].z};
   glm::dvec3 across = glm::length(wide) > 0 ? glm::cross(glm::normalize(wide), glm::dvec3(0, 1, 0)) : glm::dvec3(0, 0, 1);
-  return turned(view_from(facing(across)), radians(30), radians(18));
+  return turned(view_from(facing(across)), glm::radians(30.0), glm::radians(18.0));
 }
 
 /// The view of the scene's framing; of balls that lie as in the world.

@@ -14,8 +14,6 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-constexpr double eps = 0x1p-24;
-
 double stretch_of(const dmat4& m) {
   double squares = 0;
   for (int c = 0; c < 3; ++c) squares += glm::dot(dvec3(m[c]), dvec3(m[c]));

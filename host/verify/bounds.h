@@ -12,6 +12,9 @@
 
 namespace caplet::verify {
 
+/// Half the distance from 1 to the next float: what rounding to a float changes at most, relative.
+inline constexpr double eps = 0x1p-24;
+
 /// A ray in the space of a primitive.
 struct LocalRay {
   const reference::Primitive* primitive;

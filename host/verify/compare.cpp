@@ -23,8 +23,6 @@ using glm::dvec2;
 using glm::dvec3;
 using reference::SceneHit;
 
-constexpr double eps = 0x1p-24;
-
 dvec3 to_dvec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 double ulp_of(double x) {

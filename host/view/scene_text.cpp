@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
 Json to_json(const glm::dmat4& m) {
   Json rows = Json::array();
   for (int i = 0; i < 16; ++i) rows.push_back(m[i % 4][i / 4]);
@@ -26,6 +24,8 @@ Json to_json(const glm::dmat4& m) {
 Json to_json(const Bounds& bounds) { return {to_json(bounds.min), to_json(bounds.max)}; }
 
 }  // namespace
+
+Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json camera_text(const Look& look) {
   return {{"world_from_camera", to_json(look.world_from_camera)},

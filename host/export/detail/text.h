@@ -14,6 +14,11 @@
 
 namespace caplet::pbrt_text {
 
+/// Throws the InputError of what pbrt text cannot say.
+[[noreturn]] inline void refuse(const SourceLocation& where, const std::string& what) {
+  throw InputError(where, what + ": it cannot be written");
+}
+
 /// Collects text and hands it on in pieces of some 64 KiB.
 class Text {
  public:

@@ -7,6 +7,9 @@
 
 namespace caplet {
 
+/// The type of the cell body's samples.
+inline constexpr int kSoma = 1;
+
 /// One line of the file.
 struct SwcSample {
   std::int64_t id = 0;

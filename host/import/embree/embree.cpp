@@ -25,7 +25,7 @@ namespace embree {
 namespace {
 
 constexpr int kDeepest = 500, kHighest = 5000;  // elements within each other, and by references
-constexpr std::size_t kMostFiles = 20;
+constexpr std::size_t kMostXmlFiles = 20;
 constexpr std::size_t kMostVisited = 4'000'000, kMostPlaced = 1'000'000;
 
 struct Node {
@@ -47,9 +47,9 @@ void add_child(Node& to, NodePtr child) {
   to.children.push_back(std::move(child));
 }
 
-class Reader {
+class EmbreeReader {
  public:
-  Reader(const fs::path& path, const ImageReader& reader, const ImportOptions& options)
+  EmbreeReader(const fs::path& path, const ImageReader& reader, const ImportOptions& options)
       : reader_(reader), options_(options), images_(scene_, reader) {
     scene_.source = path.string();
   }
@@ -104,7 +104,7 @@ class Reader {
       if (!found->second) throw InputError(named_at, "'" + path.string() + "' names itself, or a file that names it");
       return found->second;
     }
-    if (files_.size() == kMostFiles) throw InputError(named_at, fmt::format("more than {} files", kMostFiles));
+    if (files_.size() == kMostXmlFiles) throw InputError(named_at, fmt::format("more than {} files", kMostXmlFiles));
     files_[same] = nullptr;
     SceneFile scene_file(path, named_at);
     const pugi::xml_node root = scene_file.root();
@@ -342,7 +342,7 @@ class Reader {
 }  // namespace embree
 
 Imported import_embree(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
-  return embree::Reader(path, images, options).read(path);
+  return embree::EmbreeReader(path, images, options).read(path);
 }
 
 }  // namespace caplet

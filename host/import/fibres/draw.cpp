@@ -25,7 +25,7 @@ namespace caplet {
 
 namespace {
 
-enum class ColorBy { direction, fibre, file, scalar };
+enum class FibreColor { direction, fibre, file, scalar };
 // Steps of a colour's component: the first with which there are at most so many materials. Of the last there never are more.
 constexpr int kSteps[] = {255, 85, 51, 17, 15};
 constexpr std::size_t kMostColors = 16 * 16 * 16;
@@ -90,7 +90,7 @@ double mean_of(float a, float b) {
 /// The materials of the capsules' colours, one after the other.
 class Colors {
  public:
-  Colors(Scene& scene, ColorBy by) : scene_(scene), by_(by) {}
+  Colors(Scene& scene, FibreColor by) : scene_(scene), by_(by) {}
   void add(const glm::dvec3& color) {
     const glm::uvec3 step(glm::clamp(color, 0.0, 1.0) * static_cast<double>(kSteps[0]) + 0.5);
     keys_.push_back((step.x << 16U) + (step.y << 8U) + step.z);
@@ -129,14 +129,14 @@ class Colors {
   }
   void add_material(const glm::dvec3& shown) {
     const std::string name =
-        fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == ColorBy::direction ? "direction" : "color", shown.x, shown.y, shown.z);
+        fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == FibreColor::direction ? "direction" : "color", shown.x, shown.y, shown.z);
     // Full colours reflect nothing of two thirds of the light: 0.85 and 0.05.
-    const glm::dvec3 reflectance = by_ == ColorBy::direction ? 0.05 + 0.8 * shown : shown;
+    const glm::dvec3 reflectance = by_ == FibreColor::direction ? 0.05 + 0.8 * shown : shown;
     scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
   }
 
   Scene& scene_;
-  ColorBy by_;
+  FibreColor by_;
   std::vector<std::uint32_t> keys_;  // a colour in steps of 1/255
 };
 
@@ -152,7 +152,7 @@ std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
 
 struct Usual {
   float radius = 0;  // 0: by the extent
-  ColorBy color = ColorBy::direction;
+  FibreColor color = FibreColor::direction;
   const char* up = "y";
   bool hair = false;
   const char* unit = "";  // of the file's lengths
@@ -164,11 +164,11 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   scene.source = path.string();
   if (fibres.points.empty()) throw InputError({scene.source, 0, 0}, "holds no fibres");
   const std::optional<FibreScalars> asked = scalars_asked(options);
-  const ColorBy by = asked ? ColorBy::scalar
-                           : static_cast<ColorBy>(options.choice("color", {"direction", "fibre", "file", "scalar"},
-                                                                 static_cast<std::size_t>(usual.color)));
+  const FibreColor by = asked ? FibreColor::scalar
+                              : static_cast<FibreColor>(options.choice("color", {"direction", "fibre", "file", "scalar"},
+                                                                       static_cast<std::size_t>(usual.color)));
   const bool as_hair = usual.hair && !options.text("color");
-  if (options.text("color") && by == ColorBy::file && fibres.colors.empty())
+  if (options.text("color") && by == FibreColor::file && fibres.colors.empty())
     throw InputError({"--color"}, "the file has no colours");
   glm::vec3 low(fibres.points[0]), high(low);
   for (const glm::vec3& p : fibres.points) {
@@ -189,7 +189,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   }
   Colors colors(scene, by);
   ValueColors of_scalar;
-  if (by == ColorBy::scalar) of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
+  if (by == FibreColor::scalar) of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
   CapsulesShape capsules;
   bool tapered = false;
   std::size_t begin = 0;
@@ -205,16 +205,16 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
         const glm::dvec3 d(p1 - p0);
         const double length = glm::length(d);
         switch (by) {
-          case ColorBy::direction:
+          case FibreColor::direction:
             colors.add(length > 0 ? glm::abs(d) / length : glm::dvec3(0.5));
             break;
-          case ColorBy::fibre:
+          case FibreColor::fibre:
             colors.add(palette_color(f));
             break;
-          case ColorBy::file:
+          case FibreColor::file:
             colors.add(glm::dvec3(fibres.colors[fibres.colors.size() == 1 ? 0 : i]));
             break;
-          case ColorBy::scalar:
+          case FibreColor::scalar:
             capsules.materials.push_back(of_scalar.of(scalars->of_points ? mean_of(scalars->values[i], scalars->values[next])
                                                                          : static_cast<double>(scalars->values[f])));
             break;
@@ -230,7 +230,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
     begin = end;
   }
   if (!tapered) capsules.radius1 = {};
-  if (!as_hair && by != ColorBy::scalar) capsules.materials = colors.materials();
+  if (!as_hair && by != FibreColor::scalar) capsules.materials = colors.materials();
   Shape shape;
   shape.geometry = std::move(capsules);
   shape.name = path.stem().string();
@@ -245,34 +245,34 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
 }  // namespace
 
 Scene import_hair(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_hair(read_file(path, {}), path.string()), path, options, {0, ColorBy::file, "z", true});
+  return scene_of(read_hair(read_file(path, {}), path.string()), path, options, {0, FibreColor::file, "z", true});
 }
 Scene import_tressfx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, ColorBy::fibre, "y", true});
+  return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, FibreColor::fibre, "y", true});
 }
 Scene import_trk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false, "mm"}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false, "mm"}, scalars ? &*scalars : nullptr);
 }
 Scene import_tck(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
-                  {kStreamline, ColorBy::direction, "z", false, "mm"});
+                  {kStreamline, FibreColor::direction, "z", false, "mm"});
 }
 Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 Scene import_vtp(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_vtp(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, ColorBy::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 
 }  // namespace caplet

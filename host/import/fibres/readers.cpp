@@ -21,9 +21,9 @@ namespace caplet {
 namespace {
 
 /// Numbers of a file, of either byte order.
-class Bytes {
+class FileBytes {
  public:
-  Bytes(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path) {}
+  FileBytes(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path) {}
   void set_swapped(bool swapped) { swapped_ = swapped; }
   std::size_t left(std::size_t at) const { return at < bytes_.size() ? bytes_.size() - at : 0; }
 
@@ -59,7 +59,7 @@ class Bytes {
 }  // namespace
 
 Fibres read_hair(std::string_view text, const std::string& path) {
-  const Bytes bytes(text, path);
+  const FileBytes bytes(text, path);
   if (!text.starts_with("HAIR")) throw InputError({path, 0, 0}, "is no hair file: it does not begin with 'HAIR'");
   constexpr std::size_t header = 128;
   constexpr std::uint32_t has_segments = 1, has_points = 2, has_thickness = 4, has_transparency = 8, has_colors = 16;
@@ -101,7 +101,7 @@ Fibres read_hair(std::string_view text, const std::string& path) {
 }
 
 Fibres read_tressfx(std::string_view text, const std::string& path) {
-  const Bytes bytes(text, path);
+  const FileBytes bytes(text, path);
   const auto version = bytes.at<float>(0);
   if (!(version >= 4 && version < 5))
     throw InputError({path, 0, 0}, fmt::format("is no TressFX file of version 4 (its version is {})", version));
@@ -120,7 +120,7 @@ namespace {
 
 /// TrackVis' points are in millimetres from the corner of the first voxel, in the order of voxels that voxel_order says; the
 /// matrix takes indices of voxels, from their middles, in its own order, to RAS+.
-glm::dmat4 ras_from_trk(const Bytes& bytes, std::string_view text) {
+glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   glm::dmat4 ras_from_voxel(1);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
@@ -225,7 +225,7 @@ int FibreScalars::take(const std::string& array, std::size_t components, bool ar
 }
 
 Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* scalars_wanted) {
-  Bytes bytes(text, path);
+  FileBytes bytes(text, path);
   constexpr std::size_t header = 1000;
   if (!text.starts_with("TRACK")) throw InputError({path, 0, 0}, "is no TrackVis file: it does not begin with 'TRACK'");
   bytes.set_swapped(bytes.at<std::int32_t>(996) != static_cast<std::int32_t>(header));
@@ -263,7 +263,7 @@ Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* sc
 Fibres read_tck(std::string_view text, const std::string& path) {
   if (!text.starts_with("mrtrix tracks"))
     throw InputError({path, 1, 1}, "is no track file: it does not begin with 'mrtrix tracks'");
-  Bytes bytes(text, path);
+  FileBytes bytes(text, path);
   std::string_view rest = text;
   std::size_t offset = 0;
   bool wide = false;

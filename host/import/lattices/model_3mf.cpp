@@ -127,7 +127,7 @@ using model_3mf::Colors;
 using model_3mf::is;
 using model_3mf::Part;
 
-constexpr std::size_t kDeepest = 64;            // objects within objects
+constexpr std::size_t kDeepestObject = 64;      // objects within objects
 constexpr std::size_t kMostPlaces = 2'000'000;  // shared objects count each time
 constexpr std::string_view kModel = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
@@ -246,7 +246,8 @@ class PackageReader {
 
   /// `node`: an item or a component, which names an object.
   void visit(const Part& from, pugi::xml_node node, const glm::dmat4& parent, std::size_t depth) {
-    if (depth > kDeepest) from.fail(node, fmt::format("lies within more than {} other objects: are there cycles?", kDeepest));
+    if (depth > kDeepestObject)
+      from.fail(node, fmt::format("lies within more than {} other objects: are there cycles?", kDeepestObject));
     if (++visited_ > kMostPlaces) from.fail(node, fmt::format("more than {} objects are placed", kMostPlaces));
     const pugi::xml_attribute path = attribute(node, "path");
     const Part& in = path ? part(path.value()) : from;

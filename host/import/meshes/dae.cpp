@@ -26,23 +26,23 @@ namespace caplet {
 
 namespace {
 
-constexpr int kDeepest = 500;                      // nodes within nodes
-constexpr std::size_t kMostNodes = 1'000'000;      // that are placed, those of instances each time
-constexpr std::size_t kMostVertices = 50'000'000;  // likewise
-constexpr std::uint64_t kMostInputs = 64;          // numbers that a corner has
+constexpr int kDeepestNode = 500;                    // nodes within nodes
+constexpr std::size_t kMostPlacedNodes = 1'000'000;  // that are placed, those of instances each time
+constexpr std::size_t kMostVertices = 50'000'000;    // likewise
+constexpr std::uint64_t kMostInputs = 64;            // numbers that a corner has
 
-struct Corner {
+struct DaeCorner {
   std::uint32_t position = 0, normal = 0, uv = 0;
-  bool operator==(const Corner&) const = default;
+  bool operator==(const DaeCorner&) const = default;
 };
-struct CornerHash {
-  std::size_t operator()(const Corner& c) const {
+struct DaeCornerHash {
+  std::size_t operator()(const DaeCorner& c) const {
     return (c.position * std::size_t{0x9e3779b97f4a7c15} ^ c.normal) * std::size_t{0xbf58476d1ce4e5b9} ^ c.uv;
   }
 };
 
 /// Some faces of a geometry that have one material.
-struct Part {
+struct DaePart {
   TriangleMeshShape mesh;
   std::string symbol;
   SourceLocation where;
@@ -50,7 +50,7 @@ struct Part {
 
 /// A part where the scene has it, in the file's unit.
 struct PlacedPart {
-  const Part* part = nullptr;
+  const DaePart* part = nullptr;
   glm::dmat4 scene_from_part{1};
   std::string name, material;  // the node's; the id
 };
@@ -239,13 +239,13 @@ class DaeReader {
   }
 
   /// The faces of <triangles>, <polylist> and so on.
-  Part part_of(pugi::xml_node primitive) {
-    Part out;
+  DaePart part_of(pugi::xml_node primitive) {
+    DaePart out;
     out.symbol = primitive.attribute("material").value();
     out.where = file_.place(primitive);
     const std::string_view kind = primitive.name();
     const Inputs in = inputs(primitive);
-    std::unordered_map<Corner, std::uint32_t, CornerHash> known;
+    std::unordered_map<DaeCorner, std::uint32_t, DaeCornerHash> known;
     std::vector<std::uint32_t> numbers, around;
     std::vector<glm::vec3> places;
     const auto vertex = [&](std::uint64_t corner) {
@@ -255,7 +255,7 @@ class DaeReader {
         if (i >= of.count) fail(primitive, fmt::format("{} {}: there are {}", what, i, of.count));
         return i;
       };
-      const Corner c{index(in.position, "vertex"), index(in.normal, "normal"), index(in.uv, "texture coordinate")};
+      const DaeCorner c{index(in.position, "vertex"), index(in.normal, "normal"), index(in.uv, "texture coordinate")};
       const auto [entry, fresh] = known.try_emplace(c, narrow<std::uint32_t>(out.mesh.positions.size()));
       if (fresh) {
         const auto vector = [](const Input& of, std::uint32_t row) {
@@ -314,14 +314,14 @@ class DaeReader {
     return out;
   }
 
-  const std::vector<Part>& parts_of(pugi::xml_node geometry) {
+  const std::vector<DaePart>& parts_of(pugi::xml_node geometry) {
     const auto [entry, fresh] = geometries_.try_emplace(geometry.hash_value());
     if (!fresh) return entry->second;
     for (const pugi::xml_node primitive : geometry.child("mesh").children()) {
       const std::string_view kind = primitive.name();
       if (kind == "lines" || kind == "linestrips") leave_out(primitive);
       if (kind != "triangles" && kind != "polylist" && kind != "polygons" && kind != "trifans" && kind != "tristrips") continue;
-      Part part = part_of(primitive);
+      DaePart part = part_of(primitive);
       if (!part.mesh.triangles.empty()) entry->second.push_back(std::move(part));
     }
     if (const pugi::xml_node spline = geometry.child("spline")) leave_out(spline);
@@ -373,8 +373,8 @@ class DaeReader {
   }
 
   void place(pugi::xml_node node, const glm::dmat4& above, int depth) {
-    if (depth > kDeepest) fail(node, "nodes hold themselves, or are too many within each other");
-    if (++nodes_ > kMostNodes) fail(node, fmt::format("more than {} nodes with those of instances", kMostNodes));
+    if (depth > kDeepestNode) fail(node, "nodes hold themselves, or are too many within each other");
+    if (++nodes_ > kMostPlacedNodes) fail(node, fmt::format("more than {} nodes with those of instances", kMostPlacedNodes));
     const glm::dmat4 here = above * transform_of(node);
     const char* name = *node.attribute("name").value() ? node.attribute("name").value() : node.attribute("id").value();
     for (const pugi::xml_node child : node.children()) {
@@ -403,7 +403,7 @@ class DaeReader {
   }
 
   void place_geometry(pugi::xml_node geometry, pugi::xml_node instance, const glm::dmat4& scene_from_part, const char* name) {
-    for (const Part& part : parts_of(geometry)) {
+    for (const DaePart& part : parts_of(geometry)) {
       vertices_ += part.mesh.positions.size();
       if (vertices_ > kMostVertices) fail(geometry, fmt::format("more than {} vertices with those of instances", kMostVertices));
       PlacedPart placed{&part, scene_from_part, name, part.symbol};
@@ -492,7 +492,7 @@ class DaeReader {
   XmlFile file_;
   std::unordered_map<std::string, pugi::xml_node> ids_;
   std::map<std::size_t, Source> sources_;
-  std::map<std::size_t, std::vector<Part>> geometries_;
+  std::map<std::size_t, std::vector<DaePart>> geometries_;
   std::vector<PlacedPart> placed_;
   std::size_t nodes_ = 0, vertices_ = 0, left_out_ = 0;
   SourceLocation first_left_out_;

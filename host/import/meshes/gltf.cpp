@@ -21,7 +21,7 @@ namespace caplet {
 
 namespace {
 
-constexpr std::size_t kDeepest = 256;           // nodes within nodes
+constexpr std::size_t kDeepestChild = 256;      // nodes within nodes
 constexpr std::size_t kMostNodes = 10'000'000;  // placed: shared children count each time
 constexpr double kLumensPerWatt = 683;          // as Blender's exporter
 constexpr double kHighestPicture = 65535;       // pixels, of an orthographic camera's window
@@ -63,7 +63,8 @@ class GltfReader {
 
  private:
   void visit(std::size_t index, const glm::dmat4& parent, std::size_t depth) {
-    if (depth > kDeepest) file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index, kDeepest));
+    if (depth > kDeepestChild)
+      file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index, kDeepestChild));
     if (++visited_ > kMostNodes) file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
     const Json& node = file_.list("nodes")[index];
     const glm::dmat4 world = parent * file_.transform_of(node);

@@ -20,12 +20,12 @@ namespace caplet {
 namespace {
 
 /// Indices of one corner, from 0; -1: not given.
-struct Corner {
+struct ObjCorner {
   std::int64_t position = -1, uv = -1, normal = -1;
-  bool operator==(const Corner&) const = default;
+  bool operator==(const ObjCorner&) const = default;
 };
-struct CornerHash {
-  std::size_t operator()(const Corner& c) const {
+struct ObjCornerHash {
+  std::size_t operator()(const ObjCorner& c) const {
     std::uint64_t h = static_cast<std::uint64_t>(c.position) * 0x9e3779b97f4a7c15U;
     h = (h ^ static_cast<std::uint64_t>(c.uv + 1)) * 0xbf58476d1ce4e5b9U;
     h = (h ^ static_cast<std::uint64_t>(c.normal + 1)) * 0x94d049bb133111ebU;
@@ -33,9 +33,9 @@ struct CornerHash {
   }
 };
 
-struct Part {
+struct ObjPart {
   TriangleMeshShape mesh;
-  std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+  std::unordered_map<ObjCorner, std::uint32_t, ObjCornerHash> vertices;
   std::vector<glm::vec3> colors;  // of the mesh's vertices, as the file's numbers
   bool all_uvs = true, all_normals = true, all_colors = true;
   std::string name, material;
@@ -60,7 +60,7 @@ class ObjReader {
     with_materials_ = false;
     parse();
     std::vector<TriangleMeshShape> out;
-    for (const std::unique_ptr<Part>& part : parts_) {
+    for (const std::unique_ptr<ObjPart>& part : parts_) {
       complete(*part);
       out.push_back(std::move(part->mesh));
     }
@@ -139,11 +139,11 @@ class ObjReader {
     current_ = nullptr;
   }
 
-  Part& part() {
+  ObjPart& part() {
     if (current_) return *current_;
     const auto [found, fresh] = part_index_.try_emplace({name_, material_}, parts_.size());
     if (fresh) {
-      parts_.push_back(std::make_unique<Part>());
+      parts_.push_back(std::make_unique<ObjPart>());
       parts_.back()->name = name_;
       parts_.back()->material = material_;
       parts_.back()->line = line_;
@@ -152,8 +152,8 @@ class ObjReader {
   }
 
   /// "7", "7/3", "7//2" or "7/3/2"; from 1, or from -1 backwards.
-  Corner corner(const LineWords& words, std::size_t i) const {
-    Corner out;
+  ObjCorner corner(const LineWords& words, std::size_t i) const {
+    ObjCorner out;
     std::string_view text = words.word(i);
     const std::size_t counts[] = {positions_.size(), uvs_.size(), normals_.size()};
     std::int64_t* const fields[] = {&out.position, &out.uv, &out.normal};
@@ -176,7 +176,7 @@ class ObjReader {
     words.fail(i, quoted(words.word(i)) + " is no corner");
   }
 
-  std::uint32_t vertex(Part& part, const Corner& c) {
+  std::uint32_t vertex(ObjPart& part, const ObjCorner& c) {
     const auto [entry, fresh] = part.vertices.try_emplace(c, narrow<std::uint32_t>(part.mesh.positions.size()));
     if (fresh) {
       part.mesh.positions.push_back(positions_[static_cast<std::size_t>(c.position)]);
@@ -197,7 +197,7 @@ class ObjReader {
       if (thin_faces_++ == 0) first_thin_face_ = line_;
       return;
     }
-    Part& to = part();
+    ObjPart& to = part();
     corners_.clear();
     places_.clear();
     for (std::size_t i = 1; i < words.count(); ++i) {
@@ -221,7 +221,7 @@ class ObjReader {
   }
 
   /// Texture coordinates and normals are of all corners or of none.
-  static void complete(Part& part) {
+  static void complete(ObjPart& part) {
     if (!part.all_uvs) part.mesh.uvs.clear();
     if (!part.all_normals) part.mesh.normals.clear();
   }
@@ -230,7 +230,7 @@ class ObjReader {
     std::optional<std::uint32_t> plain;
     const glm::dmat4 world = world_from_file(options_, "y");
     scene_.world_from_file = glm::dmat3(world);
-    for (const std::unique_ptr<Part>& part : parts_) {
+    for (const std::unique_ptr<ObjPart>& part : parts_) {
       complete(*part);
       const SourceLocation where{scene_.source, part->line, 0};
       const auto material = materials_.find(part->material);
@@ -252,7 +252,7 @@ class ObjReader {
   }
 
   /// The vertices' colours times the material's; of what has no material they alone.
-  void color(const Part& part, Shape& shape) {
+  void color(const ObjPart& part, Shape& shape) {
     std::vector<glm::vec3> corners;
     for (const auto& triangle : std::get<TriangleMeshShape>(shape.geometry).triangles)
       for (const std::uint32_t vertex : triangle) corners.push_back(decoded_color(part.colors[vertex], most_color_));
@@ -285,14 +285,14 @@ class ObjReader {
   std::optional<std::uint32_t> white_;
   std::vector<glm::vec2> uvs_;
   std::string name_, material_;
-  Part* current_ = nullptr;
+  ObjPart* current_ = nullptr;
   std::map<std::pair<std::string, std::string>, std::size_t> part_index_;
-  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<ObjPart>> parts_;
   std::map<std::string, MtlMaterial> materials_;
   std::map<std::string, bool> unknown_;
 };
 
-class NoImages : public ImageReader {
+class NoImageFiles : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError(path.string() + ": no images"); }
 };
@@ -301,7 +301,7 @@ class NoImages : public ImageReader {
 
 std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation&) {
   const ImportOptions none;
-  const NoImages images;
+  const NoImageFiles images;
   return ObjReader(path, images, none).read_meshes();
 }
 

@@ -30,7 +30,7 @@ namespace caplet {
 namespace {
 
 enum class Style { ball_and_stick, spheres, sticks, trace };
-enum class ColorBy { element, chain, residue, bfactor };
+enum class MoleculeColor { element, chain, residue, bfactor };
 
 constexpr std::size_t kMostInDetail = 2000;  // atoms that are drawn as balls and sticks unless a style is asked for
 constexpr float kBall = 0.25F;               // of the van der Waals radius
@@ -41,8 +41,8 @@ constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // what is further ap
 
 class Painter {
  public:
-  Painter(Scene& scene, const Molecule& molecule, ColorBy by) : scene_(scene), molecule_(molecule), by_(by) {
-    if (by == ColorBy::bfactor) {
+  Painter(Scene& scene, const Molecule& molecule, MoleculeColor by) : scene_(scene), molecule_(molecule), by_(by) {
+    if (by == MoleculeColor::bfactor) {
       low_ = high_ = molecule.atoms.front().b_factor;
       for (const Atom& atom : molecule.atoms) {
         low_ = std::min(low_, atom.b_factor);
@@ -58,13 +58,13 @@ class Painter {
   std::uint32_t material(const Atom& atom) {
     const Residue& residue = molecule_.residues[atom.residue];
     switch (by_) {
-      case ColorBy::element:
+      case MoleculeColor::element:
         return of_element(atom);
-      case ColorBy::chain:
+      case MoleculeColor::chain:
         return named("chain " + molecule_.chains[residue.chain], [&] { return palette_color(residue.chain); });
-      case ColorBy::residue:
+      case MoleculeColor::residue:
         return named(residue.name.empty() ? "residue" : residue.name, [&] { return palette_color(index_.size()); });
-      case ColorBy::bfactor:
+      case MoleculeColor::bfactor:
         return b_factors_.of(static_cast<double>(atom.b_factor));
     }
     return 0;
@@ -72,14 +72,14 @@ class Painter {
 
   /// Of the b factors' colours; none of colours that tell no number.
   std::optional<Legend> legend() const {
-    if (by_ != ColorBy::bfactor) return std::nullopt;
+    if (by_ != MoleculeColor::bfactor) return std::nullopt;
     return viridis_legend("B factor", "\u00c5\u00b2", low_, high_);
   }
 
   std::uint32_t of_element(const Atom& atom) {
     return named(element_name(atom.element), [&] { return element_color(atom.element); });
   }
-  ColorBy by() const { return by_; }
+  MoleculeColor by() const { return by_; }
 
  private:
   std::uint32_t named(const std::string& name, const std::function<glm::dvec3()>& color) {
@@ -90,14 +90,14 @@ class Painter {
 
   Scene& scene_;
   const Molecule& molecule_;
-  ColorBy by_;
+  MoleculeColor by_;
   float low_ = 0, high_ = 0;
   ValueColors b_factors_;
   std::map<std::string, std::uint32_t> index_;
 };
 
 /// The capsules of a chain, of one kind: one shape.
-struct Part {
+struct DrawnPart {
   CapsulesShape capsules;
   bool tapered = false;
   void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material) {
@@ -115,9 +115,9 @@ struct Part {
   }
 };
 
-class Drawing {
+class MoleculeDrawing {
  public:
-  Drawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style, Painter& painter)
+  MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style, Painter& painter)
       : molecule_(molecule), bonds_(bonds), style_(style), painter_(painter) {}
 
   /// The shapes of the residues that `kept` says.
@@ -168,7 +168,7 @@ class Drawing {
   std::uint32_t color_of(const Atom& atom) const {
     return style_ == Style::trace ? painter_.of_element(atom) : painter_.material(atom);
   }
-  Part& part(const Atom& atom, const char* what) {
+  DrawnPart& part(const Atom& atom, const char* what) {
     const std::string& chain = molecule_.chains[molecule_.residues[atom.residue].chain];
     return parts_[(chain.empty() ? "molecule" : "chain " + chain) + what];
   }
@@ -176,7 +176,7 @@ class Drawing {
   void add_bond(const Atom& a, const Atom& b) {
     const std::uint32_t color_a = color_of(a), color_b = color_of(b);
     const float radius = bond_radius();
-    Part& out = part(a, " bonds");
+    DrawnPart& out = part(a, " bonds");
     if (color_a == color_b) {
       out.add(a.position, b.position, radius, radius, color_a);
       return;
@@ -207,7 +207,7 @@ class Drawing {
   }
 
   float tube_radius(const Atom& atom) const {
-    return painter_.by() == ColorBy::bfactor ? kThinTrace + (kThickTrace - kThinTrace) * painter_.part(atom) : kTraceRadius;
+    return painter_.by() == MoleculeColor::bfactor ? kThinTrace + (kThickTrace - kThinTrace) * painter_.part(atom) : kTraceRadius;
   }
 
   void add_tube(const std::vector<const Atom*>& run) {
@@ -250,10 +250,10 @@ class Drawing {
   const std::vector<Bond>& bonds_;
   Style style_;
   Painter& painter_;
-  std::map<std::string, Part> parts_;
+  std::map<std::string, DrawnPart> parts_;
 };
 
-void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name, Drawing& drawing) {
+void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name, MoleculeDrawing& drawing) {
   const auto found = molecule.assemblies.find(name);
   if (found == molecule.assemblies.end()) {
     std::string known;
@@ -300,9 +300,9 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
   molecule.frames = narrow<std::uint32_t>(frames);
 }
 
-using Reader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
+using MoleculeReader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
 
-Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options, Reader reader) {
+Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options, MoleculeReader reader) {
   Scene scene;
   scene.source = path.string();
   const std::optional<std::string> positions = options.text("positions");
@@ -316,15 +316,15 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   const std::size_t automatic =
       static_cast<std::size_t>(molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
   const auto style = static_cast<Style>(options.choice("style", {"ball-and-stick", "spheres", "sticks", "trace"}, automatic));
-  const std::size_t usual = static_cast<std::size_t>(style == Style::trace ? ColorBy::chain : ColorBy::element);
-  const auto by = static_cast<ColorBy>(options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
-  if (by == ColorBy::bfactor && !molecule.has_b_factors) throw InputError({"--color"}, "the file has no b factors");
+  const std::size_t usual = static_cast<std::size_t>(style == Style::trace ? MoleculeColor::chain : MoleculeColor::element);
+  const auto by = static_cast<MoleculeColor>(options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
+  if (by == MoleculeColor::bfactor && !molecule.has_b_factors) throw InputError({"--color"}, "the file has no b factors");
   if (style == Style::trace && std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
     throw InputError({"--style"}, "trace: the file has neither alpha carbons nor phosphorus of a polymer");
   const std::vector<Bond> bonds = style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
   if (positions) move_atoms(molecule, *positions, options.number("model", 1));
   Painter painter(scene, molecule, by);
-  Drawing drawing(molecule, bonds, style, painter);
+  MoleculeDrawing drawing(molecule, bonds, style, painter);
   const std::optional<std::string> assembly = options.text("assembly");
   if (assembly && *assembly != "none")
     add_assembly(scene, molecule, *assembly, drawing);

@@ -56,7 +56,7 @@ bool begins_with(std::string_view text, std::string_view begin) { return text.su
   throw InputError(where, message);
 }
 
-ResidueKind kind_of(const std::string& name) {
+ResidueKind residue_kind(const std::string& name) {
   const gemmi::ResidueInfo info = gemmi::find_tabulated_residue(name);
   if (info.is_water()) return ResidueKind::water;
   if (info.is_amino_acid()) return ResidueKind::amino_acid;
@@ -124,7 +124,7 @@ class Builder {
   void add_chain(const gemmi::Chain& chain, const std::string& altloc, bool hydrogens, bool water) {
     for (const gemmi::Residue& source : chain.residues) {
       Residue residue;
-      residue.kind = kind_of(source.name);
+      residue.kind = residue_kind(source.name);
       if (residue.kind == ResidueKind::water && !water) continue;
       residue.name = source.name;
       residue.part = source.subchain;

@@ -17,9 +17,9 @@ namespace caplet {
 
 namespace {
 
-class Reader {
+class SdfReader {
  public:
-  Reader(std::string_view text, const std::string& path, const ImportOptions& options)
+  SdfReader(std::string_view text, const std::string& path, const ImportOptions& options)
       : text_(text), path_(path), options_(options) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
@@ -175,7 +175,7 @@ class Reader {
 }  // namespace
 
 Molecule read_sdf(std::string_view text, const std::string& path, const ImportOptions& options) {
-  return Reader(text, path, options).read();
+  return SdfReader(text, path, options).read();
 }
 
 }  // namespace caplet

@@ -43,9 +43,9 @@ Columns columns_of(std::string_view comment) {
   return columns;
 }
 
-class Reader {
+class XyzReader {
  public:
-  Reader(std::string_view text, const std::string& path, const ImportOptions& options)
+  XyzReader(std::string_view text, const std::string& path, const ImportOptions& options)
       : text_(text), path_(path), options_(options) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
@@ -136,7 +136,7 @@ class Reader {
 }  // namespace
 
 Molecule read_xyz(std::string_view text, const std::string& path, const ImportOptions& options) {
-  return Reader(text, path, options).read();
+  return XyzReader(text, path, options).read();
 }
 
 }  // namespace caplet

@@ -35,9 +35,9 @@ constexpr std::size_t kMostTinted = std::size_t{1} << 30;  // bytes
 double linear(double screen) { return decoded_value({}, std::clamp(screen, 0.0, 1.0)); }
 RgbSpectrum linear(const glm::dvec3& screen) { return {{linear(screen.r), linear(screen.g), linear(screen.b)}}; }
 
-class Drawing {
+class RobotDrawing {
  public:
-  Drawing(const Robot& robot, Scene& scene, const glm::dmat4& world) : robot_(robot), scene_(scene), world_(world) {}
+  RobotDrawing(const Robot& robot, Scene& scene, const glm::dmat4& world) : robot_(robot), scene_(scene), world_(world) {}
 
   void add(const RobotGeom& geom) {
     if (!(rgba_of(geom).a > 0)) return;
@@ -382,7 +382,7 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
 void draw(const Robot& robot, const glm::dmat4& world, const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
   scene.world_from_file = glm::dmat3(world);
   scene.unit = "m";
-  Drawing drawing(robot, scene, world);
+  RobotDrawing drawing(robot, scene, world);
   for (const RobotGeom& geom : robot.geoms)
     if (shown(geom)) drawing.add(geom);
   drawing.finish();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "import/detail/mjcf.h"
 #include "import/detail/text_file.h"
@@ -14,8 +15,6 @@
 namespace caplet::mjcf {
 
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 /// Where an element stands: its model, the class of what names none, and what its name becomes.
 struct Scope {
@@ -28,9 +27,9 @@ struct Scope {
 };
 
 /// The numbers of a pose, joint by joint in the order of the file.
-class Values {
+class ElementValues {
  public:
-  Values(const Model& model, const Pose& pose) : pose_(pose) {
+  ElementValues(const Model& model, const Pose& pose) : pose_(pose) {
     if (!pose.keyframe) return;
     std::string known;
     for (const pugi::xml_node section : model.sections("keyframe"))
@@ -92,9 +91,9 @@ class Values {
   std::set<std::string> moved_;
 };
 
-class Reader {
+class BodiesReader {
  public:
-  Reader(const Model& model, const Pose& pose, Robot& robot, Assets& assets)
+  BodiesReader(const Model& model, const Pose& pose, Robot& robot, Assets& assets)
       : model_(model), values_(model, pose), robot_(robot), assets_(assets) {}
 
   void read() {
@@ -161,7 +160,7 @@ class Reader {
     const glm::dvec3 offset = element.vector("offset", {0, 0, 0});
     Scope inner = scope;
     inner.childclass = model.class_of(node, "childclass", scope.childclass);
-    const double scale = model.compiler().degrees ? kDegree : 1;
+    const double scale = model.compiler().degrees ? glm::radians(1.0) : 1;
     glm::dvec3 at(0);
     for (std::size_t i = 0; i < count; ++i) {
       glm::dquat turn(1, 0, 0, 0);
@@ -263,13 +262,13 @@ class Reader {
     if (kind == 0) {
       const glm::dquat q = glm::quat_cast(glm::dmat3(world));
       const std::vector<double> v = values_.joint(name, {world[3].x, world[3].y, world[3].z, q.w, q.x, q.y, q.z});
-      world = placed({v[0], v[1], v[2]}, Values::turn({v[3], v[4], v[5], v[6]}));
+      world = placed({v[0], v[1], v[2]}, ElementValues::turn({v[3], v[4], v[5], v[6]}));
       return;
     }
     const glm::dvec3 at(frame * glm::dvec4(element.vector("pos", {0, 0, 0}), 1));
     if (kind == 1) {
       const std::vector<double> v = values_.joint(name, {1, 0, 0, 0});
-      world = world * placed(at, Values::turn({v[0], v[1], v[2], v[3]})) * glm::translate(glm::dmat4(1), -at);
+      world = world * placed(at, ElementValues::turn({v[0], v[1], v[2], v[3]})) * glm::translate(glm::dmat4(1), -at);
       return;
     }
     glm::dvec3 axis = glm::dmat3(frame) * element.vector("axis", {0, 0, 1});
@@ -524,7 +523,7 @@ class Reader {
   }
 
   const Model& model_;
-  Values values_;
+  ElementValues values_;
   Robot& robot_;
   Assets& assets_;
   std::size_t elements_ = 0, geoms_ = 0;
@@ -539,7 +538,7 @@ class Reader {
 }  // namespace
 
 void read_bodies(const Model& model, const Pose& pose, Robot& robot, Assets& assets) {
-  Reader(model, pose, robot, assets).read();
+  BodiesReader(model, pose, robot, assets).read();
 }
 
 }  // namespace caplet::mjcf

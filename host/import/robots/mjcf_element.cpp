@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "import/detail/mjcf.h"
 #include "import/detail/text_file.h"
@@ -14,7 +15,6 @@ namespace caplet::mjcf {
 
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr const char* kTurns[] = {"quat", "axisangle", "euler", "xyaxes", "zaxis"};
 
 glm::dvec3 unit(const glm::dvec3& v, const Model& model, pugi::xml_node node, const char* what) {
@@ -93,7 +93,7 @@ glm::dvec3 Element::vector(const char* name, glm::dvec3 otherwise) const {
 }
 
 double Element::angle(const char* name, double otherwise) const {
-  return has(name) ? number(name, 0) * (model_->compiler().degrees ? kDegree : 1) : otherwise;
+  return has(name) ? number(name, 0) * (model_->compiler().degrees ? glm::radians(1.0) : 1) : otherwise;
 }
 
 glm::dquat Element::rotation() const {
@@ -112,7 +112,7 @@ glm::dquat Element::rotation() const {
   const std::string_view turn = how;
   const std::size_t count = turn == "xyaxes" ? 6 : turn == "quat" || turn == "axisangle" ? 4 : 3;
   const std::vector<double> v = numbers_of(at.attribute(how).value(), count, count, model_->place(at), how);
-  const double scale = model_->compiler().degrees ? kDegree : 1;
+  const double scale = model_->compiler().degrees ? glm::radians(1.0) : 1;
   if (turn == "quat") {
     const glm::dquat q(v[0], v[1], v[2], v[3]);
     const double length = glm::length(q);

@@ -12,8 +12,8 @@ using Matrix = glm::dmat4;
 
 namespace {
 
-HullEnd end0(const FlatPrimitive& p) { return {cone_r0(p.data), cone_cap0(p.data)}; }
-HullEnd end1(const FlatPrimitive& p) { return {cone_r1(p.data), cone_cap1(p.data)}; }
+HullEnd cone_end0(const FlatPrimitive& p) { return {cone_r0(p.data), cone_cap0(p.data)}; }
+HullEnd cone_end1(const FlatPrimitive& p) { return {cone_r1(p.data), cone_cap1(p.data)}; }
 
 }  // namespace
 
@@ -32,18 +32,18 @@ FlatPrimitive flat_primitive(const ConeShape& cone, const Matrix& m, std::vector
 bool bakes_under(const ConeShape&, const Matrix& m) { return similarity_scale(m) > 0; }
 glm::dmat3 turn_under(const ConeShape&, const Matrix& m) { return turn_of_similarity(m); }
 
-ExactBox cone_box(const FlatPrimitive& p) { return hull_box(cone_p0(p.data), cone_p1(p.data), end0(p), end1(p)); }
+ExactBox cone_box(const FlatPrimitive& p) { return hull_box(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p)); }
 
 double cone_area(const FlatPrimitive& p, const std::vector<float>&) {
-  return hull_area(length3(cone_p0(p.data), cone_p1(p.data)), end0(p), end1(p));
+  return hull_area(length3(cone_p0(p.data), cone_p1(p.data)), cone_end0(p), cone_end1(p));
 }
 
 void cone_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& pieces) {
-  pieces.hull(cone_p0(p.data), cone_p1(p.data), end0(p), end1(p));
+  pieces.hull(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p));
 }
 
 FlatPrimitive cone_grown(FlatPrimitive p, double b, std::vector<float>&) {
-  const GrownHull grown = grown_hull(cone_p0(p.data), cone_p1(p.data), end0(p), end1(p), b);
+  const GrownHull grown = grown_hull(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p), b);
   put(p, cone_at_p0, grown.p0);
   put(p, cone_at_p1, grown.p1);
   p.data[cone_at_r0] = static_cast<float>(grown.r0);

@@ -115,6 +115,7 @@ FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& lea
     if constexpr (((traits)&trait_solid) != 0) return name##_grown(p, b, leaves); \
     break;
 #define COMPOUND(name, traits)
+#include "lower/detail/floats.h"
 #include "shared/shapes.def"
 #undef SHAPE
     default:
@@ -160,11 +161,6 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   return out;
 }
 
-void write_matrix(float* rows, const Matrix& m) {
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows[r * 4 + c] = static_cast<float>(m[c][r]);
-}
-
 /// Operands that one call of a span function answers.
 struct Group {
   std::vector<std::size_t> operands;
@@ -188,7 +184,7 @@ std::vector<Group> grouped(const std::vector<Operand>& operands) {
   return groups;
 }
 
-float bits(std::size_t number) { return std::bit_cast<float>(narrow<std::uint32_t>(number)); }
+float as_row(std::size_t number) { return std::bit_cast<float>(narrow<std::uint32_t>(number)); }
 
 std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 
@@ -207,7 +203,7 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
   for (std::size_t lane = 0; lane < lanes_per_group; ++lane) {
     // Lanes without an operand repeat the first.
     const Operand& operand = operands[group.operands[lane < group.operands.size() ? lane : 0]];
-    leaves[block + lane] = bits(operand.uv_space);
+    leaves[block + lane] = as_row(operand.uv_space);
     for (std::size_t j = 0; j + 1 < rows; ++j) {
       leaves[block + 8 * (j + 1) + lane] = operand.flat.data[j];
       leaves[block + 8 * (j + 1) + lanes_per_group + lane] = operand.grown.data[j];
@@ -228,7 +224,7 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
     }
   }
   const std::size_t values[] = {one.flat.shape, block, group.operands.size(), first, transform, chain};
-  for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = bits(values[k]);
+  for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = as_row(values[k]);
 }
 
 }  // namespace
@@ -285,24 +281,24 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
       append_rows(leaves, 8 * (1 + groups.size()) + round_up(surfaces.size()) + round_up(flattening.program.size()));
   for (int k = 0; k < 3; ++k) leaves[begin + static_cast<std::size_t>(k)] = static_cast<float>(center[k]);
   leaves[begin + 3] = std::nextafter(static_cast<float>(radius), INFINITY);
-  leaves[begin + 4] = bits(groups.size());
-  leaves[begin + 5] = bits(flattening.program.size());
-  leaves[begin + 6] = bits(operands.size());
+  leaves[begin + 4] = as_row(groups.size());
+  leaves[begin + 5] = as_row(flattening.program.size());
+  leaves[begin + 6] = as_row(operands.size());
   std::size_t at = begin + 8, first = 0;
   for (const Group& group : groups) {
     write_group(group, operands, first, at, leaves);
     first += group.operands.size();
     at += 8;
   }
-  for (std::size_t i = 0; i < surfaces.size(); ++i) leaves[at + i] = bits(surfaces[i]);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) leaves[at + i] = as_row(surfaces[i]);
   at += round_up(surfaces.size());
   for (std::size_t i = 0; i < flattening.program.size(); ++i) {
     const std::uint32_t code = flattening.program[i];
-    leaves[at + i] = bits(code < CAPLET_CSG_UNION ? number[code] : code);
+    leaves[at + i] = as_row(code < CAPLET_CSG_UNION ? number[code] : code);
   }
 
   FlatPrimitive p{shape_csg, 0, {}};
-  p.data[csg_at_begin] = bits(begin);
+  p.data[csg_at_begin] = as_row(begin);
   put(p, csg_data, box.min - error);
   put(p, csg_data + 3, box.max + error);
   return p;

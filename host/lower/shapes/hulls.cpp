@@ -15,7 +15,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// What a flat end adds. Round ones have no disk, open ones none that is seen.
 double disk_area_of(const HullEnd& end) { return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0; }

@@ -16,6 +16,9 @@ namespace caplet::view {
 /// Most shapes and instances that are named one by one.
 inline constexpr std::size_t most_named = 5000;
 
+/// Three numbers: x, y, z.
+nlohmann::ordered_json to_json(const glm::dvec3& v);
+
 /// How the page says it, too (messages.h).
 nlohmann::ordered_json camera_text(const Look& look);
 
