@@ -14,6 +14,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "bvh/bvh.h"
+#include "lower/detail/floats.h"
 #include "lower/detail/shapes.h"
 
 namespace caplet {
@@ -40,7 +41,6 @@ ExactBox exact_box(const FlatPrimitive& p) {
     if constexpr (((traits)&trait_kept_box) == 0) return name##_box(p); \
     break;
 #define COMPOUND(name, traits)
-#include "lower/detail/floats.h"
 #include "shared/shapes.def"
 #undef SHAPE
     default:

@@ -18,6 +18,7 @@
 
 #include "base/check.h"
 #include "lower/detail/flat_shapes.h"
+#include "lower/detail/floats.h"
 #include "lower/detail/shapes.h"
 
 namespace caplet {
@@ -115,7 +116,6 @@ FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& lea
     if constexpr (((traits)&trait_solid) != 0) return name##_grown(p, b, leaves); \
     break;
 #define COMPOUND(name, traits)
-#include "lower/detail/floats.h"
 #include "shared/shapes.def"
 #undef SHAPE
     default:
