@@ -82,7 +82,6 @@ std::vector<BadInput> bad_inputs() {
       file("swc_word", "cell.swc", "1 1 0 0 0 1 -1\n2 3 zero 5 0 1 1\n", "cell.swc:2", ""),
       file("capsules_unclosed", "axon.capsules", "<0, 0, 0> <1, 0, 0> 0.5\n<0, 0, 0> <1, 0 0.5\n", "axon.capsules:2", ""),
       file("capsules_negative_radius", "axon.capsules", "<0, 0, 0> <1, 0, 0> -0.5\n", "axon.capsules:1", "radius"),
-      scene("no_shapes", head + "LightSource \"infinite\"\n", "scene.pbrt", ""),
       // Directives and parameters.
       scene("unknown_directive", head + "Shapes \"sphere\"\n" + capsule, "scene.pbrt:5:1", "Shapes"),
       scene("unknown_shape", head + "Shape \"potato\"\n" + capsule, "scene.pbrt:5:", "potato"),
