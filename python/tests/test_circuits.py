@@ -484,6 +484,25 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
         caplet.from_sonata(many, morphologies=morphologies, color=np.linspace(0, 1, 900).reshape(300, 3))
 
 
+def test_what_is_wrong_with_node_sets_is_said_of_their_file(circuit, tmp_path):
+    with pytest.raises(caplet.InputError, match="node set 'none'") as caught:
+        caplet.from_sonata(circuit, ids="none")
+    assert caught.value.file == str(tmp_path / "sets.json")
+    (tmp_path / "sets.json").write_text("[")
+    with pytest.raises(caplet.InputError, match="node set 'deep'") as caught:
+        caplet.from_sonata(circuit, ids="deep")
+    assert caught.value.file == str(tmp_path / "sets.json")
+
+
+def test_files_are_named_by_texts_bytes_and_paths(circuit):
+    pytest.importorskip("neuroml.loaders")
+    for load, path in ((caplet.from_sonata, circuit), (caplet.from_neuroml, neuroml(CELL))):
+        scenes = [load(name) for name in (path, os.fsencode(path), pathlib.Path(path))]
+        for scene in scenes[1:]:
+            assert scene.shapes == scenes[0].shapes and len(scene.shapes) > 1
+            assert scene.objects == scenes[0].objects and np.array_equal(scene.bounds, scenes[0].bounds)
+
+
 def test_files_are_let_go_of(tmp_path):
     _, _, h5py = sonata()
     path, errors = str(tmp_path / "nodes.h5"), []
