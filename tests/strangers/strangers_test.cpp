@@ -394,6 +394,9 @@ TEST_F(Strangers, ErrorsShowWhatIsWrongInScenes) {
       {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 Shpe\n"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 Shpe 0\n3 0 1 2\n"},
       {"a.xyz", "2\n\nC 0 0 0\nC 0 0 Shpe\n"},
+      {"a.sdf",
+       "a\n\n\n  2  0  0  0  0  0  0  0  0  0999 V2000\n    0.0000    0.0000    0.0000 C   0  0\n"
+       "    1.0000    0.0000      Shpe C   0  0\n"},
       {"a.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 Shpe\n"},
       {"a.urdf", "<robot name='r'><link name='l'><visual><geometry><sphere radius='Shpe'/></geometry></visual></link></robot>"},
       {"a.mjcf", "<mujoco><worldbody><geom size='Shpe'/></worldbody></mujoco>"},
