@@ -293,6 +293,8 @@ def test_colors(circuit):
     assert scene.objects == ["fork cells", "stick cells"] and np.allclose(albedo(scene, at[1]), scene.info["colors"]["cells"], **close)
     scene = caplet.from_sonata(circuit, color=(0.2, 0.4, 0.6))
     assert scene.objects == ["fork", "stick"] and np.allclose(albedo(scene, at[1]), (0.2, 0.4, 0.6), **close) and np.allclose(albedo(scene, (1010, 0)), (0.2, 0.4, 0.6), **close)
+    scene = caplet.from_sonata(circuit, color="#336699")
+    assert scene.objects == ["fork", "stick"] and all(np.allclose(albedo(scene, place), linear("336699"), **close) for place in (*at, (1010, 0), (1020, 0)))
     # Numbers: by the colour map's ends, those without one grey, with a colour bar.
     scene = caplet.from_sonata(circuit, color="depth")
     assert np.allclose(albedo(scene, at[0]), caplet.color_map(0.0, 0, 1)[0], **close) and np.allclose(albedo(scene, at[4]), caplet.color_map(1.0, 0, 1)[0], **close)

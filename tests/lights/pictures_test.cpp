@@ -286,12 +286,15 @@ TEST(TexturedArea, ShinesWhereItIsThere) {
   TextureOperand alpha(1);
   alpha.texture = 0;
   scene.shapes[0].alpha = alpha;
-  LightBench bench(lower(scene));
-  const Estimate found = irradiance(bench, p_below, up);
   const double expected = quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up, [&](double x, double y) {
     return (1 - x) * ((1 - y) * values[0] + y * values[1]) + x * ((1 - y) * values[2] + y * values[3]);
   });
-  EXPECT_NEAR(found.mean, expected, 4 * found.error + 1e-4 * expected);
+  for (const bool two_sided : {false, true}) {
+    scene.shapes[0].emission->two_sided = two_sided;
+    LightBench bench(lower(scene));
+    const Estimate found = irradiance(bench, p_below, up);
+    EXPECT_NEAR(found.mean, expected, 4 * found.error + 1e-4 * expected) << two_sided;
+  }
 }
 
 // pbrt-v4: a light with the number 0 for alpha shines as if it were there, and no ray meets it.
