@@ -74,7 +74,7 @@ TEST(Nesting, MirroredRaysAreOnTheSideThatTheyGoTo) {
   const std::string cube =
       "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"normal N\" [" +
       normals + "] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]\n";
-  EXPECT_NEAR(lost(-9, "Translate 0.1 0.2 0\n" + mirror + cube), 0, 1e-3);
+  EXPECT_NEAR(lost(-9, white_walls() + "Translate 0.1 0.2 0\n" + mirror + cube), 0, 1e-3);
 }
 
 TEST(Nesting, MeshesHoldMediaByTheirNormals) {
