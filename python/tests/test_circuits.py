@@ -293,6 +293,8 @@ def test_colors(circuit):
     assert scene.objects == ["fork cells", "stick cells"] and np.allclose(albedo(scene, at[1]), scene.info["colors"]["cells"], **close)
     scene = caplet.from_sonata(circuit, color=(0.2, 0.4, 0.6))
     assert scene.objects == ["fork", "stick"] and np.allclose(albedo(scene, at[1]), (0.2, 0.4, 0.6), **close) and np.allclose(albedo(scene, (1010, 0)), (0.2, 0.4, 0.6), **close)
+    scene = caplet.from_sonata(circuit, color="#336699")
+    assert scene.objects == ["fork", "stick"] and all(np.allclose(albedo(scene, place), linear("336699"), **close) for place in (*at, (1010, 0), (1020, 0)))
     # Numbers: by the colour map's ends, those without one grey, with a colour bar.
     scene = caplet.from_sonata(circuit, color="depth")
     assert np.allclose(albedo(scene, at[0]), caplet.color_map(0.0, 0, 1)[0], **close) and np.allclose(albedo(scene, at[4]), caplet.color_map(1.0, 0, 1)[0], **close)
@@ -482,6 +484,25 @@ def test_what_circuits_cannot_give(circuit, tmp_path):
     many = str(write_nodes(h5py, tmp_path / "many.h5", {"A": {**{k: np.zeros(300) for k in "xyz"}, "morphology": ["fork"] * 300}}))
     with pytest.raises(caplet.InputError, match="300 different colours of cells; at most 256"):
         caplet.from_sonata(many, morphologies=morphologies, color=np.linspace(0, 1, 900).reshape(300, 3))
+
+
+def test_what_is_wrong_with_node_sets_is_said_of_their_file(circuit, tmp_path):
+    with pytest.raises(caplet.InputError, match="node set 'none'") as caught:
+        caplet.from_sonata(circuit, ids="none")
+    assert caught.value.file == str(tmp_path / "sets.json")
+    (tmp_path / "sets.json").write_text("[")
+    with pytest.raises(caplet.InputError, match="node set 'deep'") as caught:
+        caplet.from_sonata(circuit, ids="deep")
+    assert caught.value.file == str(tmp_path / "sets.json")
+
+
+def test_files_are_named_by_texts_bytes_and_paths(circuit):
+    pytest.importorskip("neuroml.loaders")
+    for load, path in ((caplet.from_sonata, circuit), (caplet.from_neuroml, neuroml(CELL))):
+        scenes = [load(name) for name in (path, os.fsencode(path), pathlib.Path(path))]
+        for scene in scenes[1:]:
+            assert scene.shapes == scenes[0].shapes and len(scene.shapes) > 1
+            assert scene.objects == scenes[0].objects and np.array_equal(scene.bounds, scenes[0].bounds)
 
 
 def test_files_are_let_go_of(tmp_path):

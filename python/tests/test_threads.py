@@ -173,6 +173,26 @@ assert session.spp == 24 and equal(session.image(), alone)
 """)
 
 
+def test_a_session_is_updated_by_several_threads():
+    often("""
+alone = picture(spp=3)
+session = caplet.Session(scene, size=SIZE)
+shape = scene.shape("balls")
+def render():
+    for _ in range(12):
+        session.render(1)
+def update():
+    for i in range(12):
+        shape.transform = np.diag([1, 1, 1 + 0.1 * (i % 3), 1])
+        session.update(scene)
+together(render, render, update, update)
+for z in (1.5, 1):
+    shape.transform = np.diag([1, 1, z, 1])
+    session.update(scene)
+assert session.render(3) == 3 and equal(session.image(), alone)
+""")
+
+
 def test_exceptions_and_exits_in_threads_are_theirs_alone():
     often("""
 import concurrent.futures

@@ -66,6 +66,7 @@ TEST(BsdfSampling, WeightIsValueOverDensity) {
         ASSERT_NEAR(row.value_pdf / row.pdf, 1, 3e-3) << bsdf.name << " at " << theta;
         ASSERT_NEAR(row.value / row.value_pdf, row.weight, 3e-3 * row.weight) << bsdf.name << " at " << theta;
         ASSERT_EQ(row.transmitted, row.wi[2] * std::cos(theta) < 0 ? 1.0f : 0.0f);
+        ASSERT_EQ(row.specular, 0) << bsdf.name << " at " << theta;
         const float squared = trial->bends && row.transmitted != 0 ? bsdf.eta * bsdf.eta : 1;
         ASSERT_FLOAT_EQ(row.eta_scale, theta < 1.6 ? squared : 1 / squared);
       }

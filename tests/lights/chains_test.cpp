@@ -235,6 +235,33 @@ TEST(CoveredEnds, ReachAsHighAsTheNextCapsuleLeavesThem) {
   }
 }
 
+// Where several meet at a point, in whatever order, that one counts which leaves least.
+TEST(CoveredEnds, AreOfTheOneThatLeavesLeast) {
+  const auto away = [](double angle) { return RoundSolid{{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, 0.2, 0.2}; };
+  std::vector<double> angles = {0.4, 0.9, 1.3};
+  do {
+    std::vector<RoundSolid> pieces = {{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}};
+    for (const double angle : angles) pieces.push_back(away(angle));
+    const auto open = open_heights(scene_of({emissive(pieces)}));
+    ASSERT_EQ(open.size(), 4u);
+    EXPECT_GE(open[0].second, 255 * std::sin(0.4)) << angles[0] << ' ' << angles[1];
+    EXPECT_LE(open[0].second, 255 * (std::sin(0.4) + 0.01) + 1) << angles[0] << ' ' << angles[1];
+  } while (std::ranges::next_permutation(angles).found);
+}
+
+// A capsule that grows by 0.3 a length covers normals at less than acos(-0.3) from its axis: of an end whose outward axis is b
+// from there, what is left reaches up to the cosine of what that is more than b. It also covers ends that it turns back from.
+TEST(CoveredEnds, ReachLessHighWhereTheNextCapsuleGrows) {
+  for (const double angle : {0.5, 1.2, 1.5, 1.7, 1.8, 2.0, 2.8}) {
+    const dvec3 turn(std::cos(angle), std::sin(angle), 0);
+    const auto open = open_heights(scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, turn, 0.2, 0.5}})}));
+    ASSERT_EQ(open.size(), 2u);
+    const double height = std::cos(std::max(0.0, std::acos(-0.3) - angle));
+    EXPECT_GE(open[0].second, 255 * height) << angle;
+    EXPECT_LE(open[0].second, std::min(255.0, 255 * (height + 0.01) + 1)) << angle;
+  }
+}
+
 TEST(CoveredEnds, AreThoseThatAThickerOneOrASphereHolds) {
   // Thin into thick, to a ball, to nothing; and a point that differs in the last bit.
   const float next = std::nextafter(1.0f, 2.0f);

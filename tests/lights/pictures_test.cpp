@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -285,12 +286,15 @@ TEST(TexturedArea, ShinesWhereItIsThere) {
   TextureOperand alpha(1);
   alpha.texture = 0;
   scene.shapes[0].alpha = alpha;
-  LightBench bench(lower(scene));
-  const Estimate found = irradiance(bench, p_below, up);
   const double expected = quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up, [&](double x, double y) {
     return (1 - x) * ((1 - y) * values[0] + y * values[1]) + x * ((1 - y) * values[2] + y * values[3]);
   });
-  EXPECT_NEAR(found.mean, expected, 4 * found.error + 1e-4 * expected);
+  for (const bool two_sided : {false, true}) {
+    scene.shapes[0].emission->two_sided = two_sided;
+    LightBench bench(lower(scene));
+    const Estimate found = irradiance(bench, p_below, up);
+    EXPECT_NEAR(found.mean, expected, 4 * found.error + 1e-4 * expected) << two_sided;
+  }
 }
 
 // pbrt-v4: a light with the number 0 for alpha shines as if it were there, and no ray meets it.
@@ -341,6 +345,34 @@ TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
       if (s.pdf > 0) ++(s.target.x * (p.x - s.target.x) + s.target.y * (p.y - s.target.y) > 0 ? near : far);
     EXPECT_GT(near, 300);
     EXPECT_GT(far, 300);
+  }
+}
+
+// Three unseen balls as one shape, in a row: a ray crosses it six times, and each crossing gives light. A ball of radius r at the
+// distance d gives pi r^2 / d^2 times the cosine by one of its sides, and as much by the other.
+TEST(TexturedArea, OfAlphaZeroShinesFromAllItsCrossings) {
+  CsgShape row{CsgShape::Operation::set_union, {}};
+  double expected = 0;
+  for (const auto& [center, radius] : {std::pair(dvec3(0, 0, 1), 0.25), {dvec3(0.1, 0, 2), 0.5}, {dvec3(0, 0.1, 4), 1.0}}) {
+    Shape ball;
+    ball.geometry = SphereShape{static_cast<float>(radius)};
+    ball.world_from_object = glm::translate(glm::dmat4(1), center);
+    row.operands.push_back(std::make_shared<const Shape>(ball));
+    const double distance = glm::length(center);
+    expected += pi * radius * radius / (distance * distance) * center.z / distance;
+  }
+  for (const bool two_sided : {false, true}) {
+    SCOPED_TRACE(two_sided);
+    Shape shape;
+    shape.geometry = row;
+    shape.emission = AreaEmission{};
+    shape.emission->two_sided = two_sided;
+    shape.alpha = TextureOperand(0);
+    LightBench bench(lower(scene_of(shape)));
+    const Estimate found = irradiance(bench, {0, 0, 0}, {0, 0, 1});
+    const double wanted = (two_sided ? 2 : 1) * expected;
+    EXPECT_NEAR(found.mean, wanted, 4 * found.error);
+    EXPECT_LT(found.error, 0.01 * wanted);
   }
 }
 

@@ -58,6 +58,25 @@ TEST(Nesting, CapsulesOfOneMediumAreOnePlace) {
   EXPECT_NEAR(lost(0, chain), 0.5 * 1.8, near);
 }
 
+// Mirrors of triangles whose vertices have the normal (2 0 -1): of a ray along +z they make (0.8 0 0.6), beneath the surface.
+// Where the mesh is open, the ray goes there, and is in what the mesh holds, which lets no light through to infinity. A closed
+// one turns it back, and it stays outside.
+TEST(Nesting, MirroredRaysAreOnTheSideThatTheyGoTo) {
+  const std::string mirror =
+      "Material \"conductor\" \"spectrum eta\" [300 1 900 1] \"spectrum k\" [300 100 900 100]\nMediumInterface \"b\" \"\"\n";
+  const std::string sheet =
+      "Shape \"trianglemesh\" \"point3 P\" [-5 -5 0 -5 5 0 5 5 0 5 -5 0] \"normal N\" [2 0 -1 2 0 -1 2 0 -1 2 0 -1] \"integer "
+      "indices\" [0 1 2 0 2 3]\n";
+  EXPECT_GT(lost(-9, mirror + sheet), 20);
+  EXPECT_NEAR(lost(-9, mirror.substr(0, mirror.find("MediumInterface")) + sheet), 0, 1e-3);
+  std::string normals;
+  for (int i = 0; i < 8; ++i) normals += " 2 0 -1";
+  const std::string cube =
+      "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"normal N\" [" +
+      normals + "] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]\n";
+  EXPECT_NEAR(lost(-9, white_walls() + "Translate 0.1 0.2 0\n" + mirror + cube), 0, 1e-3);
+}
+
 TEST(Nesting, MeshesHoldMediaByTheirNormals) {
   const std::string points = "\"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1]";
   const std::string mesh = "MediumInterface \"b\" \"\" Shape \"trianglemesh\" " + points +

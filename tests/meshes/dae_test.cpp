@@ -11,6 +11,7 @@
 #include "import/detail/mesh_file.h"
 #include "import/import.h"
 #include "support/import_files.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace {
@@ -203,6 +204,24 @@ TEST(Collada, ArraysOfTwoGeometriesMayHaveTheSameIds) {
   const std::vector<TriangleMeshShape> parts = meshes(text);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[1].positions.at(0), glm::vec3(5, 0, 0));
+}
+
+// Of two elements of one id, which are not allowed, the first is meant, as in a browser (getElementById).
+TEST(Collada, OfTwoOfOneIdTheFirstIsMeant) {
+  const std::string text = dae(kTwo, "<node><instance_node url='#of'/></node>",
+                               "<library_nodes><node id='of'><translate>0 0 1</translate><instance_geometry url='#g'/></node>"
+                               "<node id='of'><translate>0 0 2</translate><instance_geometry url='#g'/></node></library_nodes>");
+  const std::vector<TriangleMeshShape> parts = meshes(text);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].positions.at(0), glm::vec3(0, 0, 1));
+}
+
+// What is left out is counted, and the first of it is where the warning says.
+TEST(Collada, WhatIsLeftOutIsSaid) {
+  test::LogOf log;
+  meshes(dae(kTwo + "\n<lines count='1'>" + kVertex + "<p>0 1</p></lines>\n<linestrips count='1'>" + kVertex +
+             "<p>0 1 2</p></linestrips>"));
+  EXPECT_THAT(log.text(), HasSubstr("a.dae:9:2: 2 lines, splines and skews of nodes are left out"));
 }
 
 struct Bad {

@@ -296,6 +296,20 @@ TEST(Components, AreTheBondsOfTheirResidues) {
   EXPECT_EQ(all_bonds(m, "l.pdb"), (std::vector<Bond>{{0, 1}, {1, 2}}));
 }
 
+// As programs write what they have refined: the bonds of each component in a block of its own, behind the model's.
+TEST(Components, MayHaveBlocksOfTheirOwn) {
+  std::string text = "data_model\nloop_\n";
+  for (const char* column : {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id",
+                             "label_seq_id", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy", "B_iso_or_equiv", "auth_seq_id"})
+    text += "_atom_site." + std::string(column) + "\n";
+  text += "ATOM 1 C A1 . LIG A 1 0 0 0 1 1 1\nATOM 2 C A2 . LIG A 1 1.4 0 0 1 1 1\nATOM 3 C A3 . LIG A 1 0.7 1.2 0 1 1 1\n";
+  EXPECT_EQ(all_bonds(read_mmcif(text, "m.cif", {}), "m.cif").size(), 3u);  // by distance
+  text +=
+      "data_comp_LIG\nloop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_2\nLIG A1 A2\n"
+      "LIG A2 A3\n";
+  EXPECT_EQ(all_bonds(read_mmcif(text, "m.cif", {}), "m.cif"), (std::vector<Bond>{{0, 1}, {1, 2}}));
+}
+
 // The rule, against all pairs, for a crowd of any elements in any places, far outliers among them.
 TEST(Bonds, AreThoseOfAllPairs) {
   std::mt19937 random(7);

@@ -190,7 +190,7 @@ TEST_F(Strangers, ReadNothingOutsideOfTheirFolder) {
         const fs::path path = scene(naming, name);
         const std::string text = said(path, true);
         EXPECT_TRUE(is_refused(text)) << naming.what << ", " << name << ":\n" << text;
-        EXPECT_THAT(text, Not(HasSubstr("hunter2"))) << naming.what << ", " << name;
+        EXPECT_THAT(text, Not(HasSubstr("hun"))) << naming.what << ", " << name;
         EXPECT_EQ(text.find('\n'), text.size() - 1) << text;  // and nothing else
         const std::string place = naming.line > 0    ? fmt::format("{}:{}:", path.string(), naming.line)
                                   : naming.line == 0 ? path.string()
@@ -331,7 +331,8 @@ TEST_F(Strangers, WaitForNoPipeAndReadNoDevice) {
 
 // --- What errors show ---
 
-/// Files of other kinds, in which every word is a secret.
+/// Files of other kinds, in which every word is a secret. Some formats have columns of three letters, so that three are looked
+/// for.
 const std::pair<const char*, std::string> secrets[] = {
     {"passwords", "root:$6$hunter2$hunter2:19000:0:99999:7:::\nhunter2:!:19000:0:99999:7:::\n"},
     {"words", "hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2\nhunter2\n"},
@@ -347,6 +348,8 @@ const std::pair<const char*, std::string> secrets[] = {
     {"statements of a shell", "# hunter2\nInclude hunter2\nHost hunter2\n  Option hunter2\n  Film hunter2\n"},
     {"statements that a scene has",
      "Shape \"hunter2\" \"hunter2 hunter2\" hunter2\nOption \"hunter2\" hunter2\nTranslate hunter2 1 2\n"},
+    {"a statement with a word of another one", "Camera \"sphere\" hunter2\n"},
+    {"many words", "hunter2\nhunter2\nhunter2\nhunter2\nhunter2\nhunter2\n"},
     {"a table", "hunter2,hunter2,1.5\nhunter2,hunter2,2.5\n"},
     {"dashes", "-hunter2 --hunter2 - hunter2\n"},
     {"brackets", "<hunter2, 0, 0> <1, 0, 0> hunter2\n(hunter2)\n"},
@@ -367,7 +370,7 @@ TEST_F(Strangers, ErrorsShowNothingOfFilesThatAreNoScenes) {
         const fs::path file = inside_ / ("secret" + extension);
         put(file, text);
         const std::string shown = said(file, false);
-        EXPECT_THAT(shown, Not(HasSubstr("hunter2"))) << format.name << " of " << what;
+        EXPECT_THAT(shown, Not(HasSubstr("hun"))) << format.name << " of " << what;
         EXPECT_TRUE(shown == "\n" || shown.find("secret" + extension) != std::string::npos) << format.name << " of " << what;
       }
     }
@@ -379,7 +382,7 @@ TEST_F(Strangers, ErrorsShowNothingOfWhatScenesName) {
       const std::string name = "../out/private" + std::string(naming.ending);
       if (std::string_view(naming.what) == "file:// of URDF") continue;
       put(outside_ / fs::path(name).filename(), text);
-      EXPECT_THAT(said(scene(naming, name), false), Not(HasSubstr("hunter2"))) << naming.what << " of " << what;
+      EXPECT_THAT(said(scene(naming, name), false), Not(HasSubstr("hun"))) << naming.what << " of " << what;
     }
 }
 
@@ -394,6 +397,9 @@ TEST_F(Strangers, ErrorsShowWhatIsWrongInScenes) {
       {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 Shpe\n"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 Shpe 0\n3 0 1 2\n"},
       {"a.xyz", "2\n\nC 0 0 0\nC 0 0 Shpe\n"},
+      {"a.sdf",
+       "a\n\n\n  2  0  0  0  0  0  0  0  0  0999 V2000\n    0.0000    0.0000    0.0000 C   0  0\n"
+       "    1.0000    0.0000      Shpe C   0  0\n"},
       {"a.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 Shpe\n"},
       {"a.urdf", "<robot name='r'><link name='l'><visual><geometry><sphere radius='Shpe'/></geometry></visual></link></robot>"},
       {"a.mjcf", "<mujoco><worldbody><geom size='Shpe'/></worldbody></mujoco>"},

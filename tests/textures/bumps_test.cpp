@@ -136,15 +136,15 @@ constexpr const char* dome_normals = "\"normal N\" [-.5 -.5 1  .5 -.5 1  -.5 .5 
 struct Interpolated {
   dvec3 n, dx, dy;
 };
-Interpolated dome(const dvec3& p) {
-  const dvec3 sum(0.5 * p.x, 0.5 * p.y, 1);
+Interpolated dome(const dvec3& p, double bend = 0.5) {
+  const dvec3 sum(bend * p.x, bend * p.y, 1);
   const double length = glm::length(sum);
   const dvec3 n = sum / length;
   const auto along = [&](const dvec3& change) { return (change - n * glm::dot(n, change)) / length; };
-  return {n, along({0.5, 0, 0}), along({0, 0.5, 0})};
+  return {n, along({bend, 0, 0}), along({0, bend, 0})};
 }
-dvec3 bent_dome(const dvec3& p, const dvec3& slope_there, double height_there) {
-  const Interpolated at = dome(p);
+dvec3 bent_dome(const dvec3& p, const dvec3& slope_there, double height_there, double bend = 0.5) {
+  const Interpolated at = dome(p, bend);
   const auto across = [&](const dvec3& v) { return v - at.n * glm::dot(at.n, v); };
   const dvec3 x = across({1, 0, 0}), y = across({0, 1, 0});
   return glm::cross(x + glm::dot(slope_there, x) * at.n + height_there * at.dx,
@@ -173,6 +173,22 @@ TEST(Displacements, OfMeshesGrowWithTheirNormals) {
                     dome_normals + "\n"),
           expected, tolerance),
       80);
+}
+
+// Triangles hardly larger than the steps by which normals are differentiated: at most places a step leads over an edge. Heights
+// of 0.6 tell slopes apart to 1e-2 over an eighth of a pixel, and h dn/du, which is 30, divides that. Without it normals turn by
+// 0.3.
+TEST(Displacements, OfTinyTrianglesAreThoseOfTheirNormals) {
+  std::string text = displaced(
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 3 0 3 2] \"point3 P\" [.999 -.001 0  1.001 -.001 0  .999 .001 0  1.001 "
+      ".001 0] \"normal N\" [-.05 -.05 1  .05 -.05 1  -.05 .05 1  .05 .05 1]\n");
+  const auto put = [&](const std::string& before, const std::string& after) {
+    text.replace(text.find(before), before.size(), after);
+  };
+  put("LookAt 2 3 4  0 0 0", "LookAt 3 3 4  1 0 0");
+  put("[-1.6 1.6 -1.6 1.6]", "[-1.6e-3 1.6e-3 -1.6e-3 1.6e-3]");
+  const auto expected = [](const dvec3& p) { return bent_dome(p - dvec3(1, 0, 0), slope, height(p), 50); };
+  EXPECT_GT(compare(text, expected, 3e-3), 80);
 }
 
 // The same height everywhere on a mesh leaves its interpolated normals: it does not become one of facets.
