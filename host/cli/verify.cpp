@@ -135,7 +135,7 @@ void run_verify(const VerifyFlags& o) {
 
   ProgressReporter progress(ProgressReporter::style_for_stderr(o.quiet));
   const Clock::time_point start = Clock::now();
-  verify::VerifyFlags options;
+  verify::Options options;
   options.rays = o.rays;
   options.seed = o.seed;
   options.progress = [&](std::uint64_t done) {

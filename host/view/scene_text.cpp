@@ -21,7 +21,7 @@ Json to_json(const glm::dmat4& m) {
   return rows;
 }
 
-Json to_json(const Bounds& bounds) { return {to_json(bounds.min), to_json(bounds.max)}; }
+Json to_json(const Bounds& bounds) { return {view::to_json(bounds.min), view::to_json(bounds.max)}; }
 
 }  // namespace
 
