@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The package for Debian and Ubuntu that `./run package` makes: docs/package.md. Included where CAPLET_PACKAGE is set.
+include(GNUInstallDirs)
 file(STRINGS /etc/os-release os_release REGEX "^(ID|VERSION_ID|VERSION_CODENAME)=")
 foreach(line ${os_release})
   string(REGEX MATCH "^([A-Z_]+)=\"?([^\"]*)" unused "${line}")
