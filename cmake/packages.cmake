@@ -13,10 +13,10 @@ set(CPACK_PACKAGE_NAME caplet)
 set(CPACK_PACKAGE_CONTACT "Caplet authors <caplet@localhost.localdomain>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "OpenCL path tracer of exact analytic solids")
 set(CPACK_PACKAGE_DESCRIPTION
-"Caplet renders neurons, molecules, robots, fibres and lattices as what they are:
-true tapered capsules, spheres and other solids, not triangles, with millions of
-them at a time. It runs on any processor through PoCL, and on any device with an
-OpenCL 1.2 driver.
+"Caplet renders neurons, molecules, robots, fibres and lattices as what they
+are: true tapered capsules, spheres and other solids, not triangles, with
+millions of them at a time. It runs on any processor through PoCL, and on any
+device with an OpenCL 1.2 driver.
 
 This package has the program, its library with headers and CMake files,
 completions for bash, zsh and fish, and example scenes.")
@@ -36,6 +36,7 @@ set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, ffmpeg")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/triggers)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
 # What Debian's policy wants of each package. The date is that of the sources (SOURCE_DATE_EPOCH, else the last commit's, else now).
