@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 
 namespace caplet::cli {
 
@@ -37,8 +38,8 @@ void run_bench(std::vector<std::string> arguments) {
 
 void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Measure ray tracing speed side by side with Embree");
-  command->footer(
-      "Arguments go to the benchmark program: `caplet bench capsules --n 1000000`; `caplet bench -- --help` lists them.");
+  command->footer(footer_with({"caplet bench capsules --n 1000000"},
+                              "Arguments go to the benchmark program; `caplet bench -- --help` lists them."));
   command->prefix_command();
   command->callback([command] { run_bench(command->remaining()); });
 }

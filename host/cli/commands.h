@@ -27,5 +27,6 @@ void add_bench(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_view(CLI::App& app);        // where it is built (CAPLET_WITH_VIEW)
 void add_try_device(CLI::App& app);  // hidden: see trial.h
+void add_describe(CLI::App& app);    // hidden: the man page and the completions
 
 }  // namespace caplet::cli

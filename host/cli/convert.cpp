@@ -9,6 +9,7 @@
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "export/export.h"
 
@@ -46,12 +47,14 @@ void add_convert(CLI::App& app) {
       ->add_option("FILES", o->scenes,
                    "SCENE... OUT.pbrt: a scene file, or several that make one scene, of any formats (" + scene_extensions() +
                        "), then the scene file to write; -: to stdout")
-      ->required();
+      ->required()
+      ->type_name("SCENE");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer(
-      "The picture of the written scene is that of the first one, bit for bit. Images and other files that the scene names are\n"
-      "not copied: the text names them relative to OUT.pbrt. Comments, includes and the names of transforms are not kept.");
+  command->footer(footer_with(
+      {"caplet convert molecule.pdb --style sticks molecule.pbrt"},
+      "The picture of the written scene is that of the first one, bit for bit. Images and other files that the scene names "
+      "are not copied: the text names them relative to OUT.pbrt. Comments, includes and the names of transforms are not kept."));
   command->callback([o] {
     if (o->scenes.size() < 2) throw CLI::RequiredError("OUT.pbrt");
     o->output = o->scenes.back();

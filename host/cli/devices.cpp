@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/utf8.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/trial.h"
 #include "device/device.h"
 #include "lower/lower.h"
@@ -112,6 +113,7 @@ void add_devices(CLI::App& app) {
   const auto json = std::make_shared<bool>(false), measure = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print a JSON array for machines");
   command->add_flag("--measure", *measure, "Also how many rays a second each traces in a render, which takes seconds a device");
+  command->footer(footer_with({"caplet devices --measure"}));
   command->callback([json, measure] {
     const std::vector<Listed> devices = list(*measure);
     *json ? print_devices_json(devices, *measure) : print_table(devices, *measure);

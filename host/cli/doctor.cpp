@@ -11,6 +11,7 @@
 
 #include "base/utf8.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "doctor/diagnosis.h"
 #include "render/known_answers.h"
@@ -53,14 +54,17 @@ void add_doctor(CLI::App& app) {
   const auto chosen = std::make_shared<Chosen>();
   CLI::App* command =
       app.add_subcommand("doctor", "Look for what keeps OpenCL from working here: drivers, permissions, memory, caches, devices");
-  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu or part of its name");
+  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu or part of its name")
+      ->type_name("cpu|gpu|DEVICE")
+      ->default_str("all of them");
   command
       ->add_option("--timeout", chosen->options.seconds,
                    "Most seconds a driver may take to answer; four times that for a self-test")
       ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("SECONDS");
   command->add_flag("--json", chosen->json, "Print a JSON object for machines");
-  command->footer("Exit codes: 0 nothing is wrong, 1 something is, 2 the usage is.");
+  command->footer(footer_with({"caplet doctor"}, "Exit codes: 0 nothing is wrong, 1 something is, 2 the usage is."));
   command->callback([chosen] {
     chosen->options.least_bytes = [](bool) { return least_batch_bytes(); };
     chosen->options.test = [](const Device& device) { try_device(device, whole_trial); };

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "lower/lower.h"
 #include "report/summary.h"
@@ -50,6 +51,7 @@ void add_info(CLI::App& app) {
   add_scene_files(*command, options->scenes);
   command->add_flag("--json", options->json, "Print a JSON object for machines");
   add_import_options(*command, options->import_options);
+  command->footer(footer_with({"caplet info scene.pbrt", "caplet info neuron.swc --json"}));
   command->callback([options] {
     const Scene scene = import_files(options->scenes, options->import_options);
     const nlohmann::ordered_json info = report::scene_summary(scene, lower(scene));

@@ -21,6 +21,7 @@
 #include "base/log.h"
 #include "base/utf8.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "device/second_try.h"
 #include "render/session.h"
 
@@ -91,12 +92,14 @@ int whole_program(int argc, char** argv) {
   const caplet::NotedInputs inputs;
   const caplet::cli::Invocation invocation{{argv, argv + argc}};
   CLI::App app{"Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any OpenCL device.", "caplet"};
-  app.set_version_flag("--version", "caplet " CAPLET_VERSION);
-  app.set_help_flag("-h,--help", "Show this help and exit");
+  app.set_version_flag("--version", "caplet " CAPLET_VERSION, "Show the version and exit")->group("Options");
+  caplet::cli::use_help_text(app);
+  app.set_help_flag("-h,--help", "Show this help and exit")->group("Options");
   app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong, 3 verify found disagreement.\n"
-      "`caplet COMMAND --help` explains a command.");
+  app.footer(caplet::cli::footer_with(
+      {"caplet render scene.pbrt -o picture.exr --preview picture.png"},
+      "`caplet COMMAND --help` explains a command.\n"
+      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong, 3 verify found disagreement."));
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);
@@ -109,6 +112,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app);
   caplet::cli::add_try_device(app);
+  caplet::cli::add_describe(app);
   return end(run(app, argc, argv));
 }
 

@@ -23,6 +23,7 @@ namespace caplet::cli {
 namespace {
 
 constexpr long long max_pixels = 1LL << 28;
+constexpr const char* usual_device = "a GPU where there is one";
 
 /// All of `text` as whole numbers separated by `separator`; empty when it is anything else.
 std::vector<long long> whole_numbers(std::string_view text, char separator) {
@@ -118,12 +119,35 @@ std::vector<Device> choose_devices(const std::string& choice, Encoding encoding)
   return with_device_flag([&] { return Device::choose_several(choice, encoding); });
 }
 
+void add_device(CLI::App& command, std::string& choice) {
+  command.add_option("--device", choice, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+      ->type_name("cpu|gpu|DEVICE")
+      ->default_str(usual_device);
+}
+
+void add_devices_option(CLI::App& command, std::string& choice) {
+  command
+      .add_option(
+          "--device", choice,
+          "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`); some of these between commas, or all")
+      ->type_name("all|cpu|gpu|DEVICE,...")
+      ->default_str(usual_device);
+}
+
+std::string layer_names() {
+  std::vector<std::string> names;
+  for (const LayerRow& row : layer_rows)
+    if (*row.option) names.emplace_back(row.option);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void add_encoding(CLI::App& command, Encoding& encoding) {
   command
       .add_option_function<std::string>(
           "--encoding", [&encoding](const std::string& text) { encoding = parse_encoding(text, "--encoding"); },
           "How kernels go through the tree: wide (eight boxes at a time) or single; automatic: by the device")
-      ->type_name("automatic|wide|single");
+      ->type_name("automatic|wide|single")
+      ->default_str("automatic");
 }
 
 void apply(const Overrides& overrides, Scene& scene) {
@@ -165,7 +189,8 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
 
 CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes) {
   return command.add_option("SCENE", scenes, "Scene file, or several that make one scene, of any formats: " + scene_extensions())
-      ->required();
+      ->required()
+      ->type_name("SCENE");
 }
 
 Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& options) {

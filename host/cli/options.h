@@ -88,6 +88,13 @@ auto with_device_flag(const Choose& choose) {
 Device choose_device(const std::string& choice, Encoding encoding);
 std::vector<Device> choose_devices(const std::string& choice, Encoding encoding);
 
+/// Adds `--device`, which chooses one, or several of them.
+void add_device(CLI::App& command, std::string& choice);
+void add_devices_option(CLI::App& command, std::string& choice);
+
+/// The names of all layers, for help: "Z, albedo, ...".
+std::string layer_names();
+
 /// Adds `--encoding`, which forces the way kernels go through the tree.
 void add_encoding(CLI::App& command, Encoding& encoding);
 

@@ -13,6 +13,7 @@
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
@@ -204,6 +205,7 @@ void add_pick(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("pick", "Tell what a pixel shows or rays hit: name, surface, material, point, normal, uv");
   add_scene_files(*command, o->scenes);
+  command->option_defaults()->group("What is asked");
   command->add_option("--pixel", o->pixel, "The ray through the middle of this pixel, from the top left")->type_name("X,Y");
   command->add_option("--ray", o->ray, "This ray: origin and direction (of any length; t counts in its lengths)")
       ->type_name("ox,oy,oz,dx,dy,dz");
@@ -211,22 +213,30 @@ void add_pick(CLI::App& app) {
       ->add_option("--rays", o->rays,
                    "Many rays: text of six numbers a line, or .npy (N x 6); with t_min and t_max eight; -: text from stdin")
       ->type_name("FILE");
+  command->option_defaults()->group("Output");
   command->add_option("--out", o->out, "Table of what --rays hit, a row per crossing: .csv or .npy; -: CSV to stdout")
       ->type_name("FILE");
+  command->option_defaults()->group("What is asked");
   command->add_flag("--all", o->all, "Every crossing in order, not the nearest alone");
   CLI::Option* limit = command->add_option("--limit", o->limit, "Most crossings of a ray for --all; more are an error")
                            ->check(CLI::Range(std::size_t{1}, max_query_capacity))
                            ->capture_default_str()
                            ->type_name("N");
+  command->option_defaults()->group("Output");
   command->add_flag("--json", o->json, "Print a JSON object for machines");
+  command->option_defaults()->group("What is asked");
   command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
-      ->type_name("D");
+  command->option_defaults()->group("Device");
+  add_device(*command, o->device);
   add_encoding(*command, o->encoding);
+  command->option_defaults()->group("What is asked");
   command->add_option("--size", o->size, "Picture size that --pixel counts in, as in `render`")->type_name("WxH");
   command->add_option("--crop", o->crop, "Pixels that may be picked, as in `render`")->type_name("x0,y0,x1,y1");
+  command->option_defaults()->group("Output");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
+  command->footer(footer_with({"caplet pick scene.pbrt --pixel 640,360", "caplet pick scene.pbrt --rays rays.npy --out hits.npy"},
+                              "One of --pixel, --ray and --rays is needed. A ray that hits nothing is no error."));
   command->callback([o, limit] { run_pick(*o, limit->count() > 0); });
 }
 

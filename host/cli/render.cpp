@@ -3,6 +3,7 @@
 //
 // `caplet render`: scene file in, pictures out.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/frames.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
@@ -569,15 +571,18 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   const auto o = std::make_shared<RenderFlags>();
   CLI::App* command = app.add_subcommand("render", "Render a scene file to an OpenEXR picture");
   add_scene_files(*command, o->scenes);
+  command->option_defaults()->group("Output");
   command
       ->add_option(
           "-o,--output", o->outputs,
-          "What to write, as often as there is to: a picture .exr (default: the scene's own name, here), tone-mapped ones "
+          "What to write, as often as there is to: a picture .exr, tone-mapped ones "
           ".png, .jpg and the like, of frames numbered ones (out.####.exr) or a movie .mp4, .mov, .mkv, .webm, .gif; none: "
           "no picture")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("OUT.exr|OUT.png|...");
+      ->type_name("OUT.exr|OUT.png|OUT.mp4|none")
+      ->default_str("the scene's own name, .exr, here");
+  command->option_defaults()->group("Frames");
   command
       ->add_option("--turntable", o->turntable,
                    "Frames of a camera that goes once around the scene, with studio light where the file brings none")
@@ -592,7 +597,9 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->capture_default_str()
       ->type_name("R");
   command->add_flag("--skip-existing", o->skip_existing, "Leave out frames whose files are there");
+  command->option_defaults()->group("Output");
   command->add_option("--preview", o->preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
+  command->option_defaults()->group("Size and quality");
   command->add_option("--spp", o->samples_per_pixel, "Samples per pixel; unless asked the scene's, else " + usual_samples())
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
@@ -602,45 +609,51 @@ void add_render(CLI::App& app, const Invocation& invocation) {
       ->type_name("WxH");
   command->add_option("--crop", o->crop, "Render only these pixels (from the top left; x1, y1 excluded)")
       ->type_name("x0,y0,x1,y1");
-  command
-      ->add_option(
-          "--device", o->device,
-          "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`); some of these between commas, or all")
-      ->type_name("D");
+  command->option_defaults()->group("Devices");
+  add_devices_option(*command, o->device);
   add_encoding(*command, o->encoding);
   command->add_option("--patience", o->patience, "Leave a device out that does not answer for so long, where there are others")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str()
       ->type_name("SECONDS");
-  command->add_option("--seed", o->seed, "Seed of the samples")->type_name("S");
+  command->option_defaults()->group("Size and quality");
+  command->add_option("--seed", o->seed, "Seed of the samples")->type_name("S")->default_str("the scene's");
   command->add_option("--max-depth", o->max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))
-      ->type_name("N");
+      ->type_name("N")
+      ->default_str("the scene's");
   command
       ->add_option(
           "--clamp", o->clamp,
           "Greatest component of a sample, exposed, as pbrt's maxcomponentvalue: fewer fireflies, a darker picture; 0: none")
       ->check(CLI::Range(0.0, 1e30))
-      ->type_name("X");
+      ->type_name("X")
+      ->default_str("the scene's");
   command->add_option("--time", o->time_limit, "Stop after the sample pass that passes this limit")
       ->check([](const std::string& text) {
         const double value = std::strtod(text.c_str(), nullptr);
         return std::isfinite(value) && value > 0 ? std::string() : "'" + text + "' is not a positive number of seconds";
       })
       ->type_name("SECONDS");
-  command
-      ->add_option("--layers", o->layers,
-                   "Layers beside R G B A: some of Z,albedo,N,P,object,primitive,variance, or all, or none")
-      ->type_name("LIST");
+  command->option_defaults()->group("Output");
+  command->add_option("--layers", o->layers, "Layers beside R G B A: some of " + layer_names() + ", or all, or none")
+      ->type_name("all|none|LAYER,...")
+      ->default_str("all but the variance");
+  command->option_defaults()->group("Two eyes");
   command->add_option("--stereo", o->separation, "Render for two eyes, so far apart, into one multi-view EXR")
       ->check(CLI::Range(1e-18, 1e18))
       ->type_name("SEPARATION");
-  command->add_option("--convergence", o->convergence, "Distance at which both eyes see things at one place (default: none)")
+  command->add_option("--convergence", o->convergence, "Distance at which both eyes see things at one place")
       ->check(CLI::Range(1e-18, 1e18))
-      ->type_name("DISTANCE");
-  command->add_option("--stereo-layout", o->layout, "How the preview shows both views: sbs (default), over-under or anaglyph")
+      ->type_name("DISTANCE")
+      ->default_str("infinitely far");
+  command
+      ->add_option("--stereo-layout", o->layout,
+                   "How the preview shows both views: side by side (sbs), one over the other, or in red and cyan")
       ->check(CLI::IsMember(std::vector<std::string>(report::stereo_layout_names.begin(), report::stereo_layout_names.end())))
-      ->type_name("LAYOUT");
+      ->type_name(fmt::format("{}", fmt::join(report::stereo_layout_names, "|")))
+      ->default_str(report::stereo_layout_names.front());
+  command->option_defaults()->group("Output");
   command->add_option("--display", o->display, "Show the picture in tev as it grows, such as 127.0.0.1:14158")
       ->type_name("HOST:PORT");
   command->add_flag("--variance", o->variance, "Also write variance.R/G/B: the variance of each pixel's mean");
@@ -649,10 +662,12 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_option("--batch", o->batch_paths, "Paths a batch (the picture does not depend on it)")->group("");
   add_import_options(*command, o->import_options);
   add_overlays(*command, o->overlays);
-  command->footer(
-      "RenderFlags override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at "
-      "once.\n"
-      "The picture is scene-linear, with layers albedo, N, P, Z, object.id and primitive.id.");
+  command->footer(footer_with(
+      {"caplet render scene.pbrt -o picture.exr --preview picture.png",
+       "caplet render a.swc b.swc --size 960x540 --spp 64 -o picture.png",
+       "caplet render neuron.swc --turntable 72 -o movie.mp4"},
+      "Options override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at once. "
+      "The picture is scene-linear."));
   command->callback([o, &invocation] { run_render(*o, invocation); });
 }
 

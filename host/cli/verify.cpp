@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
@@ -176,27 +177,34 @@ void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");
-  command->add_option(
-      "SCENE", o->scenes,
-      "Scene file, or several that make one scene (" + scene_extensions() + "); none: a built-in torture set of all shapes");
+  command
+      ->add_option(
+          "SCENE", o->scenes,
+          "Scene file, or several that make one scene (" + scene_extensions() + "); none: a built-in torture set of all shapes")
+      ->type_name("SCENE");
+  command->option_defaults()->group("Rays");
   command->add_option("--rays", o->rays, "How many rays")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str()
       ->type_name("N");
   command->add_option("--seed", o->seed, "Other rays, and another torture set")->capture_default_str()->type_name("S");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
-      ->type_name("D");
+  command->option_defaults()->group("Devices");
+  add_device(*command, o->device);
   add_encoding(*command, o->encoding);
   command->add_flag("--all-devices", o->all_devices, "Every device there is, and one against the other");
+  command->option_defaults()->group("Output");
   command->add_flag("--json", o->json, "Print a JSON object for machines");
   command->add_option("--heatmap", o->heatmap, "Also write a picture of how far off each pixel is, in units of the bounds")
       ->type_name("OUT.exr");
   command->add_option("--size", o->size, "Size of that picture, as in `render`")->type_name("WxH");
   command->add_option("--save-failures", o->failures, "Folder for rays that disagree, one file each (at most 100 a device)")
       ->type_name("DIR");
+  command->option_defaults()->group("Rays");
   command->add_option("--replay", o->replay, "Ask saved rays again: one file, or a folder of them")->type_name("FILE|DIR");
+  command->option_defaults()->group("Output");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
+  command->footer(footer_with({"caplet verify --rays 100000", "caplet verify scene.pbrt --all-devices"}));
   command->callback([o] { run_verify(*o); });
 }
 

@@ -21,6 +21,7 @@
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/description.h"
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
@@ -124,6 +125,7 @@ void add_view(CLI::App& app) {
   const auto o = std::make_shared<ViewFlags>();
   CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
   add_scene_files(*command, o->scenes);
+  command->option_defaults()->group("Server");
   command
       ->add_option("--host", o->host, "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it")
       ->capture_default_str()
@@ -131,19 +133,22 @@ void add_view(CLI::App& app) {
   command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");
   command->add_flag("--no-browser", o->no_browser, "Print the address, and open no browser");
   command->add_flag("--read-only", o->read_only, "Let nobody change the scene");
+  command->option_defaults()->group("Picture");
   command->add_option("--spp", o->samples, "Samples per pixel at which the picture is done (default: the scene's own)")
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
   command->add_option("--size", o->size, "Size in pixels of the first picture; the page asks for its own")->type_name("WxH");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
-      ->type_name("D");
+  command->option_defaults()->group("Device");
+  add_device(*command, o->device);
   add_encoding(*command, o->encoding);
+  command->option_defaults()->group("Server");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer(
-      "Whoever knows the address sees the scene. Its first part is drawn anew at each start; with --port it stays, so that open\n"
+  command->footer(footer_with(
+      {"caplet view scene.pbrt", "caplet view scene.pbrt --port 8080 --no-browser"},
+      "Whoever knows the address sees the scene. Its first part is drawn anew at each start; with --port it stays, so that open "
       "pages go on when the program is started again. Unsaved changes are kept beside the scene and are there at the next "
-      "start.");
+      "start."));
   command->callback([o] { run_view(*o); });
 }
 

@@ -45,6 +45,9 @@ def main():
                 lines = [line for line in text.splitlines() if word in re.sub(r"//.*", "", line) or (word == "--" and "`--" in line)]
                 check(not lines, f"{header} has '{word}': {lines}")
         check(run(prefix / "bin/caplet", "--version").startswith("caplet "), "the installed program does not tell its version")
+        for text in ("man/man1/caplet.1", "bash-completion/completions/caplet", "zsh/site-functions/_caplet", "fish/vendor_completions.d/caplet.fish",
+                     "caplet/scenes/gallery.pbrt"):
+            check((prefix / "share" / text).stat().st_size > 500, f"{text} is not installed")
         page = (SOURCES / "docs/library.md").read_text()
         project.mkdir()
         example, edits = blocks(page, "cpp")
