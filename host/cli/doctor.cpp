@@ -53,7 +53,7 @@ void add_doctor(CLI::App& app) {
   const auto chosen = std::make_shared<Chosen>();
   CLI::App* command =
       app.add_subcommand("doctor", "Look for what keeps OpenCL from working here: drivers, permissions, memory, caches, devices");
-  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu or part of its name");
+  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu, bundled or part of its name");
   command
       ->add_option("--timeout", chosen->options.seconds,
                    "Most seconds a driver may take to answer; four times that for a self-test")

@@ -220,7 +220,7 @@ void add_pick(CLI::App& app) {
                            ->type_name("N");
   command->add_flag("--json", o->json, "Print a JSON object for machines");
   command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
       ->type_name("D");
   add_encoding(*command, o->encoding);
   command->add_option("--size", o->size, "Picture size that --pixel counts in, as in `render`")->type_name("WxH");

@@ -184,7 +184,7 @@ void add_verify(CLI::App& app) {
       ->capture_default_str()
       ->type_name("N");
   command->add_option("--seed", o->seed, "Other rays, and another torture set")->capture_default_str()->type_name("S");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
       ->type_name("D");
   add_encoding(*command, o->encoding);
   command->add_flag("--all-devices", o->all_devices, "Every device there is, and one against the other");

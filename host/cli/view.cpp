@@ -135,7 +135,7 @@ void add_view(CLI::App& app) {
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
   command->add_option("--size", o->size, "Size in pixels of the first picture; the page asks for its own")->type_name("WxH");
-  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
+  command->add_option("--device", o->device, "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
       ->type_name("D");
   add_encoding(*command, o->encoding);
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");

@@ -15,6 +15,7 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
+#include "device/bundled.h"
 
 extern char** environ;
 
@@ -24,7 +25,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* marker = "CAPLET_DRIVER_FAILED";  // set for the second process: the first one's signal, 0 for an error
+constexpr const char* marker = "CAPLET_DRIVER_FAILED";       // set for the second process: the first one's signal, 0 for an error
+constexpr const char* cache_marker = "CAPLET_DRIVER_CACHE";  // likewise: the cache folder that the driver used
 constexpr int signals[] = {SIGABRT, SIGBUS, SIGSEGV, SIGILL};
 
 enum State : int { off, guarded, second, ending };
@@ -90,9 +92,12 @@ void handle_signals(bool on) {
   }
 }
 
-void prepare() {
+void prepare(const Device& device) {
   variables.clear();
   for (char** one = environ; *one; ++one) variables.emplace_back(*one);
+  const fs::path cache =
+      device.info().bundled ? bundled_cache_folder(variable_of_process) : pocl_cache_folder(variable_of_process);
+  variables.push_back(fmt::format("{}={}", cache_marker, cache.string()));
   variables.push_back(fmt::format("{}=00", marker));
   environment.clear();
   for (std::string& one : variables) environment.push_back(one.data());
@@ -149,7 +154,8 @@ SecondTry::SecondTry(char** arguments) {
   is_second = !failed.empty();
   if (!is_second) return;
   ::unsetenv(marker);
-  damaged = pocl_cache_folder(variable_of_process).string();
+  damaged = variable_of_process(cache_marker);
+  ::unsetenv(cache_marker);
   fresh_.emplace();
   const int number = std::atoi(failed.c_str());
   log::warn("PoCL failed{}: trying once more with a fresh cache folder in place of '{}'",
@@ -164,7 +170,7 @@ SecondTry::~SecondTry() {
 void SecondTry::guard(const Device& device) {
   if (!program_arguments || !device.is_pocl()) return;
   if (state == off) {
-    prepare();
+    prepare(device);
     state = is_second ? second : guarded;
   }
   handle_signals(true);
