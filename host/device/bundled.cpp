@@ -100,6 +100,10 @@ std::vector<cl::Device> bundled_devices(const cl::Platform& platform) {
   const fs::path cache = bundled_cache_folder(variable_of_process);
   std::optional<ScopedVariable> own_cache;
   if (!cache.empty() && why_unwritable(cache).empty()) own_cache.emplace("POCL_CACHE_DIR", cache.string());
+  std::optional<ScopedVariable> level;
+  if (const std::string name = bundled_level(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("avx") != 0);
+      !name.empty() && variable_of_process("POCL_KERNELLIB_NAME").empty())
+    level.emplace("POCL_KERNELLIB_NAME", name);
   // Plugins are built for the machine's hwloc, which need not be of the same version.
   const ScopedVariable no_plugins("HWLOC_PLUGINS_PATH", bundled_driver().folder.string());
   std::vector<cl::Device> devices;
@@ -111,6 +115,11 @@ fs::path bundled_cache_folder(const std::function<std::string(const std::string&
   if (const std::string named = variable("POCL_CACHE_DIR"); !named.empty()) return named;
   const fs::path folder = cache_folder();
   return folder.empty() ? folder : folder / "pocl";
+}
+
+std::string bundled_level(bool has_avx2, bool has_avx) {
+  if (has_avx2) return {};  // PoCL chooses avx2 or avx512
+  return has_avx ? "avx" : "sse2";
 }
 
 std::string with_first(const std::string& path, const fs::path& folder) {

@@ -38,12 +38,16 @@ extern const char* const bundled_mark;
 /// Its platforms: one, or none where it cannot be loaded. Loads it at the first call.
 std::vector<cl::Platform> bundled_platforms();
 
-/// Its devices. PoCL reads its environment at the first question, which this is: it gets Caplet's own cache folder, and no plugins
-/// of the machine's hwloc. The environment is afterwards as before. Throws cl::Error.
+/// Its devices. PoCL reads its environment at the first question, which this is: it gets Caplet's own cache folder, the level of
+/// this processor, and no plugins of the machine's hwloc. The environment is afterwards as before. Throws cl::Error.
 std::vector<cl::Device> bundled_devices(const cl::Platform& platform);
 
 /// Where it keeps compiled kernels: $POCL_CACHE_DIR, else "pocl" in Caplet's cache folder; empty where there is none.
 std::filesystem::path bundled_cache_folder(const std::function<std::string(const std::string&)>& variable);
+
+/// PoCL's compiled functions are bundled for some kinds of processors only. For those that PoCL would choose others for, this is the
+/// value of POCL_KERNELLIB_NAME; empty: PoCL's own choice is there.
+std::string bundled_level(bool has_avx2, bool has_avx);
 
 /// Puts its linker before all others in PATH, where PoCL's compiler looks for `ld`. To be called before a kernel is compiled by it.
 /// Later calls do nothing.
