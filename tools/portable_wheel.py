@@ -181,7 +181,7 @@ def repaired(tools, wheel, absent, out):
 
 def package_of(path):
     """The Debian package that a file of this system is from."""
-    for form in (path, path.resolve(), Path("/usr") / path.relative_to("/")):
+    for form in (path, str(path).removeprefix("/usr")):  # packages may name /lib
         found = subprocess.run(["dpkg-query", "-S", form], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         if found.returncode == 0:
             return found.stdout.split(":")[0]
@@ -256,7 +256,7 @@ def main():
     parser.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="a variable of the build")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    tools, work = Tools(options.python), ROOT / "build/portable-wheel"
+    tools, work = Tools(os.path.abspath(options.python)), ROOT / "build/portable-wheel"
     say("building the package and the program")
     plain = plain_wheel(tools, work, options.cmake, options.jobs, options.define)
     tree = work / "tree"
