@@ -4,7 +4,8 @@
 #
 # portable_trial.sh [SUITE...]: installs the portable wheel of build/wheels in bare Debian systems (bookworm and trixie, or those named) as a
 # user without root, where nothing but python3 and venv were added, and uses it there (portable_trial_inside.sh). debootstrap makes the
-# systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Prints the seconds of each step.
+# systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Prints the seconds of each step; a
+# machine that does other work beside it may be given more of them from the wheel to a picture (CAPLET_TRIAL_SECONDS, 60).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bare=${CAPLET_BARE:-$root/build/bare}
@@ -57,7 +58,7 @@ for suite in "${suites[@]}"; do
   fetch "$(inside python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" "$system/home/user/given"
   echo "--- $suite: as a user, $(basename "$wheel")"
   env -i HOME=/home/user USER=user PATH=/usr/bin:/bin LANG=C.UTF-8 /usr/sbin/chroot --userspec=user "$system" \
-    bash /home/user/given/portable_trial_inside.sh alone
+    bash /home/user/given/portable_trial_inside.sh alone "${CAPLET_TRIAL_SECONDS:-60}"
   inside apt-get install -y -qq --no-install-recommends pocl-opencl-icd >/dev/null 2>&1
   echo "--- $suite: beside an installed PoCL"
   env -i HOME=/home/user USER=user PATH=/usr/bin:/bin LANG=C.UTF-8 /usr/sbin/chroot --userspec=user "$system" \

@@ -135,6 +135,8 @@ def add_driver(tools, package):
     for path in (basic, threads):
         replace = [word for old, new in renamed.items() for word in ("--replace-needed", old, new)]
         tools.patchelf(*replace, "--set-rpath", "$ORIGIN/..:$ORIGIN", path)
+    # PoCL opens this one by its own name, before the other that wants it by the new one.
+    shutil.copy(basic, libraries / "pocl/libpocl-devices-basic.so")
     data = driver / "share/pocl"
     shutil.copytree(DATA / "include", data / "include")
     for level in LEVELS:

@@ -3,6 +3,7 @@
 #include "base/own_file.h"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <system_error>
 
@@ -12,11 +13,12 @@ namespace fs = std::filesystem;
 
 fs::path own_file() {
   Dl_info info{};
-  if (::dladdr(reinterpret_cast<void*>(&own_file), &info) == 0 || info.dli_fname == nullptr) return {};
+  link_map* map = nullptr;
+  if (::dladdr1(reinterpret_cast<void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 || map == nullptr)
+    return {};
+  // The map of a program has no name, and that of dladdr is what the program was called by: the name of another file, perhaps.
+  const fs::path found = *map->l_name != '\0' ? fs::path(map->l_name) : fs::path("/proc/self/exe");
   std::error_code error;
-  const fs::path named = info.dli_fname;
-  // The name of a program is that which it was called by.
-  const fs::path found = fs::exists(named, error) && named.has_parent_path() ? named : fs::path("/proc/self/exe");
   const fs::path file = fs::canonical(found, error);
   return error ? fs::path() : file;
 }
