@@ -137,7 +137,9 @@ TEST(SelectBundled, TheMachinesDevicesAreEnoughWhereTheyAreMeant) {
     const std::vector<DeviceInfo> machine(devices.begin(), devices.end() - 1);
     for (const char* choice : {"", "0", "1", "cpu", "gpu", "all", "bundled", "epyc", "radeon", "0,1"}) {
       const auto early = select_machine_devices(machine, choice, true);
-      if (early) EXPECT_EQ(*early, select_devices(devices, choice)) << choice;
+      if (early) {
+        EXPECT_EQ(*early, select_devices(devices, choice)) << choice;
+      }
     }
   }
   EXPECT_TRUE(select_machine_devices({gpu_and_bundled[0]}, "", false));
