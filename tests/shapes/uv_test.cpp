@@ -146,13 +146,17 @@ TEST(Uv, OfChains) {
     EXPECT_NEAR(found.y, expected.y, 1e-12);
   };
   expect(x, {0, 0, -2}, {2.5, 0.5});
-  // A ray down and to -y: down x axis is -y, and it passes the axis r cos 45 from it, at +y.
-  expect(x, {0, -1, -1}, {2.5, 0.5 - 0.5 * std::sqrt(0.5)});
+  // v grows to the side of direction x axis. A ray down and to -y goes by at r cos / sqrt(2) on that side.
+  expect(x, {0, -1, -1}, {2.5, 0.5 + 0.5 * std::sqrt(0.5)});
   expect(x, {3, 0, 0}, {2.5, 0.5});  // along the axis
   expect({-1, 0, 0}, {0, 0, -1}, {2, 0.5});
   expect({-0.6, 0.8 * cosine * 0.5, 0.5}, {0, 0, -1}, {2, 0.5 - 0.8 / 4});
   expect({1.8, 0, 0}, {0, 0, -1}, {4, 0.5});
   EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 1, 1, dvec2(2, 4)}, {1, 0, 0}, 0, {-1, 0, 0}).x, 2);
+  // Two balls around one centre are the larger one. The axis is z: along -x, v grows with y.
+  const dvec2 concentric = uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 0.25, 1, dvec2(2, 4)}, {0, 0.5, std::sqrt(0.75)}, 0, {-1, 0, 0});
+  EXPECT_EQ(concentric.x, 2);
+  EXPECT_NEAR(concentric.y, 0.75, 1e-12);
   EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0.1, 0, 0}, 0.2, 1, dvec2(2, 4)}, {1.1, 0, 0}, 0, {-1, 0, 0}).x, 4);
 }
 

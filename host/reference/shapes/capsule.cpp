@@ -62,14 +62,16 @@ dvec2 chain_uv_of(const Capsule& c, const dvec3& x, const dvec3& direction) {
   dvec3 axis = c.p1 - c.p0;
   const double length = glm::length(axis), growth = c.radius1 - c.radius0;
   axis = length > 0 ? axis / length : dvec3(0, 0, 1);
-  double s = growth > 0 && length > 0 ? 1 : 0, cosine = 1;  // where one ball holds the other; where they are one, u is that of p0
+  // Where one ball holds the other, u is that of the larger one; where both have one centre, it is that of p0.
+  double s = growth > 0 && length > 0 ? 1 : 0, radius = std::max(c.radius0, c.radius1), cosine = 1;
   if (length > std::abs(growth)) {
     cosine = std::sqrt((length - growth) * (length + growth)) / length;
     const double along = glm::dot(x - c.p0, axis), across = glm::length(x - c.p0 - along * axis);
     s = std::clamp((along + across * growth / (length * cosine)) / length, 0.0, 1.0);
+    radius = c.radius0 + s * growth;
   }
   const dvec3 sideways = glm::cross(direction, axis);
-  const double radius = c.radius0 + s * growth, offset = glm::dot(x - c.p0, sideways) / std::max(glm::length(sideways), 1e-300);
+  const double offset = glm::dot(x - c.p0, sideways) / std::max(glm::length(sideways), 1e-300);
   return {glm::mix(c.u->x, c.u->y, s), std::clamp(0.5 + 0.5 * offset / std::max(radius * cosine, 1e-300), 0.0, 1.0)};
 }
 
