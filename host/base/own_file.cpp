@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 fs::path own_file() {
   Dl_info info{};
   link_map* map = nullptr;
-  if (::dladdr1(reinterpret_cast<void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 || map == nullptr)
+  if (::dladdr1(reinterpret_cast<void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 ||
+      map == nullptr)
     return {};
   // The map of a program has no name, and that of dladdr is what the program was called by: the name of another file, perhaps.
   const fs::path found = *map->l_name != '\0' ? fs::path(map->l_name) : fs::path("/proc/self/exe");

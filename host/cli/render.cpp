@@ -603,9 +603,9 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   command->add_option("--crop", o->crop, "Render only these pixels (from the top left; x1, y1 excluded)")
       ->type_name("x0,y0,x1,y1");
   command
-      ->add_option(
-          "--device", o->device,
-          "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`); some of these between commas, or all")
+      ->add_option("--device", o->device,
+                   "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`); some of these between "
+                   "commas, or all")
       ->type_name("D");
   add_encoding(*command, o->encoding);
   command->add_option("--patience", o->patience, "Leave a device out that does not answer for so long, where there are others")

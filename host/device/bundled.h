@@ -45,12 +45,12 @@ std::vector<cl::Device> bundled_devices(const cl::Platform& platform);
 /// Where it keeps compiled kernels: $POCL_CACHE_DIR, else "pocl" in Caplet's cache folder; empty where there is none.
 std::filesystem::path bundled_cache_folder(const std::function<std::string(const std::string&)>& variable);
 
-/// PoCL's compiled functions are bundled for some kinds of processors only. For those that PoCL would choose others for, this is the
-/// value of POCL_KERNELLIB_NAME; empty: PoCL's own choice is there.
+/// PoCL's compiled functions are bundled for some kinds of processors only. For those that PoCL would choose others for, this is
+/// the value of POCL_KERNELLIB_NAME; empty: PoCL's own choice is there.
 std::string bundled_level(bool has_avx2, bool has_avx);
 
-/// Puts its linker before all others in PATH, where PoCL's compiler looks for `ld`. To be called before a kernel is compiled by it.
-/// Later calls do nothing.
+/// Puts its linker before all others in PATH, where PoCL's compiler looks for `ld`. To be called before a kernel is compiled by
+/// it. Later calls do nothing.
 void use_bundled_linker();
 
 /// `path`, a list of folders between colons, with `folder` as its first; unchanged where it is that already.

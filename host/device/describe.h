@@ -18,8 +18,8 @@ struct FoundPlatform {
 
 enum class Drivers { machine, bundled, all };
 
-/// The platforms of the machine's drivers, in the ICD loader's order, and behind them that of the bundled driver. Empty where there
-/// is none: throws never.
+/// The platforms of the machine's drivers, in the ICD loader's order, and behind them that of the bundled driver. Empty where
+/// there is none: throws never.
 std::vector<FoundPlatform> find_platforms(Drivers drivers);
 /// Throws cl::Error.
 std::vector<cl::Device> devices_of(const FoundPlatform& platform);

@@ -52,8 +52,8 @@ struct DeviceInfo {
   bool bundled = false;  // of the driver that came with this program (bundled.h)
 };
 
-/// All OpenCL devices, those of the bundled driver last; empty when there is no platform (never throws for that). From any thread. Throws RunError in a process
-/// that was forked after OpenCL was used, as all does that needs a device (forked.h).
+/// All OpenCL devices, those of the bundled driver last; empty when there is no platform (never throws for that). From any
+/// thread. Throws RunError in a process that was forked after OpenCL was used, as all does that needs a device (forked.h).
 std::vector<DeviceInfo> list_devices();
 
 /// How kernels go through trees and leaf blocks: eight boxes or primitives at a time in vectors of floats, or one after the
@@ -80,11 +80,13 @@ Profile profile_of(const DeviceInfo& info);
 class Device {
  public:
   /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", "bundled", or part of a name (case
-  /// ignored). A device of the bundled driver is meant only where none of the machine's is, or by "bundled" or its index. Throws UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment
-  /// variable CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
+  /// ignored). A device of the bundled driver is meant only where none of the machine's is, or by "bundled" or its index. Throws
+  /// UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment variable
+  /// CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
-  /// Several: "all" (the bundled one only where the machine has no CPU), or such choices between commas, none of them twice; errors as choose.
+  /// Several: "all" (the bundled one only where the machine has no CPU), or such choices between commas, none of them twice;
+  /// errors as choose.
   static std::vector<Device> choose_several(const std::string& choice, Encoding encoding = Encoding::automatic);
 
   /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver

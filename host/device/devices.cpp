@@ -134,9 +134,7 @@ std::string name_of(Encoding encoding) {
   return encoding == Encoding::wide ? "wide" : encoding == Encoding::single ? "single" : "automatic";
 }
 
-Device Device::choose(const std::string& choice, Encoding encoding) {
-  return chosen(choice, encoding, false).front();
-}
+Device Device::choose(const std::string& choice, Encoding encoding) { return chosen(choice, encoding, false).front(); }
 
 std::vector<Device> Device::choose_several(const std::string& choice, Encoding encoding) {
   return chosen(choice, encoding, true);

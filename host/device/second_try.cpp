@@ -16,6 +16,7 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "device/bundled.h"
+#include "device/pocl_needs.h"
 
 extern char** environ;
 
@@ -122,13 +123,6 @@ bool may_be_the_cache(cl_int code) {
 }
 
 }  // namespace
-
-fs::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable) {
-  if (const std::string named = variable("POCL_CACHE_DIR"); !named.empty()) return named;
-  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty()) return fs::path(base) / "pocl/kcache";
-  if (const std::string home = variable("HOME"); !home.empty()) return fs::path(home) / ".cache/pocl/kcache";
-  return {};
-}
 
 FreshPoclCache::FreshPoclCache() {
   std::error_code error;

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "device/bundled.h"
 #include "device/cache.h"
+#include "device/pocl_needs.h"
 #include "device/second_try.h"
 #include "device/select.h"
 #include "doctor/detail/machine.h"

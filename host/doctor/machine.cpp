@@ -11,7 +11,6 @@
 
 #include "device/bundled.h"
 #include "device/pocl_needs.h"
-#include "device/second_try.h"
 
 namespace caplet::doctor {
 

@@ -105,11 +105,11 @@ Findings check_registry(const Registry& registry, bool has_bundled) {
     const std::string fix = registry.problem == "cannot be read" ? fmt::format("sudo chmod a+rX '{}'", registry.place)
                             : registry.variable.empty()          ? install_a_driver
                                                         : fmt::format("unset {}, or {}", registry.variable, install_a_driver);
-    out.push_back({has_bundled ? State::note : State::wrong, about,
-                   fmt::format("no OpenCL driver is registered: the {} {}{}",
-                               registry.problem == "is not a folder" ? "path" : "folder", registry.problem,
-                               has_bundled ? "; the bundled one is used" : ""),
-                   fix});
+    out.push_back(
+        {has_bundled ? State::note : State::wrong, about,
+         fmt::format("no OpenCL driver is registered: the {} {}{}", registry.problem == "is not a folder" ? "path" : "folder",
+                     registry.problem, has_bundled ? "; the bundled one is used" : ""),
+         fix});
   } else {
     out.push_back({State::ok, about,
                    fmt::format("{} driver{} registered here", registry.drivers.size(), registry.drivers.size() == 1 ? "" : "s"),

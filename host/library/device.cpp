@@ -8,7 +8,7 @@
 namespace caplet::v0 {
 
 DeviceInfo to_public(const caplet::DeviceInfo& info) {
-  return {info.index,    info.name, info.vendor,        info.driver,      info.version,
+  return {info.index,    info.name, info.vendor,        info.driver,       info.version,
           info.platform, info.type, info.compute_units, info.global_bytes, info.bundled};
 }
 

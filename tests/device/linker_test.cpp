@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `ld` of a portable installation: what of PoCL's arguments LLVM's linker is handed. It takes what lies beside it for that linker.
+// `ld` of a portable installation: what of PoCL's arguments LLVM's linker is handed. It takes what lies beside it for that
+// linker.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
