@@ -76,7 +76,6 @@ std::vector<cl::Platform> load_platforms() {
 
 BundledDriver bundled_driver(const fs::path& file, const std::function<std::string(const std::string&)>& variable) {
   const std::string named = variable("CAPLET_BUNDLED_DRIVER");
-  if (named == "0") return {};
   const fs::path beside = file.parent_path();
   std::vector<fs::path> folders;
   if (!named.empty())

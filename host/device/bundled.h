@@ -25,8 +25,8 @@ struct BundledDriver {
 };
 
 /// The driver of an installation: the folder `pocl` beside `file`, a program or library, or beside its folder. The variable
-/// CAPLET_BUNDLED_DRIVER names another folder, or is 0 where there shall be none. `variable` gives an environment variable, empty
-/// when it is not set. Nothing is loaded.
+/// CAPLET_BUNDLED_DRIVER names another folder; where that is no driver's (0), there is none. `variable` gives an environment
+/// variable, empty when it is not set. Nothing is loaded.
 BundledDriver bundled_driver(const std::filesystem::path& file, const std::function<std::string(const std::string&)>& variable);
 
 /// That of this program or library, in this environment.
