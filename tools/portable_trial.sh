@@ -29,6 +29,11 @@ make_bare() {
   mv "$bare/$1.part" "$bare/$1"
 }
 
+if [ -x "$root/build/release/bin/caplet" ]; then
+  echo "--- pictures of the wheel and of build/release, on the wheel's driver"
+  "$root/tools/portable_equal.py" "$wheel" "$root/build/release/bin/caplet"
+fi
+
 suites=("$@")
 [ ${#suites[@]} -gt 0 ] || suites=(bookworm trixie)
 python=$root/build/portable-env/bin/python
