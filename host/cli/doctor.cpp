@@ -54,8 +54,8 @@ void add_doctor(CLI::App& app) {
   const auto chosen = std::make_shared<Chosen>();
   CLI::App* command =
       app.add_subcommand("doctor", "Look for what keeps OpenCL from working here: drivers, permissions, memory, caches, devices");
-  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu or part of its name")
-      ->type_name("cpu|gpu|DEVICE")
+  command->add_option("--device", chosen->options.device, "Test only this device: index, cpu, gpu, bundled or part of its name")
+      ->type_name("cpu|gpu|bundled|DEVICE")
       ->default_str("all of them");
   command
       ->add_option("--timeout", chosen->options.seconds,

@@ -120,17 +120,17 @@ std::vector<Device> choose_devices(const std::string& choice, Encoding encoding)
 }
 
 void add_device(CLI::App& command, std::string& choice) {
-  command.add_option("--device", choice, "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`)")
-      ->type_name("cpu|gpu|DEVICE")
+  command.add_option("--device", choice, "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
+      ->type_name("cpu|gpu|bundled|DEVICE")
       ->default_str(usual_device);
 }
 
 void add_devices_option(CLI::App& command, std::string& choice) {
   command
-      .add_option(
-          "--device", choice,
-          "OpenCL device: index, cpu, gpu or part of its name (see `caplet devices`); some of these between commas, or all")
-      ->type_name("all|cpu|gpu|DEVICE,...")
+      .add_option("--device", choice,
+                  "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`); some of these between "
+                  "commas, or all")
+      ->type_name("all|cpu|gpu|bundled|DEVICE,...")
       ->default_str(usual_device);
 }
 

@@ -49,10 +49,11 @@ struct DeviceInfo {
   unsigned compute_units = 0;
   unsigned native_float_width = 0;  // floats of a vector as the device computes with them (CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
   std::uint64_t global_bytes = 0, max_allocation_bytes = 0;
+  bool bundled = false;  // of the driver that came with this program (bundled.h)
 };
 
-/// All OpenCL devices; empty when there is no platform (never throws for that). From any thread. Throws RunError in a process
-/// that was forked after OpenCL was used, as all does that needs a device (forked.h).
+/// All OpenCL devices, those of the bundled driver last; empty when there is no platform (never throws for that). From any
+/// thread. Throws RunError in a process that was forked after OpenCL was used, as all does that needs a device (forked.h).
 std::vector<DeviceInfo> list_devices();
 
 /// How kernels go through trees and leaf blocks: eight boxes or primitives at a time in vectors of floats, or one after the
@@ -78,12 +79,14 @@ Profile profile_of(const DeviceInfo& info);
 /// A chosen device with its context and in-order queue. Copies share them.
 class Device {
  public:
-  /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", or part of a name (case ignored).
-  /// Throws UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment
-  /// variable CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
+  /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", "bundled", or part of a name (case
+  /// ignored). A device of the bundled driver is meant only where none of the machine's is, or by "bundled" or its index. Throws
+  /// UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment variable
+  /// CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
-  /// Several: "all", or such choices between commas, none of them twice; errors as choose.
+  /// Several: "all" (the bundled one only where the machine has no CPU), or such choices between commas, none of them twice;
+  /// errors as choose.
   static std::vector<Device> choose_several(const std::string& choice, Encoding encoding = Encoding::automatic);
 
   /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver
@@ -111,8 +114,7 @@ class Device {
   struct Accounting;
   struct Programs;
   friend class Program;
-  static std::vector<Device> chosen(Encoding encoding,
-                                    const std::function<std::vector<std::size_t>(const std::vector<DeviceInfo>&)>& select);
+  static std::vector<Device> chosen(const std::string& choice, Encoding encoding, bool several);
   static Device open(const cl::Device& device, const DeviceInfo& info, Encoding encoding);
   DeviceInfo info_;
   Encoding encoding_ = Encoding::single;

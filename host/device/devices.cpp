@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 
 #include "base/check.h"
+#include "device/bundled.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
 #include "device/detail/accounting.h"
@@ -35,25 +37,17 @@ std::string type_name(cl_device_type type) {
 std::mutex first_use;
 
 /// A platform or device that cannot be asked is left out: it could not be used either.
-std::vector<Found> find_devices() {
+std::vector<Found> find_devices(Drivers drivers) {
   begin_opencl();
   const std::lock_guard lock(first_use);
   std::vector<Found> found;
-  std::vector<cl::Platform> platforms;
-  try {
-    prepare_for_pocl();
-    cl::Platform::get(&platforms);
-  } catch (const cl::Error&) {
-    return found;
-  }
-  for (const cl::Platform& platform : platforms) {
+  for (const FoundPlatform& platform : find_platforms(drivers)) {
     try {
-      std::vector<cl::Device> devices;
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
       const std::string named = platform_name(platform);
-      for (const cl::Device& device : devices) {
+      for (const cl::Device& device : devices_of(platform)) {
         found.push_back({describe(device, named), device});
         found.back().info.index = static_cast<int>(found.size()) - 1;
+        found.back().info.bundled = platform.bundled;
       }
     } catch (const cl::Error&) {
       continue;
@@ -62,10 +56,42 @@ std::vector<Found> find_devices() {
   return found;
 }
 
+std::vector<DeviceInfo> infos_of(const std::vector<Found>& devices) {
+  std::vector<DeviceInfo> out;
+  out.reserve(devices.size());
+  for (const Found& found : devices) out.push_back(found.info);
+  return out;
+}
+
 }  // namespace
 
-std::string platform_name(const cl::Platform& platform) {
-  return platform.getInfo<CL_PLATFORM_NAME>() + " " + platform.getInfo<CL_PLATFORM_VERSION>();
+std::vector<FoundPlatform> find_platforms(Drivers drivers) {
+  prepare_for_pocl();
+  std::vector<FoundPlatform> out;
+  if (drivers != Drivers::bundled) {
+    std::vector<cl::Platform> platforms;
+    try {
+      cl::Platform::get(&platforms);
+    } catch (const cl::Error&) {
+      platforms.clear();  // the loader finds no driver
+    }
+    for (const cl::Platform& platform : platforms) out.push_back({platform, false});
+  }
+  if (drivers != Drivers::machine)
+    for (const cl::Platform& platform : bundled_platforms()) out.push_back({platform, true});
+  return out;
+}
+
+std::vector<cl::Device> devices_of(const FoundPlatform& platform) {
+  if (platform.bundled) return bundled_devices(platform.platform);
+  std::vector<cl::Device> devices;
+  platform.platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+  return devices;
+}
+
+std::string platform_name(const FoundPlatform& found) {
+  return found.platform.getInfo<CL_PLATFORM_NAME>() + " " + found.platform.getInfo<CL_PLATFORM_VERSION>() +
+         (found.bundled ? bundled_mark : "");
 }
 
 DeviceInfo describe(const cl::Device& device, const std::string& platform) {
@@ -83,11 +109,7 @@ DeviceInfo describe(const cl::Device& device, const std::string& platform) {
   return info;
 }
 
-std::vector<DeviceInfo> list_devices() {
-  std::vector<DeviceInfo> out;
-  for (const Found& found : find_devices()) out.push_back(found.info);
-  return out;
-}
+std::vector<DeviceInfo> list_devices() { return infos_of(find_devices(Drivers::all)); }
 
 Encoding natural_encoding(const DeviceInfo& info) {
   return info.type == "cpu" && info.native_float_width > 1 ? Encoding::wide : Encoding::single;
@@ -112,26 +134,26 @@ std::string name_of(Encoding encoding) {
   return encoding == Encoding::wide ? "wide" : encoding == Encoding::single ? "single" : "automatic";
 }
 
-Device Device::choose(const std::string& choice, Encoding encoding) {
-  return chosen(encoding, [&](const std::vector<DeviceInfo>& infos) { return std::vector{select_device(infos, choice)}; })
-      .front();
-}
+Device Device::choose(const std::string& choice, Encoding encoding) { return chosen(choice, encoding, false).front(); }
 
 std::vector<Device> Device::choose_several(const std::string& choice, Encoding encoding) {
-  return chosen(encoding, [&](const std::vector<DeviceInfo>& infos) { return select_devices(infos, choice); });
+  return chosen(choice, encoding, true);
 }
 
-std::vector<Device> Device::chosen(Encoding encoding,
-                                   const std::function<std::vector<std::size_t>(const std::vector<DeviceInfo>&)>& select) {
+std::vector<Device> Device::chosen(const std::string& choice, Encoding encoding, bool several) {
   constexpr const char* variable = "CAPLET_ENCODING";
   if (const char* named = std::getenv(variable); encoding == Encoding::automatic && named && *named)
     encoding = parse_encoding(named, variable);
-  const std::vector<Found> devices = find_devices();
-  std::vector<DeviceInfo> infos;
-  infos.reserve(devices.size());
-  for (const Found& candidate : devices) infos.push_back(candidate.info);
+  // The bundled driver is loaded only where it may be meant.
+  std::vector<Found> devices = find_devices(Drivers::machine);
+  std::optional<std::vector<std::size_t>> selected = select_machine_devices(infos_of(devices), choice, several);
+  if (!selected) {
+    devices = find_devices(Drivers::all);
+    const std::vector<DeviceInfo> infos = infos_of(devices);
+    selected = several ? select_devices(infos, choice) : std::vector{select_device(infos, choice)};
+  }
   std::vector<Device> out;
-  for (const std::size_t index : select(infos)) {
+  for (const std::size_t index : *selected) {
     const Found& found = devices[index];
     const Encoding natural = profile_of(found.info) == Profile::gpu ? Encoding::single : natural_encoding(found.info);
     out.push_back(open(found.device, found.info, encoding == Encoding::automatic ? natural : encoding));
@@ -152,6 +174,7 @@ Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding e
   out.accounting_ = std::make_shared<Accounting>();
   out.programs_ = std::make_shared<Programs>();
   if (out.is_pocl()) tell_of_pocl_cache();
+  if (info.bundled) use_bundled_linker();
   return out;
 }
 

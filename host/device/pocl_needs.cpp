@@ -15,7 +15,6 @@
 #include <mutex>
 
 #include "base/log.h"
-#include "device/second_try.h"
 
 namespace caplet {
 
@@ -77,6 +76,13 @@ void prepare_for_pocl() {
 void tell_of_pocl_cache() {
   static std::atomic<bool> is_told = false;
   if (!told.empty() && !is_told.exchange(true)) log::warn("{}", told);
+}
+
+fs::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable) {
+  if (const std::string named = variable("POCL_CACHE_DIR"); !named.empty()) return named;
+  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty()) return fs::path(base) / "pocl/kcache";
+  if (const std::string home = variable("HOME"); !home.empty()) return fs::path(home) / ".cache/pocl/kcache";
+  return {};
 }
 
 std::string why_unwritable(const fs::path& folder) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,10 @@ void prepare_for_pocl();
 
 /// Warns, once, of PoCL's own cache folder where another one takes its place. To be called when PoCL is used.
 void tell_of_pocl_cache();
+
+/// Where PoCL keeps compiled kernels: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; empty
+/// when none of them is set. `variable` gives an environment variable, empty when it is not set.
+std::filesystem::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable);
 
 /// Why no folder or file can be made at that place; empty: it can. Leaves nothing behind.
 std::string why_unwritable(const std::filesystem::path& folder);

@@ -15,6 +15,8 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
+#include "device/bundled.h"
+#include "device/pocl_needs.h"
 
 extern char** environ;
 
@@ -24,7 +26,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* marker = "CAPLET_DRIVER_FAILED";  // set for the second process: the first one's signal, 0 for an error
+constexpr const char* marker = "CAPLET_DRIVER_FAILED";       // set for the second process: the first one's signal, 0 for an error
+constexpr const char* cache_marker = "CAPLET_DRIVER_CACHE";  // likewise: the cache folder that the driver used
 constexpr int signals[] = {SIGABRT, SIGBUS, SIGSEGV, SIGILL};
 
 enum State : int { off, guarded, second, ending };
@@ -90,9 +93,12 @@ void handle_signals(bool on) {
   }
 }
 
-void prepare() {
+void prepare(const Device& device) {
   variables.clear();
   for (char** one = environ; *one; ++one) variables.emplace_back(*one);
+  const fs::path cache =
+      device.info().bundled ? bundled_cache_folder(variable_of_process) : pocl_cache_folder(variable_of_process);
+  variables.push_back(fmt::format("{}={}", cache_marker, cache.string()));
   variables.push_back(fmt::format("{}=00", marker));
   environment.clear();
   for (std::string& one : variables) environment.push_back(one.data());
@@ -118,13 +124,6 @@ bool may_be_the_cache(cl_int code) {
 
 }  // namespace
 
-fs::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable) {
-  if (const std::string named = variable("POCL_CACHE_DIR"); !named.empty()) return named;
-  if (const std::string base = variable("XDG_CACHE_HOME"); !base.empty()) return fs::path(base) / "pocl/kcache";
-  if (const std::string home = variable("HOME"); !home.empty()) return fs::path(home) / ".cache/pocl/kcache";
-  return {};
-}
-
 FreshPoclCache::FreshPoclCache() {
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "caplet-pocl-XXXXXX").string();
@@ -149,7 +148,8 @@ SecondTry::SecondTry(char** arguments) {
   is_second = !failed.empty();
   if (!is_second) return;
   ::unsetenv(marker);
-  damaged = pocl_cache_folder(variable_of_process).string();
+  damaged = variable_of_process(cache_marker);
+  ::unsetenv(cache_marker);
   fresh_.emplace();
   const int number = std::atoi(failed.c_str());
   log::warn("PoCL failed{}: trying once more with a fresh cache folder in place of '{}'",
@@ -164,7 +164,7 @@ SecondTry::~SecondTry() {
 void SecondTry::guard(const Device& device) {
   if (!program_arguments || !device.is_pocl()) return;
   if (state == off) {
-    prepare();
+    prepare(device);
     state = is_second ? second : guarded;
   }
   handle_signals(true);

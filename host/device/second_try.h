@@ -14,10 +14,6 @@
 
 namespace caplet {
 
-/// Where PoCL keeps compiled kernels: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; empty
-/// when none of them is set. `variable` gives an environment variable, empty when it is not set.
-std::filesystem::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable);
-
 /// A folder of its own for PoCL's cache for as long as the object lives: POCL_CACHE_DIR names it. To be made before any OpenCL
 /// call of the process.
 class FreshPoclCache {

@@ -19,7 +19,8 @@ using Devices = std::vector<DeviceInfo>;
 [[noreturn]] void refuse(const std::string& message, const Devices& devices) {
   std::string list;
   for (const DeviceInfo& info : devices)
-    list += fmt::format("{}{} '{}' ({})", list.empty() ? "" : ", ", info.index, info.name, info.type);
+    list += fmt::format("{}{} '{}' ({}{})", list.empty() ? "" : ", ", info.index, info.name, info.type,
+                        info.bundled ? ", bundled" : "");
   throw UnknownDevice(fmt::format("{}; the devices are {}", message, list));
 }
 
@@ -29,15 +30,27 @@ std::size_t first_of_type(const Devices& devices, const std::string& type) {
   return static_cast<std::size_t>(at - devices.begin());
 }
 
-std::size_t by_name(const Devices& devices, const std::string& choice) {
-  const std::string wanted = lower_case(choice);
-  std::vector<std::size_t> whole, part;
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    const std::string name = lower_case(devices[i].name);
-    if (name == wanted) whole.push_back(i);
-    if (name.find(wanted) != std::string::npos) part.push_back(i);
+/// Those with a name: the whole of it if there is one, else a part; of the machine's devices if there is one.
+std::vector<std::size_t> matches_of(const Devices& devices, const std::string& wanted) {
+  for (const bool bundled : {false, true}) {
+    std::vector<std::size_t> whole, part;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      if (devices[i].bundled != bundled) continue;
+      const std::string name = lower_case(devices[i].name);
+      if (name == wanted) whole.push_back(i);
+      if (name.find(wanted) != std::string::npos) part.push_back(i);
+    }
+    if (!part.empty()) return whole.empty() ? part : whole;
   }
-  const std::vector<std::size_t>& matches = whole.empty() ? part : whole;
+  return {};
+}
+
+bool has_processor(const Devices& devices) {
+  return std::ranges::any_of(devices, [](const DeviceInfo& info) { return !info.bundled && info.type == "cpu"; });
+}
+
+std::size_t by_name(const Devices& devices, const std::string& choice) {
+  const std::vector<std::size_t> matches = matches_of(devices, lower_case(choice));
   if (matches.empty()) refuse(fmt::format("no device has '{}' in its name", choice), devices);
   if (matches.size() > 1) refuse(fmt::format("more than one device has '{}' in its name", choice), devices);
   return matches.front();
@@ -56,6 +69,11 @@ std::size_t select_device(const Devices& devices, const std::string& choice) {
     return index;
   }
   const std::string type = lower_case(choice);
+  if (type == "bundled") {
+    const auto at = std::ranges::find_if(devices, [](const DeviceInfo& info) { return info.bundled; });
+    if (at == devices.end()) refuse("no OpenCL driver came with this program", devices);
+    return static_cast<std::size_t>(at - devices.begin());
+  }
   if (type != "cpu" && type != "gpu") return by_name(devices, choice);
   const std::size_t first = first_of_type(devices, type);
   if (first == devices.size()) refuse(fmt::format("no device of type '{}'", type), devices);
@@ -65,7 +83,10 @@ std::size_t select_device(const Devices& devices, const std::string& choice) {
 std::vector<std::size_t> select_devices(const Devices& devices, const std::string& choice) {
   std::vector<std::size_t> out;
   if (lower_case(choice) == "all" && !devices.empty()) {
-    for (std::size_t i = 0; i < devices.size(); ++i) out.push_back(i);
+    // The bundled driver's device is the same processor again.
+    const bool has_cpu = has_processor(devices);
+    for (std::size_t i = 0; i < devices.size(); ++i)
+      if (!devices[i].bundled || !has_cpu) out.push_back(i);
     return out;
   }
   // A name may have a comma in it.
@@ -84,6 +105,15 @@ std::vector<std::size_t> select_devices(const Devices& devices, const std::strin
     out.push_back(index);
     if (comma == std::string_view::npos) return out;
     rest.remove_prefix(comma + 1);
+  }
+}
+
+std::optional<std::vector<std::size_t>> select_machine_devices(const Devices& machine, const std::string& choice, bool several) {
+  if (machine.empty() || (several && lower_case(choice) == "all" && !has_processor(machine))) return std::nullopt;
+  try {
+    return several ? select_devices(machine, choice) : std::vector{select_device(machine, choice)};
+  } catch (const UnknownDevice&) {
+    return std::nullopt;
   }
 }
 

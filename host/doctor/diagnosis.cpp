@@ -11,7 +11,9 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "device/bundled.h"
 #include "device/cache.h"
+#include "device/pocl_needs.h"
 #include "device/second_try.h"
 #include "device/select.h"
 #include "doctor/detail/machine.h"
@@ -100,7 +102,10 @@ bool at_least_1_2(const std::string& version) {
   return major > 1 || (major == 1 && minor >= 2);
 }
 
+constexpr const char* about_bundled = "bundled driver";  // where other drivers have their .icd file
+
 std::string remove_text(const Driver& driver) {
+  if (driver.from == about_bundled) return "export CAPLET_BUNDLED_DRIVER=0";
   if (!driver.from.ends_with(".icd")) return "unset " + driver.from;
   return fmt::format("sudo mv '{0}' '{0}.off'", driver.from);
 }
@@ -126,6 +131,7 @@ class Examination {
     add(check_memory(machine_));
     add(check_cache(machine_, cache_folder()));
     if (has_pocl_) add(check_pocl_cache(machine_));
+    if (bundled_devices_) add(check_bundled_cache(machine_));
     add(known_quirks(out_.platforms));
     test_devices();
     return std::move(out_);
@@ -152,17 +158,21 @@ class Examination {
         loader_.name.empty() ? "does not say its name" : fmt::format("{} {} ({})", loader_.name, loader_.version, loader_.vendor),
         ""});
     registry_ = read_registry(machine_, loader_);
-    add(check_registry(registry_));
+    add(check_registry(registry_, static_cast<bool>(bundled_driver())));
   }
 
   void ask_drivers() {
     for (const Driver& driver : registry_.drivers)
-      if (driver.problem.empty()) answers_.emplace_back(driver, ask_driver(driver, loader_, options_.seconds));
+      if (driver.problem.empty()) answers_.push_back({driver, ask_driver(driver, loader_, options_.seconds)});
+    if (const BundledDriver bundled = bundled_driver()) {
+      answers_.push_back({{about_bundled, bundled.library.string(), ""}, ask_bundled(options_.seconds)});
+      bundled_devices_ = answers_.back().second.has_devices();
+    }
     for (const auto& [driver, answer] : answers_) {
       const bool needed =
           std::none_of(answers_.begin(), answers_.end(), [](const auto& each) { return each.second.has_devices(); });
       add(judge_driver(driver, answer, machine_, needed));
-      has_pocl_ = has_pocl_ || driver.library.find("pocl") != std::string::npos;
+      has_pocl_ = has_pocl_ || (driver.from != about_bundled && driver.library.find("pocl") != std::string::npos);
     }
   }
 
@@ -177,7 +187,8 @@ class Examination {
       take(all.platforms, {});
     } else {
       for (const auto& [driver, answer] : answers_)
-        if (answer.end.finished) take(answer.platforms, only(driver.library, loader_));
+        if (answer.end.finished)
+          take(answer.platforms, only(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_));
     }
     if (out_.platforms.empty() && !registry_.drivers.empty())
       add(Finding{State::wrong, "platforms", "no driver answers: there is no OpenCL platform", install_a_driver});
@@ -195,7 +206,7 @@ class Examination {
 
   std::string working_driver() const {
     for (const auto& [driver, answer] : answers_)
-      if (answer.has_devices()) return only_text(driver.library, loader_);
+      if (answer.has_devices()) return only_text(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_);
     return {};
   }
 
@@ -218,12 +229,14 @@ class Examination {
       const ChildEnd end = test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds);
       if (end.finished)
         add(Finding{State::ok, title(device.info), "passes the self-test", ""});
-      else if (is_pocl(device.info) && passes_with_fresh_cache(device))
+      else if (is_pocl(device.info) && passes_with_fresh_cache(device)) {
+        const std::string folder =
+            (device.info.bundled ? bundled_cache_folder(machine_.variable) : pocl_cache_folder(machine_.variable)).string();
         add(Finding{State::wrong, "PoCL's cache",
-                    fmt::format("{} is damaged: with it, {} fails the self-test ({}{}); with a fresh folder it passes",
-                                pocl_cache_folder(machine_.variable).string(), title(device.info), end.how, printed(end)),
-                    fmt::format("rm -r '{}'", pocl_cache_folder(machine_.variable).string())});
-      else
+                    fmt::format("{} is damaged: with it, {} fails the self-test ({}{}); with a fresh folder it passes", folder,
+                                title(device.info), end.how, printed(end)),
+                    fmt::format("rm -r '{}'", folder)});
+      } else
         add(Finding{State::wrong, title(device.info), "fails the self-test: " + end.how + printed(end),
                     fmt::format("update the driver ({}), or use another device; then report it to the driver's makers",
                                 device.info.driver)});
@@ -242,7 +255,7 @@ class Examination {
   Registry registry_;
   std::vector<std::pair<Driver, Answer>> answers_;
   std::vector<Testable> devices_;
-  bool has_pocl_ = false;
+  bool has_pocl_ = false, bundled_devices_ = false;
   Diagnosis out_;
 };
 

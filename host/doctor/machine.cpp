@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "device/bundled.h"
 #include "device/pocl_needs.h"
-#include "device/second_try.h"
 
 namespace caplet::doctor {
 
@@ -203,6 +203,12 @@ Findings check_pocl_cache(const Surroundings& machine) {
   if (folder.empty()) return {};
   return {check_folder(machine, "PoCL's cache", folder, "POCL_CACHE_DIR",
                        "PoCL offers no device then or cannot compile; Caplet gives it a temporary folder")};
+}
+
+Findings check_bundled_cache(const Surroundings& machine) {
+  const fs::path folder = bundled_cache_folder(machine.variable);
+  if (folder.empty()) return {};
+  return {check_folder(machine, "the bundled driver's cache", folder, "CAPLET_CACHE", "it uses PoCL's then")};
 }
 
 Findings check_sys(const Surroundings& machine) {

@@ -10,13 +10,13 @@
 
 #include "base/log.h"
 #include "base/utf8.h"
+#include "device/bundled.h"
 #include "device/cl_error.h"
 #include "device/describe.h"
-#include "device/pocl_needs.h"
 
 namespace caplet {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units,
-                                   native_float_width, global_bytes, max_allocation_bytes)
+                                   native_float_width, global_bytes, max_allocation_bytes, bundled)
 }
 
 namespace caplet::doctor {
@@ -33,9 +33,10 @@ void set(const Variables& variables) {
   for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
 }
 
-DeviceFacts facts_of(const cl::Device& device, const std::string& platform) {
+DeviceFacts facts_of(const cl::Device& device, const FoundPlatform& platform) {
   DeviceFacts out;
-  out.info = describe(device, platform);
+  out.info = describe(device, platform_name(platform));
+  out.info.bundled = platform.bundled;
   out.available = device.getInfo<CL_DEVICE_AVAILABLE>() != CL_FALSE;
   out.compiler = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() != CL_FALSE;
   out.little_endian = device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != CL_FALSE;
@@ -44,25 +45,17 @@ DeviceFacts facts_of(const cl::Device& device, const std::string& platform) {
 }
 
 /// Indices as list_devices() gives them: a platform of which anything cannot be asked has the devices before the failure.
-std::vector<PlatformFacts> platforms_here() {
+std::vector<PlatformFacts> platforms_here(Drivers drivers) {
   std::vector<PlatformFacts> out;
-  std::vector<cl::Platform> platforms;
-  try {
-    cl::Platform::get(&platforms);
-  } catch (const cl::Error&) {
-    return out;
-  }
   int index = 0;
-  for (const cl::Platform& platform : platforms) {
+  for (const FoundPlatform& platform : find_platforms(drivers)) {
     PlatformFacts& facts = out.emplace_back();
     try {
-      facts.name = platform.getInfo<CL_PLATFORM_NAME>();
-      facts.vendor = platform.getInfo<CL_PLATFORM_VENDOR>();
-      facts.version = platform.getInfo<CL_PLATFORM_VERSION>();
-      std::vector<cl::Device> devices;
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-      for (const cl::Device& device : devices) {
-        DeviceFacts found = facts_of(device, platform_name(platform));
+      facts.name = platform.platform.getInfo<CL_PLATFORM_NAME>();
+      facts.vendor = platform.platform.getInfo<CL_PLATFORM_VENDOR>();
+      facts.version = platform.platform.getInfo<CL_PLATFORM_VERSION>() + (platform.bundled ? bundled_mark : "");
+      for (const cl::Device& device : devices_of(platform)) {
+        DeviceFacts found = facts_of(device, platform);
         found.info.index = index++;
         facts.devices.push_back(found);
       }
@@ -126,8 +119,7 @@ Answer ask_driver(const Driver& driver, const Loader& loader, double seconds) {
           return json_dump(Json(error ? error : "unknown error"));
         }
         set(only(driver.library, loader));
-        prepare_for_pocl();
-        return json_dump(Json(platforms_here()));
+        return json_dump(Json(platforms_here(Drivers::machine)));
       },
       seconds));
 }
@@ -136,8 +128,19 @@ Answer ask_all(const Variables& variables, double seconds) {
   return read_answer(in_child(
       [&] {
         set(variables);
-        prepare_for_pocl();
-        return json_dump(Json(platforms_here()));
+        return json_dump(Json(platforms_here(Drivers::all)));
+      },
+      seconds));
+}
+
+Answer ask_bundled(double seconds) {
+  return read_answer(in_child(
+      [] {
+        if (!::dlopen(bundled_driver().library.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
+          const char* error = ::dlerror();
+          return json_dump(Json(error ? error : "unknown error"));
+        }
+        return json_dump(Json(platforms_here(Drivers::bundled)));
       },
       seconds));
 }

@@ -42,6 +42,8 @@ using Variables = std::vector<std::pair<std::string, std::string>>;
 Loader ask_loader();
 /// Loads the driver's library and asks its platforms, through the loader.
 Answer ask_driver(const Driver& driver, const Loader& loader, double seconds);
+/// The same of the driver that came with this program.
+Answer ask_bundled(double seconds);
 /// Asks all platforms, as any command of Caplet does.
 Answer ask_all(const Variables& variables, double seconds);
 /// Whether dlopen finds a library; false also when it crashes.

@@ -98,17 +98,18 @@ Registry read_registry(const Surroundings& machine, const Loader& loader) {
   return loader.is_ocl_icd() ? as_ocl_icd(machine) : as_khronos(machine);
 }
 
-Findings check_registry(const Registry& registry) {
+Findings check_registry(const Registry& registry, bool has_bundled) {
   Findings out;
   const std::string about = registry.variable.empty() ? registry.place : registry.variable + "=" + registry.place;
   if (!registry.problem.empty()) {
     const std::string fix = registry.problem == "cannot be read" ? fmt::format("sudo chmod a+rX '{}'", registry.place)
                             : registry.variable.empty()          ? install_a_driver
                                                         : fmt::format("unset {}, or {}", registry.variable, install_a_driver);
-    out.push_back({State::wrong, about,
-                   fmt::format("no OpenCL driver is registered: the {} {}",
-                               registry.problem == "is not a folder" ? "path" : "folder", registry.problem),
-                   fix});
+    out.push_back(
+        {has_bundled ? State::note : State::wrong, about,
+         fmt::format("no OpenCL driver is registered: the {} {}{}", registry.problem == "is not a folder" ? "path" : "folder",
+                     registry.problem, has_bundled ? "; the bundled one is used" : ""),
+         fix});
   } else {
     out.push_back({State::ok, about,
                    fmt::format("{} driver{} registered here", registry.drivers.size(), registry.drivers.size() == 1 ? "" : "s"),

@@ -36,8 +36,9 @@ struct Registry {
 
 Registry read_registry(const Surroundings& machine, const Loader& loader);
 
-/// Findings about the place and the .icd files, not about the libraries.
-Findings check_registry(const Registry& registry);
+/// Findings about the place and the .icd files, not about the libraries. That the place holds no driver is wrong, or a note where
+/// there is another one, `has_bundled`.
+Findings check_registry(const Registry& registry, bool has_bundled = false);
 
 /// The variables that make the loader use `library` alone.
 std::vector<std::pair<std::string, std::string>> only(const std::string& library, const Loader& loader);

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/own_file.h"
 
 namespace caplet::image_files {
 
@@ -19,18 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* file_name = "caplet_images.so";
-
-/// The program or library that this code is in.
-fs::path own_file() {
-  Dl_info info{};
-  if (::dladdr(reinterpret_cast<void*>(&own_file), &info) == 0 || info.dli_fname == nullptr) return {};
-  std::error_code error;
-  const fs::path named = info.dli_fname;
-  // The name of a program is that which it was called by.
-  const fs::path found = fs::exists(named, error) && named.has_parent_path() ? named : fs::path("/proc/self/exe");
-  const fs::path file = fs::canonical(found, error);
-  return error ? fs::path() : file;
-}
 
 struct Loaded {
   const Module* module = nullptr;

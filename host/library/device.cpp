@@ -8,8 +8,8 @@
 namespace caplet::v0 {
 
 DeviceInfo to_public(const caplet::DeviceInfo& info) {
-  return {info.index,    info.name, info.vendor,        info.driver,      info.version,
-          info.platform, info.type, info.compute_units, info.global_bytes};
+  return {info.index,    info.name, info.vendor,        info.driver,       info.version,
+          info.platform, info.type, info.compute_units, info.global_bytes, info.bundled};
 }
 
 void check_process() {

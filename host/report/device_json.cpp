@@ -12,6 +12,7 @@ nlohmann::ordered_json device_json(const DeviceInfo& device) {
           {"driver", device.driver},
           {"version", device.version},
           {"platform", device.platform},
+          {"bundled", device.bundled},
           {"compute_units", device.compute_units},
           {"native_float_width", device.native_float_width},
           {"encoding", name_of(natural_encoding(device))},

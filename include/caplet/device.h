@@ -20,6 +20,7 @@ struct DeviceInfo {
   std::string type;  // "cpu", "gpu", "accelerator", "other"
   unsigned compute_units = 0;
   std::uint64_t global_bytes = 0;  // memory
+  bool bundled = false;            // of the driver that came with this library
 };
 
 /// OpenCL does not work in a process that was forked from one that had used it. There every call that needs a device throws this
@@ -48,10 +49,10 @@ class CAPLET_API Device {
   std::shared_ptr<const Data> data_;
 };
 
-/// `choice`: an index, "cpu", "gpu" or part of a name; empty: a GPU if there is one, else the first device. Throws InputError
-/// that lists the devices when none or more than one is meant, and RunError when there is none. Before its first render or
-/// question a device is tried once with answers that are known, which takes the time that its kernels take to compile; a wrong
-/// one throws RunError.
+/// `choice`: an index, "cpu", "gpu", "bundled" or part of a name; empty: a GPU if there is one, else the first device. Throws
+/// InputError that lists the devices when none or more than one is meant, and RunError when there is none. Before its first
+/// render or question a device is tried once with answers that are known, which takes the time that its kernels take to compile;
+/// a wrong one throws RunError.
 CAPLET_API Device choose_device(const std::string& choice = {});
 /// Several: "all", or such choices between commas, none of them twice.
 CAPLET_API std::vector<Device> choose_devices(const std::string& choice);

@@ -19,7 +19,7 @@ def _devices(choice):
     if isinstance(choice, int) and not isinstance(choice, bool):
         choice = str(choice)
     if not isinstance(choice, str):
-        raise InputError('device: an index, "cpu", "gpu", "all" or part of a name is needed')
+        raise InputError('device: an index, "cpu", "gpu", "bundled", "all" or part of a name is needed')
     return _caplet.choose_devices(choice)
 
 
@@ -70,7 +70,7 @@ class _Progress:
 class Session:
     """A scene on one or several devices that is rendered and changed again and again.
 
-    device: an index, "cpu", "gpu", part of a name, several between commas, or "all"; None: a GPU if there is one, else the first.
+    device: an index, "cpu", "gpu", "bundled", part of a name, several between commas, or "all"; None: a GPU if there is one, else the first.
     The scene stays as it is here until `update`. Any thread may call any of it: they wait for each other.
 
     >>> scene = Scene()

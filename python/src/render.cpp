@@ -35,6 +35,7 @@ nb::dict told(const caplet::DeviceInfo& info) {
   out["type"] = info.type;
   out["compute_units"] = info.compute_units;
   out["global_bytes"] = info.global_bytes;
+  out["bundled"] = info.bundled;
   return out;
 }
 

@@ -70,6 +70,13 @@ TEST_F(Machine, NoFolderOfDrivers) {
   EXPECT_THAT(registry_finding().fix, HasSubstr("apt-get install"));
 }
 
+TEST_F(Machine, NoDriverIsANoteWhereOneIsBundled) {
+  const Findings found = check_registry(read_registry(machine_, ocl_icd), true);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].state, State::note);
+  EXPECT_THAT(found[0].what, AllOf(HasSubstr("does not exist"), HasSubstr("the bundled one is used")));
+}
+
 TEST_F(Machine, EmptyFolderOfDrivers) {
   write("etc/OpenCL/vendors/README", "libpocl.so");
   EXPECT_THAT(registry_finding().what, HasSubstr("holds no .icd file"));

@@ -34,5 +34,7 @@ Findings check_sys(const Surroundings& machine);
 
 /// PoCL's cache. $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; without any PoCL uses /tmp.
 Findings check_pocl_cache(const Surroundings& machine);
+/// That of the driver that came with this program.
+Findings check_bundled_cache(const Surroundings& machine);
 
 }  // namespace caplet::doctor
