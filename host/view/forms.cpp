@@ -27,7 +27,6 @@ constexpr std::size_t longest_text = 100;
 constexpr std::size_t most_mix_depth = 8;
 constexpr std::array<const char*, 4> space_names = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
-
 /// What scene files call these samples; empty: nothing.
 std::string name_of(const SampledSpectrum& spectrum) {
   static const auto named = [] {
