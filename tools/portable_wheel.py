@@ -199,7 +199,7 @@ def system_file(name):
     sys.exit(f"portable wheel: {name} is from no library of this system")
 
 
-def add_licences(tree, files):
+def add_licences(tools, tree, files):
     info = next(tree.glob("*.dist-info"))
     folder = info / "licenses/bundled"
     folder.mkdir(parents=True)
@@ -217,6 +217,8 @@ def add_licences(tree, files):
         version, source = output_of("dpkg-query", "-W", "-f", "${Version}\t${source:Package} ${source:Version}", package).split("\t")
         lines.append(f"{package} {version} (source {source}): {', '.join(sorted(set(of[package])))}")
     (folder / "PACKAGES.txt").write_text("\n".join(lines) + "\n")
+    nanobind = next((tools.bin.parent / "lib").glob("python3*/site-packages/nanobind-*.dist-info/licenses/LICENSE"))  # its headers
+    shutil.copy(nanobind, folder / "nanobind.txt")
     common = folder / "common-licenses"  # which the copyright files name
     shutil.copytree("/usr/share/common-licenses", common)
     metadata = info / "METADATA"
@@ -275,7 +277,7 @@ def main():
     say("adding what it is linked to")
     wheel = repaired(tools, with_driver, absent, work / "repaired")
     unpack(wheel, tree)
-    packages = add_licences(tree, files)
+    packages = add_licences(tools, tree, files)
     options.out.mkdir(parents=True, exist_ok=True)
     sizes = pack(tree, options.out / wheel.name)
     text = table(sizes)
