@@ -171,7 +171,11 @@ TEST(Exr, BandsMakeTheSamePicture) {
 // In the file, compression is a byte: 1 RLE, 3 ZIP of 16 rows (OpenEXR's file layout).
 TEST(Exr, SaysItsCompression) {
   const auto path = test::temporary_folder() / "packed.exr";
-  const auto entry = [](char kind) { return std::string("compression\0compression\0\1\0\0\0", 28) + kind; };
+  const auto entry = [](char kind) {
+    std::string out("compression\0compression\0\1\0\0\0", 28);
+    out.push_back(kind);
+    return out;
+  };
   write_exr(path, layered_image(), ExrCompression::rle);
   EXPECT_THAT(file_bytes(path), HasSubstr(entry(1)));
   write_exr(path, layered_image());
