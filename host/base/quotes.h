@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What errors show of files. Scenes name files that are none, such as those of other users that a service may read: of what has
-// not shown itself to be of its format errors name the place, and show nothing.
+// Errors quote a file only after it has shown itself to be of its format. A scene may name other files, such as those of other
+// users that a service may read; of these, errors name the place and show nothing.
 #pragma once
 
 namespace caplet {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What files of a scene may name: anything, or what lies beneath the scene's own folder. Importers ask here before they open or
-// look for a file; tools/reading.py sees to it.
+// A scene's files may name anything, or only what lies beneath the scene's own folder. Importers ask here before they open or
+// look for a file; tools/doors.py sees to it.
 #pragma once
 
 #include <filesystem>

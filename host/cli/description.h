@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What CLI11 knows of the program, as plain values: help, man page and completions are made of it.
+// Plain values that say what CLI11 knows of the program. Help, man page and completions are made of them.
 //
-// What an option takes (its type name in CLI11) is written so that completions can read it: alternatives between `|`, of which
+// An option's type name in CLI11 says what it takes, so that completions can read it: alternatives between `|`, of which
 // those without capitals and commas are words to be typed as they are. Those with capitals stand for something: FILE, FILE.npy
 // and OUT.exr for a file, DIR for a folder, SCENE for a scene file, DEVICE for a device's index, LAYER for a layer's name,
 // anything else for what cannot be listed. `,...` behind one says that several may stand between commas.
@@ -73,7 +73,7 @@ std::string footer_with(const std::vector<std::string>& examples, const std::str
 /// `text` in lines of at most `width` columns, broken at blanks; a longer word is broken behind a `|`.
 std::vector<std::string> filled(const std::string& text, std::size_t width);
 
-// What is made of it.
+// Texts that are made of it.
 std::string help_text(const CommandText& command, const std::string& name, const std::vector<CommandText>& commands);
 std::string man_page(const ProgramText& program);
 std::string bash_completion(const ProgramText& program);

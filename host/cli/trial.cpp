@@ -62,7 +62,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
   }
   if (end.finished && end.answer == not_started) return try_device(device, trial);
   if (end.finished) {
-    // What the child could not keep it could not say either.
+    // A child that could not keep its answer could not say it either.
     if (needs_trial(device, trial)) remember_trial(device, trial);
     return;
   }

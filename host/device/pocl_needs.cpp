@@ -102,7 +102,7 @@ std::optional<fs::path> private_folder(const fs::path& temporary) {
   const fs::path folder = temporary / fmt::format("caplet-{}", ::geteuid());
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) return {};
   struct stat status {};
-  // What lies in /tmp may be somebody else's, who would then choose the code that runs here.
+  // A folder in /tmp may be somebody else's, who would then choose the code that runs here.
   if (::lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) return {};
   if (status.st_uid != ::geteuid() || (status.st_mode & 077) != 0 || !why_unwritable(folder).empty()) return {};
   return folder;

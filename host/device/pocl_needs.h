@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What PoCL needs of a machine: a cache folder that it can write, or it offers no device or cannot compile; and what /sys tells
+// PoCL needs a cache folder that it can write, or it offers no device or cannot compile. It needs what /sys tells
 // of processors and memory, or it ends the process ("Not enough memory to run on this device").
 #pragma once
 

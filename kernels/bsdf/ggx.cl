@@ -25,8 +25,8 @@ static inline float ggx_visible_over_cos(float3 wo, float3 m, float alpha_u, flo
   return 2.0f * ggx_d(m, alpha_u, alpha_v) / (wo.z + ggx_stretched(wo, alpha_u, alpha_v));
 }
 
-// G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Height-correlated Smith masking (Heitz 2014, 99):
-// G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
+// G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Height-correlated Smith
+// masking (Heitz 2014, 99): G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
 static inline float ggx_masking(float3 wo, float3 wi, float alpha_u, float alpha_v) {
   const float zo = fabs(wo.z), zi = fabs(wi.z);
   const float so = ggx_stretched(wo, alpha_u, alpha_v), si = ggx_stretched(wi, alpha_u, alpha_v);

@@ -5,8 +5,8 @@
 // that is reflected, goes through, or leaves after one and more reflections within. wo.z > 0 (bsdf.cl mirrors the frame).
 //
 // The fibre lies along y of the local frame, where dp/dv of capsules, cylinders and cones points, and dp/du of chains
-// (bsdf_tangent). The offset of the ray from the axis, over the radius, is the sine of the angle between the normal and wo across
-// the fibre: no coordinate of the shape is asked.
+// (bsdf_tangent). The offset of the ray from the axis, over the radius, is the sine of the angle between the normal and
+// wo across the fibre: no coordinate of the shape is asked.
 #ifndef CAPLET_BSDF_HAIR_CL
 #define CAPLET_BSDF_HAIR_CL
 

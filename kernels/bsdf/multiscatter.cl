@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Energy that one scattering at GGX facets loses, given back as a lobe of its own (Kulla and Conty, "Revisiting physically based shading at
-// Imageworks", SIGGRAPH 2017 course): the value is the product of what is lost of wo and of wi, so that it is the same with both exchanged, and
-// integrates to what is lost of wo. Losses by bilinear interpolation (tools/energy_tables.py) are right to 0.005.
+// Energy that one scattering at GGX facets loses, given back as a lobe of its own (Kulla and Conty, "Revisiting
+// physically based shading at Imageworks", SIGGRAPH 2017 course): the value is the product of what is lost of wo and of
+// wi, so that it is the same with both exchanged, and integrates to what is lost of wo. Losses by bilinear
+// interpolation (tools/energy_tables.py) are right to 0.005.
 #ifndef CAPLET_BSDF_MULTISCATTER_CL
 #define CAPLET_BSDF_MULTISCATTER_CL
 
@@ -26,11 +27,12 @@ static inline int bsdf_multiscatters(const Bsdf* b) {
 // The roughness whose losses count for those of unequal roughnesses along u and v.
 static inline float loss_roughness(const Bsdf* b) { return clamp(0.5f * (b->alpha_u + b->alpha_v), CAPLET_ALPHA_MIN, 1.0f); }
 
-// Below this roughness little is lost but at grazing, where the lobe would be of few and heavy samples: losses there are those of this
-// roughness, as much smaller as the roughness is.
+// Below this roughness little is lost but at grazing, where the lobe would be of few and heavy samples: losses there
+// are those of this roughness, as much smaller as the roughness is.
 #define LOSS_ALPHA_LEAST 0.08f
 
-// Where x, from 0 to 1, is among `count` values: the number of the lower one of its neighbours, and how far it is from there.
+// Where x, from 0 to 1, is among `count` values: the number of the lower one of its neighbours, and how far it is from
+// there.
 static inline int between(float x, int count, float* far) {
   const float at = x * (float)(count - 1);
   const int low = clamp((int)at, 0, count - 2);
@@ -59,14 +61,15 @@ static inline float mean_loss_of_row(__constant const float* row, int roughnesse
 
 static inline float metal_loss(float cosine, float alpha) { return loss_of_rows(metal_losses, METAL_LOSS_ROUGHNESSES, cosine, alpha); }
 
-// Mean reflectance of a smooth metal for light from everywhere, by Gauss' quadrature of three points for the cosine's weight: to 1e-3.
+// Mean reflectance of a smooth metal for light from everywhere, by Gauss' quadrature of three points for the cosine's
+// weight: to 1e-3.
 static inline float4 metal_mean_reflectance(float4 eta, float4 k) {
   return 0.1396540f * fresnel_conductor(0.2123405f, eta, k) + 0.4584822f * fresnel_conductor(0.5905331f, eta, k) +
          0.4018638f * fresnel_conductor(0.9114120f, eta, k);
 }
 
-// f |cos wi| of what is scattered more than once, each time with the mean reflectance. *pdf becomes that of facets and this lobe together, which
-// is chosen with the probability metal_loss of wo.
+// f |cos wi| of what is scattered more than once, each time with the mean reflectance. *pdf becomes that of facets and
+// this lobe together, which is chosen with the probability metal_loss of wo.
 static inline float4 metal_multiscattered(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   const float alpha = loss_roughness(b), lost = metal_loss(wo.z, alpha), cosine = wi.z * CAPLET_INV_PI;
   const float mean_loss = mean_loss_of_row(metal_mean_losses, METAL_LOSS_ROUGHNESSES, alpha);
@@ -97,9 +100,10 @@ static inline float interface_mean_loss(float alpha, float eta) {
              far);
 }
 
-// The part of a lost direction's light that goes on beyond the interface. With T the mean transmittance for light from everywhere (Kulla and
-// Conty's fit), which is eta^2 times as much from here as from there, and m the smaller mean loss of both sides, it is T m over the mean loss here:
-// the same with both directions exchanged, but for the squared index that radiance has.
+// The part of a lost direction's light that goes on beyond the interface. With T the mean transmittance for light from
+// everywhere (Kulla and Conty's fit), which is eta^2 times as much from here as from there, and m the smaller mean loss
+// of both sides, it is T m over the mean loss here: the same with both directions exchanged, but for the squared index
+// that radiance has.
 static inline float interface_lost_beyond(float alpha, float eta) {
   const float here = interface_mean_loss(alpha, eta), there = interface_mean_loss(alpha, 1.0f / eta), index = fmax(eta, 1.0f / eta);
   const float from_outside = 1.0f - (index - 1.0f) / (4.08567f + 1.00071f * index);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Capsule and tapered capsule: the convex hull of two spheres, which is the envelope of the spheres with centre and radius
-// interpolated along the axis. A point is refined to the one of those spheres that touches the envelope nearest to it.
-// uv: u around the axis p0 -> p1, v along the profile by arc length from p0's pole (0) to p1's pole (1). Chains: chain_uv.
+// Capsule and tapered capsule: the convex hull of two spheres, which is the envelope of the spheres with centre and
+// radius interpolated along the axis. A point is refined to the one of those spheres that touches the envelope nearest
+// to it. uv: u around the axis p0 -> p1, v along the profile by arc length from p0's pole (0) to p1's pole (1). Chains:
+// chain_uv.
 #ifndef CAPLET_SHAPES_SURFACE_CAPSULE_CL
 #define CAPLET_SHAPES_SURFACE_CAPSULE_CL
 

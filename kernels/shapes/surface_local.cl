@@ -20,7 +20,8 @@ typedef struct {
   int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders, cones lie along dpdv
 } LocalSurface;
 
-// Whether there may be capsules with u at their ends (FlatScene::has_chains): programs for other scenes have no text of it.
+// Whether there may be capsules with u at their ends (FlatScene::has_chains): programs for other scenes have no text of
+// it.
 #ifdef CAPLET_CHAINS
 enum { any_chain = 1 };
 #else
@@ -84,10 +85,10 @@ static inline float3 along_turn(const Frame* f, float3 v) {
   return (dot(cross(f->s, f->t), f->n) < 0.0f ? -2.0f : 2.0f) * CAPLET_PI * cross(f->n, v);
 }
 
-// uv of a chain's capsules, which are those of pbrt's curves: u is linear along the axis and constant on the caps, so that
-// neighbours agree at their joint; v runs across the tube from 0 to 1 as the ray sees it. out->ng is the normal at the ball that
-// stands `s` of the way from p0 to p1 and has `radius`; `c` is what of the side's normal is across the axis (unit), and `side`
-// the length of the side.
+// uv of a chain's capsules, which are those of pbrt's curves: u is linear along the axis and constant on the caps, so
+// that neighbours agree at their joint; v runs across the tube from 0 to 1 as the ray sees it. out->ng is the normal at
+// the ball that stands `s` of the way from p0 to p1 and has `radius`; `c` is what of the side's normal is across the
+// axis (unit), and `side` the length of the side.
 static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c, float radius, float side,
                             LocalSurface* out) {
   const float u0 = q->chain_u[0], u1 = q->chain_u[1];

@@ -7,8 +7,8 @@
 
 #include "shapes/surface_local.cl"
 
-// The sphere of `radius` around `center` at q->x projected from its centre. uv about `axis` (unit). end: which of a capsule's
-// it is, 0 or 1.
+// The sphere of `radius` around `center` at q->x projected from its centre. uv about `axis` (unit). end: which of a
+// capsule's it is, 0 or 1.
 static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius, float3 axis, float end) {
   const Frame turn = turn_frame(q->space, axis);
   LocalSurface s;

@@ -58,8 +58,8 @@ static inline float surface_bend(const Tree* tree, const Surfaces* surfaces, con
 }
 
 // dn/du and dn/dv of the shading normal at a hit, by differences from surface points beside it. What a step led to is
-// measured, not taken from its length, so that they are exact for round shapes however long it is; where a triangle ends
-// the step goes back.
+// measured, not taken from its length, so that they are exact for round shapes however long it is; where a triangle
+// ends the step goes back.
 static inline void normal_derivatives(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray,
                                       const HitRecord* hit, const Surface* s, float3* dndu, float3* dndv) {
   *dndu = *dndv = (float3)(0.0f);

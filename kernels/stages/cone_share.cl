@@ -12,8 +12,8 @@ enum {
 #undef TEXTURE
 };
 
-// The share of a pixel's width that a camera ray's cone has: that of pbrt-v4's differentials from 64 samples a pixel on.
-// It does not depend on the number of samples, so that no picture does (decision 14).
+// The share of a pixel's width that a camera ray's cone has: that of pbrt-v4's differentials from 64 samples a pixel
+// on. It does not depend on the number of samples, so that no picture does (decision 14).
 #define CAPLET_CONE_SHARE 0.125f
 
 #endif

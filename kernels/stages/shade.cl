@@ -65,8 +65,9 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
   return CAPLET_NONE;
 }
 
-// Whether directions go by the shading normal alone, as pbrt-v4's do: of bumps and, on surfaces that are open or let light through, of the
-// normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no light through (decision 0023).
+// Whether directions go by the shading normal alone, as pbrt-v4's do: of bumps and, on surfaces that are open or let
+// light through, of the normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no
+// light through (decision 0023).
 static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int bumped) {
   if (bumped) return 1;
   return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u && ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));

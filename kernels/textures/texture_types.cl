@@ -18,8 +18,8 @@ typedef struct {
   float2 duvdx, duvdy; // along them
 } TexturePlace;
 
-// Images and checkerboards are means over this many times the sides of a place, about what pbrt-v4's filters of them take
-// in; noise is filtered by the sides as they are.
+// Images and checkerboards are means over this many times the sides of a place, about what pbrt-v4's filters of them
+// take in; noise is filtered by the sides as they are.
 #define CAPLET_FILTER_SIDES 2.0f
 
 // A place at four wavelengths (nm).

@@ -22,6 +22,15 @@ Texture floats(decltype(Texture::model) model) { return {std::move(model), true,
 
 }  // namespace
 
+std::shared_ptr<const TextureImage> image_of(int width, int height, int channels, std::vector<float> values) {
+  auto image = std::make_shared<TextureImage>();
+  image->width = width;
+  image->height = height;
+  image->channels = channels;
+  image->floats = std::move(values);
+  return image;
+}
+
 TextureOperand operand_of(std::uint32_t texture) {
   TextureOperand operand = 0;
   operand.texture = texture;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ const std::vector<TextureOnTrial>& textures_on_trial();
 #define TEXTURE(name) TextureTrial name##_texture_trial();
 #include "shared/textures.def"
 #undef TEXTURE
+
+/// An image of floats of some channels.
+std::shared_ptr<const TextureImage> image_of(int width, int height, int channels, std::vector<float> values);
 
 /// A texture of the scene as an operand.
 TextureOperand operand_of(std::uint32_t texture);
