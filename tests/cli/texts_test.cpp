@@ -203,9 +203,9 @@ TEST(Texts, BashCompletesCommandsAndValues) {
   EXPECT_THAT(bash.offers({"render", "--style", "="}), testing::SizeIs(4));
   EXPECT_THAT(bash.offers({"render", "--layers", "al"}), UnorderedElementsAre("all", "albedo"));
   EXPECT_THAT(bash.offers({"render", "--layers", "Z,al"}), ElementsAre("Z,albedo"));
-  EXPECT_THAT(bash.offers({"render", "--device", ""}), UnorderedElementsAre("all", "cpu", "gpu", "0", "1"));
+  EXPECT_THAT(bash.offers({"render", "--device", ""}), UnorderedElementsAre("all", "cpu", "gpu", "bundled", "0", "1"));
   EXPECT_THAT(bash.offers({"render", "--device", "0,"}), UnorderedElementsAre("0,0", "0,1"));
-  EXPECT_THAT(bash.offers({"pick", "--device", ""}), UnorderedElementsAre("cpu", "gpu", "0", "1"));
+  EXPECT_THAT(bash.offers({"pick", "--device", ""}), UnorderedElementsAre("cpu", "gpu", "bundled", "0", "1"));
   EXPECT_THAT(bash.offers({"render", "--spp", ""}), IsEmpty());
   EXPECT_THAT(bash.offers({"render", "--scale-bar", "--ou"}), UnorderedElementsAre("--output", "--outline"));
   EXPECT_THAT(bash.offers({"render", "--scale-bar", "a"}), ElementsAre("auto"));
