@@ -28,9 +28,10 @@ void bind_threads(nb::module_& m);
 /// Python would have it, for those of the binding catch all exceptions.
 [[noreturn]] void stay_here();
 
-/// Calls `use`, in which Python may end the thread.
+/// Calls `use`, in which Python may end the thread. A forced unwinding is caught by a reference to nothing, which UBSan would
+/// report.
 template <class Use>
-void unless_ended(Use&& use) {
+__attribute__((noinline, no_sanitize("undefined"))) void unless_ended(Use&& use) {
   try {
     use();
   } catch (abi::__forced_unwind&) {
