@@ -457,7 +457,10 @@ picture(spp=1 << 24)
         time.sleep(delay(i))
         program.send_signal(2)
         _, said = program.communicate(timeout=SECONDS)
-        assert program.returncode == -2 and said.rstrip().endswith("KeyboardInterrupt"), (program.returncode, said)
+        # While PoCL compiles, LLVM takes the signal too and the kernel is not built: the interrupt comes as that error is made.
+        status = -2 if "1 error generated" not in said else program.returncode
+        assert program.returncode == status != 0, (program.returncode, said)
+        assert said.rstrip().rstrip(":").endswith("KeyboardInterrupt"), said
 
 
 def test_a_second_interpreter_of_the_process_is_refused():
