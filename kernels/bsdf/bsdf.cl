@@ -62,8 +62,8 @@ static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectr
   }
 }
 
-// What the local frame's x follows where the derivative by u is dpdu: that, but across the fibre for hair on a chain
-// (along_u), since hair lies along y.
+// The tangent that the local frame's x follows: dpdu, but a tangent across the fibre for hair on a chain (along_u), since
+// hair lies along y.
 static inline float3 bsdf_tangent(const Materials* materials, uint material, float3 dpdu, float3 ns, int along_u) {
   return along_u && materials->materials[material].kind == material_hair ? cross(dpdu, ns) : dpdu;
 }

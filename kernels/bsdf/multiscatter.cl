@@ -11,7 +11,7 @@
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/fresnel.cl"
 
-// Whether the material's parameter "multiscatter" is on. Kernels of scenes without such materials know nothing of it.
+// Returns 1 if the material's "multiscatter" is on. Kernels of scenes without such materials have no code of it.
 static inline int bsdf_multiscatters(const Bsdf* b) {
 #ifdef CAPLET_MULTISCATTER
   return (b->flags & CAPLET_MATERIAL_MULTISCATTER) != 0u;
@@ -50,7 +50,7 @@ static inline float loss_of_rows(__constant const float* rows, int roughnesses, 
   __constant const float* row = rows + low_alpha * LOSS_COSINES;
   return scale * mix(loss_between(row, low_cosine, at_cosine), loss_between(row + LOSS_COSINES, low_cosine, at_cosine), at_alpha);
 }
-// Of means, a row of all roughnesses.
+// Interpolates a row of means, one a roughness.
 static inline float mean_loss_of_row(__constant const float* row, int roughnesses, float alpha) {
   float far;
   const int low = between(sqrt(fmax(alpha, LOSS_ALPHA_LEAST)), roughnesses, &far);
@@ -80,7 +80,7 @@ static inline float4 metal_multiscattered(const Bsdf* b, float3 wo, float3 wi, f
 
 // --- Dielectric interfaces ---
 
-// Of the relative index: where its losses are, from 0 to 1.
+// Maps the relative index to the place of its losses, from 0 to 1.
 static inline float interface_loss_at(float eta) {
   const float s = clamp((eta - 1.0f) / (eta + 1.0f), -0.5f, 0.5f), t = sqrt(2.0f * fabs(s));
   return 0.5f + 0.5f * (s < 0.0f ? -t : t);

@@ -20,8 +20,8 @@ typedef struct {
   int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders, cones lie along dpdv
 } LocalSurface;
 
-// Whether there may be capsules with u at their ends (FlatScene::has_chains): programs for other scenes have no text of
-// it.
+// any_chain says that there may be capsules with u at their ends (FlatScene::has_chains). Programs for other scenes have
+// no code of them.
 #ifdef CAPLET_CHAINS
 enum { any_chain = 1 };
 #else

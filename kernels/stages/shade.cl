@@ -65,8 +65,8 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
   return CAPLET_NONE;
 }
 
-// Whether directions go by the shading normal alone, as pbrt-v4's do: of bumps and, on surfaces that are open or let
-// light through, of the normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no
+// Returns 1 where directions go by the shading normal alone, as pbrt-v4's do: with bumps and, on surfaces that are open
+// or let light through, with normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no
 // light through (decision 0023).
 static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int bumped) {
   if (bumped) return 1;
@@ -164,7 +164,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
-      // What a ray finds of the primitive that it crossed has no other strategy.
+      // A ray finds light of the primitive that it crossed by this strategy alone.
       if (!specular && as_uint(scatter.z) != s.light) {
 #ifdef CAPLET_LIGHT_TREE
         const uint before = g->carried.path_normal[path];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What readers of image files give.
+// Pixels as readers of image files give them.
 #pragma once
 
 #include <cstdint>

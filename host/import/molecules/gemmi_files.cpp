@@ -50,7 +50,7 @@ bool begins_with(std::string_view text, std::string_view begin) { return text.su
     where.line = number(at);
     message.erase(0, std::min(message.size(), at + 2));
   }
-  // What stands on further lines is the file's.
+  // Further lines of the message quote the file.
   message = message.substr(0, message.find('\n'));
   if (message.ends_with(':')) message.pop_back();
   throw InputError(where, message);
