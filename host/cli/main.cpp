@@ -18,6 +18,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/utf8.h"
 #include "cli/commands.h"
@@ -72,8 +73,13 @@ int run(CLI::App& app, int argc, char** argv) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
   } catch (const caplet::DriverError& error) {
-    caplet::SecondTry::after(error);
-    print_error(error.what());
+    // A driver's compiler may fail because of the signal: then the interrupt is the reason, not the driver.
+    if (caplet::interrupt_requested()) {
+      print_error("interrupted; nothing is written");
+    } else {
+      caplet::SecondTry::after(error);
+      print_error(error.what());
+    }
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
   } catch (const std::exception& error) {

@@ -34,6 +34,7 @@ void bind_errors(nb::module_& m) {
         } catch (const caplet::InputError& error) {
           raise("InputError", error.messages());
         } catch (const caplet::RunError& error) {
+          if (PyErr_CheckSignals() != 0) return;  // the kernels' compiler fails where it hears a signal: that is the reason then
           raise("RunError", {error.what()});
         } catch (const std::bad_cast&) {  // of nb::cast: a text with half a surrogate, a number that has no place
           PyErr_SetString(PyExc_TypeError, "an argument is of a type, or has a value, that is not taken here");
