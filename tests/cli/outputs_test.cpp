@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -451,6 +452,22 @@ TEST(Pictures, ThePreviewHasEveryRow) {
   picture.chromaticities.reset();  // as single precision has them
   write_preview(folder / "again.png", picture);
   EXPECT_TRUE(shown.rgb == FileImageReader().read_rgb(folder / "again.png").rgb);
+}
+
+TEST(Pictures, OverlaysLieOnAllBandsOfThePreview) {
+  const fs::path folder = folder_with_scene();
+  const int width = 2600, height = 1000;
+  EXPECT_GT(height, band_rows(width, 4)) << "one band is all of it";
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  ASSERT_EQ(render(folder, {"-o", "none", "--preview", "plain.png", "--size", size, "--spp", "1"}).code, 0);
+  ASSERT_EQ(render(folder, {"-o", "none", "--preview", "bar.png", "--size", size, "--spp", "1", "--scale-bar"}).code, 0);
+  const EnvironmentImage plain = FileImageReader().read_rgb(folder / "plain.png"),
+                         bar = FileImageReader().read_rgb(folder / "bar.png");
+  ASSERT_EQ(bar.rgb.size(), plain.rgb.size());
+  // The bar lies at the bottom: a tenth of the picture is more than it and its margin take.
+  const auto upper = static_cast<std::ptrdiff_t>(plain.rgb.size() / 10 * 9);
+  EXPECT_TRUE(std::equal(plain.rgb.begin(), plain.rgb.begin() + upper, bar.rgb.begin()));
+  EXPECT_FALSE(std::equal(plain.rgb.begin() + upper, plain.rgb.end(), bar.rgb.begin() + upper));
 }
 
 TEST(Pictures, PreviewsThatCannotBeWrittenAreFoundOutBefore) {

@@ -13,6 +13,7 @@
 #include "import/import.h"
 #include "support/data.h"
 #include "support/import_files.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace {
@@ -21,6 +22,7 @@ using glm::dvec3;
 using glm::dvec4;
 using test::complaint;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// All in one folder, so that they find each other.
@@ -189,6 +191,15 @@ TEST(EmbreeCurves, ConesHaveCapsWhereTheyHaveNoNeighbour) {
   EXPECT_EQ(cylinder.caps, (std::array<Cap, 2>{Cap::open, Cap::flat}));
 }
 
+TEST(EmbreeCurves, PointsAreBalls) {
+  const std::string positions = "<positions>1 2 3 .5 4 5 6 .25</positions></Points>";
+  const auto balls = capsules("<Points type=\"sphere\">" + positions);
+  EXPECT_EQ(balls.p0, (std::vector<glm::vec3>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(balls.p1, balls.p0);
+  EXPECT_EQ(balls.radius0, (std::vector<float>{0.5F, 0.25F}));
+  EXPECT_THAT(said("<Points type=\"cube\">" + positions), AllOf(HasSubstr("e.xml:3:"), HasSubstr("\"cube\" is none")));
+}
+
 TEST(EmbreeScenes, CompanionsOfNumbers) {
   std::string numbers(3, '#');  // what is not read
   const float points[8] = {0, 0, 0, 1, 0, 4, 0, 2};
@@ -276,6 +287,53 @@ TEST(EmbreeScenes, MaterialsLightsAndCamera) {
   EXPECT_LT(glm::length(dvec3(scene.camera.world_from_camera[0]) - dvec3(-1, 0, 0)), 1e-12);  // right of what looks along z, y up
 }
 
+// By the names of Embree's tutorials, and Fresnel's reflectance of a metal at right angles.
+TEST(EmbreeScenes, MaterialsByTheirCode) {
+  const auto material = [](const std::string& code, const std::string& parameters) {
+    const Scene scene =
+        scene_of("<TriangleMesh><positions>0 0 0 1 0 0 0 1 0</positions><triangles>0 1 2</triangles><material><code>\"" + code +
+                 "\"</code><parameters>" + parameters + "</parameters></material></TriangleMesh>");
+    return scene.materials.at(scene.shapes.at(0).material).model;
+  };
+  const auto rgb = [](const Spectrum& spectrum) { return std::get<RgbSpectrum>(spectrum).rgb; };
+  const std::string colored = "<float3 name=\"reflectance\">.9 .5 .1</float3>";
+  for (const char* code : {"Matte", "Velvet"})
+    EXPECT_EQ(rgb(std::get<DiffuseMaterial>(material(code, colored)).reflectance), dvec3(0.9, 0.5, 0.1)) << code;
+  const auto mirror = std::get<ConductorMaterial>(material("Mirror", colored));
+  EXPECT_EQ(rgb(mirror.reflectance.value()), dvec3(0.9, 0.5, 0.1));
+  EXPECT_EQ(mirror.alpha_u, 0);
+  const auto metal =
+      std::get<ConductorMaterial>(material("Metal",
+                                           "<float3 name=\"eta\">1.5 .5 1</float3><float3 name=\"k\">2 3 0</float3>"
+                                           "<float3 name=\"reflectance\">1 .5 1</float3>"));
+  EXPECT_LT(glm::length(rgb(metal.reflectance.value()) - dvec3(4.25 / 10.25, 0.5 * 9.25 / 11.25, 0)), 1e-12);
+  for (const char* code : {"ThinDielectric", "ThinGlass"})
+    EXPECT_EQ(
+        std::get<ConstantSpectrum>(std::get<ThinDielectricMaterial>(material(code, "<float name=\"eta\">1.3</float>")).eta).value,
+        1.3)
+        << code;
+  const auto hair =
+      std::get<HairMaterial>(material("Hair", "<float3 name=\"Kr\">.2 .3 .8</float3><float3 name=\"Kt\">.1 .2 .4</float3>"));
+  EXPECT_LT(glm::length(rgb(hair.reflectance.value()) - dvec3(0.3, 0.5, 1)), 1e-12);
+  for (const auto& [code, color] : {std::pair("Plastic", "pigmentColor"), std::pair("MetallicPaint", "shadeColor")}) {
+    const auto paint = std::get<PrincipledMaterial>(
+        material(code, "<float3 name=\"" + std::string(color) + "\">.9 .5 .1</float3><float name=\"eta\">1.6</float>"));
+    EXPECT_EQ(rgb(paint.base_color), dvec3(0.9, 0.5, 0.1)) << code;
+    EXPECT_EQ(paint.eta, 1.6) << code;
+  }
+}
+
+TEST(EmbreeScenes, WhatIsLeftOutIsToldWithItsPlace) {
+  test::LogOf log;
+  const Scene scene = scene_of(
+      kTriangle + "<TriangleMesh><positions>0 0 0 1 0 0 0 1 0</positions><triangles>0 1 2</triangles>\n" +
+      "<material><code>Glitter</code><parameters/></material></TriangleMesh>\n" +
+      "<Curves type=\"flat\" basis=\"linear\">\n<positions>0 0 0 1 0 4 0 2</positions>" + "<indices>0</indices></Curves>\n");
+  EXPECT_EQ(scene.shapes.size(), 3u);
+  EXPECT_THAT(log.text(),
+              AllOf(ContainsRegex("e\\.xml:5:[0-9]+: .*Glitter.* grey"), ContainsRegex("e\\.xml:6:[0-9]+: .*round ones")));
+}
+
 TEST(EmbreeScenes, TheViewersOptions) {
   write_file("v.xml", "<scene>" + kTriangle + "</scene>");
   const auto options = [](const std::string& text) { return import_scene(write_file("v.ecs", text), test::NoImages()); };
@@ -327,6 +385,9 @@ TEST(BadEmbreeScenes, AreRefused) {
   EXPECT_THAT(lines(good), HasSubstr("no geometry"));
   EXPECT_THAT(said("<Curves type=\"round\" basis=\"nurbs\"/>"), HasSubstr("basis=\"nurbs\" is none"));
   EXPECT_THAT(said("<Curves type=\"square\" basis=\"bezier\"/>"), HasSubstr("type=\"square\" is none"));
+  EXPECT_THAT(
+      said("<Curves type=\"round\" basis=\"hermite\">" + good + "<tangents>1 0 0 0</tangents><indices>0</indices></Curves>"),
+      AllOf(HasSubstr("e.xml:3:"), HasSubstr("1 tangents of 2 points")));
   EXPECT_THAT(said("<Sphere/>"), HasSubstr("<Sphere> is no element"));
   EXPECT_THAT(said("<Group id=\"g\"><ref id=\"g\"/></Group>"), HasSubstr("nothing of the id 'g' before it"));
   EXPECT_THAT(said("<Transform>" + kTriangle + "</Transform>"), HasSubstr("without an AffineSpace"));

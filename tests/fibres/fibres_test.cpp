@@ -24,6 +24,7 @@ namespace {
 
 using test::complaint;
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 /// Bytes of numbers, one after the other.
@@ -498,6 +499,23 @@ TEST(Scalars, WithoutValues) {
               AllOf(HasSubstr("--color"), HasSubstr("no scalars")));
 }
 
+// vtkDataWriter::EncodeString: a blank, '%' and '"' are a '%' and two digits of 16, wherever they stand.
+TEST(Scalars, NamesOfVtkAreDecoded) {
+  const auto title = [](const std::string& written) {
+    const Scene scene = scene_of("name.vtk",
+                                 "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\n"
+                                 "LINES 1 3\n2 0 1\nPOINT_DATA 2\nSCALARS " +
+                                     written + " float\nLOOKUP_TABLE default\n1 2\n",
+                                 {{{"color", "scalar"}}});
+    return scene.legend ? scene.legend->title : "";
+  };
+  EXPECT_EQ(title("water%20content%20%25"), "water content %");
+  EXPECT_EQ(title("%22fa%22"), "\"fa\"");
+  EXPECT_EQ(title("100%"), "100%");
+  EXPECT_EQ(title("a%2"), "a%2");
+  EXPECT_EQ(title("a%zz"), "a%zz");
+}
+
 TEST(BadScalars, AreRefused) {
   const std::string head =
       "# vtk DataFile Version 3.0\nlines\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 0 0\nLINES 1 3\n2 0 1\n";
@@ -688,6 +706,12 @@ TEST(BadTrx, IsRefused) {
   EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(1u).put(2u).bytes(), 3, 2)), HasSubstr("does not begin"));
   EXPECT_THAT(said(trx_file("float32", points, "uint32", Writer().put(0u).put(1u).put(2u).bytes(), 3, 2)),
               HasSubstr("ends at point 2 of 3"));
+  // An array that is missing, or is of another number of columns than the format says, is named.
+  const std::pair<std::string, std::string> header{"header.json", R"({"NB_VERTICES": 3, "NB_STREAMLINES": 2})"};
+  EXPECT_THAT(said(test::zip_of({header, {"offsets.uint32", good}})), EndsWith("the archive has no positions"));
+  EXPECT_THAT(said(test::zip_of({header, {"positions.3.float32", points}})), EndsWith("the archive has no offsets"));
+  EXPECT_THAT(said(test::zip_of({header, {"positions.2.float32", points}, {"offsets.uint32", good}})),
+              AllOf(HasSubstr("positions.2.float32"), HasSubstr("have 3 columns")));
   const std::string infinite =
       Writer().put(0.0F).put(std::numeric_limits<float>::infinity()).put(0.0F).bytes() + points.substr(12);
   EXPECT_THAT(said(trx_file("float32", infinite, "uint32", good, 3, 2)), HasSubstr("point 0 is not finite"));

@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -91,6 +93,18 @@ TEST_F(Library, FilesTakeTheProgramsOptions) {
   // A line of 0.95 x 64 pixels, four wide; 0.02 of 4.02 units of it wide.
   EXPECT_NEAR(wide, 0.95 * 64 * 4, 25);
   EXPECT_LT(thin, 40);
+}
+
+// docs/formats: poses are of robots, assemblies of PDB and mmCIF, ranges of what is coloured by values, groups of robots.
+TEST_F(Library, FormatsTellTheirOptions) {
+  std::map<std::string, std::set<std::string>> formats_of;
+  for (const caplet::SceneFormat& format : caplet::scene_formats())
+    for (const std::string& option : format.options) formats_of[option].insert(format.name);
+  using Names = std::set<std::string>;
+  EXPECT_EQ(formats_of["pose"], (Names{"mjcf", "urdf"}));
+  EXPECT_EQ(formats_of["groups"], (Names{"mjcf", "urdf"}));
+  EXPECT_EQ(formats_of["assembly"], (Names{"mmcif", "pdb"}));
+  EXPECT_EQ(formats_of["range"], (Names{"swc", "trk", "trx", "vtk", "vtp"}));
 }
 
 TEST_F(Library, AChangedCopyLeavesTheFirstAsItWas) {

@@ -94,6 +94,26 @@ TEST(MjcfLooks, BuiltInTexturesAreMujocos) {
   EXPECT_NEAR(top.z, 1, 1e-12);
 }
 
+// MJCF's reference: of a material's layers those of the roles rgb and rgba are its colour.
+TEST(MjcfLooks, LayersOfMaterialsHaveRoles) {
+  for (const char* role : {"rgb", "rgba"}) {
+    const Scene scene = scene_of_text(
+        "<asset><texture name='red' type='2d' builtin='flat' width='1' height='1' rgb1='1 0 0'/>"
+        "<texture name='blue' type='2d' builtin='flat' width='1' height='1' rgb1='0 0 1'/>"
+        "<material name='m'><layer role='normal' texture='blue'/><layer role='" +
+        std::string(role) +
+        "' texture='red'/><layer role='roughness' texture='blue'/></material>"
+        "<material name='n'><layer role='normal' texture='blue'/></material></asset>"
+        "<worldbody><geom type='box' size='1 1 1' material='m'/><geom type='box' size='1 1 1' material='n'/></worldbody>");
+    const auto texture = [&](std::size_t i) { return texture_of(scene.materials[scene.shapes.at(i).material], "base_color"); };
+    ASSERT_TRUE(texture(0)) << role;
+    const auto& image = *std::get<ImagemapTexture>(scene.textures[*texture(0)].model).image;
+    EXPECT_EQ(texel(image, 0, 0, 0), 255) << role;
+    EXPECT_EQ(texel(image, 0, 0, 2), 0) << role;
+    EXPECT_FALSE(texture(1)) << role;
+  }
+}
+
 // mujoco 4.0's tex_data of cubes, by the faces that directions from the middle meet (as it draws them): columns by the angle from
 // z in 22.5 degrees, rows from above by turns from x, backwards.
 TEST(MjcfLooks, FacesOfCubesAreMujocos) {

@@ -139,6 +139,24 @@ TEST(Mjcf, ReplicasGoOnFromEachOther) {
   EXPECT_EQ(nested.shapes[2].name, "a0_01");
 }
 
+// Places of mujoco 4.0: turns about all three axes, of each order and about axes that turn with them or stay.
+TEST(Mjcf, ReplicasTurnInTheCompilersOrder) {
+  struct Case {
+    const char* order;
+    glm::dvec3 second, third;
+  };
+  for (const Case& c : {Case{"xyz", {0.64278761, 0.61697778, 0.66341395}, {0.39798366, 1.16008473, 0.83465216}},
+                        Case{"XYZ", {0.74084306, 1.10504046, 0.66341395}, {0.3105375, 2.43817923, 0.46984631}},
+                        Case{"zYx", {0.70658796, 0.33658605, 0.24620194}, {0.22329093, 1.06426652, -0.07665319}}}) {
+    const Scene scene = scene_of_text(std::string("<compiler eulerseq='") + c.order +
+                                      "'/><worldbody><replicate count='3' offset='0 1 0' euler='30 40 50' sep='_'>"
+                                      "<geom name='a' size='.1' pos='0 0 1'/></replicate></worldbody>");
+    SCOPED_TRACE(c.order);
+    expect_near(at(named(scene, "a_1")), c.second, 1e-8);
+    expect_near(at(named(scene, "a_2")), c.third, 1e-8);
+  }
+}
+
 TEST(Mjcf, JointsMoveBodies) {
   const std::string text = R"(<worldbody><body pos="1 0 0"><frame pos="0 0 1" euler="90 0 0">
 <joint name="j" axis="0 1 0" pos=".1 .2 .3" ref="30"/></frame><geom size=".1" pos=".5 .6 .7"/></body></worldbody>)";
@@ -440,6 +458,22 @@ TEST(Mjcf, SolidsAreFittedToMeshes) {
   }
   EXPECT_THAT(complaint([&] { scene_of_text(prism("", "", "<geom type='box' mesh='m' fitscale='0'/>")); }),
               HasSubstr("fitscale"));
+}
+
+// A block of half sizes 1/2, 1 and 2 about (3, 0, 0), half of its faces in another group: it is fitted as itself.
+TEST(Mjcf, SolidsAreFittedToAllPartsOfAFile) {
+  const std::filesystem::path file =
+      test::write_file("block.obj",
+                       "v 2.5 -1 -2\nv 3.5 -1 -2\nv 3.5 1 -2\nv 2.5 1 -2\nv 2.5 -1 2\nv 3.5 -1 2\nv 3.5 1 2\nv 2.5 1 2\n"
+                       "g one\nusemtl a\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\ng two\nusemtl b\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  for (const char* compiler : {"", "fitaabb='true'"}) {
+    const Scene scene = scene_of_text(std::string("<compiler ") + compiler + "/><asset><mesh name='m' file='" + file.string() +
+                                      "' inertia='exact'/></asset><worldbody>"
+                                      "<geom type='box' mesh='m'/></worldbody>");
+    ASSERT_EQ(scene.shapes.size(), 1U) << compiler;
+    expect_near(std::get<BoxShape>(scene.shapes[0].geometry).p1, {0.5, 1, 2}, 1e-6);
+    expect_near(at(scene.shapes[0]), {3, 0, 0}, 1e-6);
+  }
 }
 
 TEST(Mjcf, SharedFilesHaveTheirGeoms) {

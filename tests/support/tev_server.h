@@ -140,8 +140,12 @@ class TevServer {
   }
 
   void run() {
-    while (!over_) {
-      if (!ready(listener_)) continue;
+    for (;;) {
+      const bool was_over = over_;  // before the look at what has come
+      if (!ready(listener_)) {
+        if (was_over) return;
+        continue;
+      }
       const int connection = ::accept(listener_, nullptr, nullptr);
       std::string bytes;
       char piece[65536];

@@ -78,7 +78,7 @@ class TrxReader {
     for (const std::string& name : zip_.names()) {
       if (!name.starts_with(what + ".")) continue;
       const std::string rest = name.substr(what.size() + 1);
-      if (!rest.starts_with(columns)) fail(name + ": " + what + " have " + columns + " columns");
+      if (!rest.starts_with(columns)) fail(name + ": " + what + " have " + columns.substr(0, columns.size() - 1) + " columns");
       return {name, rest.substr(columns.size())};
     }
     fail("the archive has no " + what);
