@@ -5,7 +5,7 @@
 
 usage: checks.py           test preset `default`, clang-format
        checks.py --fast    test preset `fast`
-       checks.py --all     also clang-tidy, and the builds and test presets `asan` and `minimal`
+       checks.py --all     all tests at their full size (tests/support/thorough.h), also clang-tidy, and the builds and test presets `asan` and `minimal`
 
 Each preset stands in CMakePresets.json. A check that fails does not keep those after it from being done.
 Exit status: 0 when all passed, 1 when not, 2 for wrong usage.
@@ -66,10 +66,14 @@ class Totals:
         self.failed += bad
         if bad:
             self.failures.append(f"build/{folder}: {bad} of {total} tests (build/{folder}/ctest.log)")
-        if bare := text.count("***Skipped"):
-            self.skipped += bare
-            details = (BUILD / folder / "Testing/Temporary/LastTest.log").read_text(errors="replace")
-            self.skip_reasons.update(re.findall(r": Skipped\n(.*)", details))
+        log = BUILD / folder / "Testing/Temporary/LastTest.log"
+        details = log.read_text(errors="replace") if log.exists() else ""
+        self.skipped += text.count("***Skipped")
+        self.skip_reasons.update(re.findall(r": Skipped\n(.*)", details))
+        # Those that pytest skips within one test of ctest.
+        for count, reason in re.findall(r"^SKIPPED \[(\d+)\] \S+: (.*)$", details, re.M):
+            self.skipped += int(count)
+            self.skip_reasons[f"Python: {reason}"] += int(count)
 
     def summary(self):
         if self.failures:
@@ -95,6 +99,8 @@ def main(arguments):
         print(__doc__, file=sys.stderr)
         return 2
     totals = Totals()
+    if arguments == ["--all"]:
+        os.environ["CAPLET_THOROUGH"] = "1"
     if arguments == ["--fast"]:
         totals.ctest("fast", "release")
         return 0 if totals.summary() else 1

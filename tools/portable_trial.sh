@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 #
-# portable_trial.sh [SUITE...]: installs the portable wheel of build/wheels in bare Debian systems (bookworm and trixie, or those named) as a
-# user without root, where nothing but python3 and venv were added, and uses it there (portable_trial_inside.sh). debootstrap makes the
-# systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Prints the seconds of each step; a
+# portable_trial.sh [SUITE...]: installs the portable wheel of build/wheels in bare systems (Debian's bookworm and trixie and Ubuntu's noble,
+# or those named) as a user without root, where nothing but python3 and venv were added, and uses it there (portable_trial_inside.sh).
+# debootstrap makes the systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Without
+# the keyring of Ubuntu's archive noble is left out, with a line that says so. Prints the seconds of each step; a
 # machine that does other work beside it may be given more of them from the wheel to a picture (CAPLET_TRIAL_SECONDS, 60).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -20,12 +21,19 @@ clean() {
 }
 trap clean EXIT
 
+ubuntu=http://archive.ubuntu.com/ubuntu
 make_bare() {
-  local mirror
+  local mirror options=(--variant=minbase)
   command -v debootstrap >/dev/null || apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
-  mirror=$(awk '$1=="URIs:"{print $2; exit} $1=="deb"{for(i=2;i<=NF;i++) if($i ~ /:\/\//){print $i; exit}}' /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null)
   mkdir -p "$bare"
-  debootstrap --variant=minbase "$1" "$bare/$1.part" "$mirror" >"$bare/$1.log" 2>&1 || { tail -n 5 "$bare/$1.log" >&2; exit 1; }
+  rm -rf --one-file-system "$bare/$1.part"
+  if [ "$1" = noble ]; then
+    mirror=$ubuntu
+    options+=(--components=main,universe --keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg)
+  else
+    mirror=$(awk '$1=="URIs:"{print $2; exit} $1=="deb"{for(i=2;i<=NF;i++) if($i ~ /:\/\//){print $i; exit}}' /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null)
+  fi
+  debootstrap "${options[@]}" "$1" "$bare/$1.part" "$mirror" >"$bare/$1.log" 2>&1 || { tail -n 5 "$bare/$1.log" >&2; exit 1; }
   mv "$bare/$1.part" "$bare/$1"
 }
 
@@ -35,7 +43,14 @@ if [ -x "$root/build/release/bin/caplet" ]; then
 fi
 
 suites=("$@")
-[ ${#suites[@]} -gt 0 ] || suites=(bookworm trixie)
+if [ ${#suites[@]} = 0 ]; then
+  suites=(bookworm trixie)
+  if [ -d "$bare/noble" ] || [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ]; then
+    suites+=(noble)
+  else
+    echo "**** SKIPPED: Ubuntu 24.04 is NOT tried: there is no $bare/noble, nor the keyring of its archive to make it by ****" >&2
+  fi
+fi
 python=$root/build/portable-env/bin/python
 # What the wheel depends on, for the Python of that system, is fetched here: the bare system lacks the certificates for it.
 fetch() { # fetch VERSION FOLDER

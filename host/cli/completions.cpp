@@ -28,7 +28,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
-std::vector<std::string> names_of(const std::vector<CommandText>& commands) {
+std::vector<std::string> command_names(const std::vector<CommandText>& commands) {
   std::vector<std::string> out;
   for (const CommandText& command : commands) out.push_back(command.name);
   return out;
@@ -215,7 +215,7 @@ _caplet() {{
                      in_quotes(joined(option_names(program.program))));
   for (const CommandText& command : program.commands) out += bash_command(command);
   out += "  esac\n  case $_caplet_cur in -*) _caplet_words \"$options\" && return ;; esac\n  case $command in\n";
-  out += fmt::format("    '') _caplet_words {} ;;\n", in_quotes(joined(names_of(program.commands))));
+  out += fmt::format("    '') _caplet_words {} ;;\n", in_quotes(joined(command_names(program.commands))));
   for (const CommandText& command : program.commands)
     if (const std::string values = bash_values(values_of_arguments(command)); !values.empty())
       out += fmt::format("    {}) {};;\n", command.name, values);

@@ -40,7 +40,7 @@ std::string paragraph(const std::string& text) {
   return out;
 }
 
-std::string name_of(const OptionText& option) {
+std::string names_and_value(const OptionText& option) {
   std::string out;
   for (const std::string& name : option.names) out += (out.empty() ? "" : ", ") + name;
   if (option.type.empty()) return out;
@@ -71,7 +71,7 @@ std::string help_text(const CommandText& command, const std::string& name, const
   }
   for (const std::string& group : groups_of(command)) {
     out += "\n" + group + ":\n";
-    for (const OptionText& option : options_in(command, group)) out += row(name_of(option), full_help(option));
+    for (const OptionText& option : options_in(command, group)) out += row(names_and_value(option), full_help(option));
   }
   const std::vector<FooterPart> footer = footer_parts(command.footer);
   for (std::size_t i = 0; i < footer.size(); ++i) {

@@ -63,7 +63,7 @@ std::string type_in_fonts(const std::string& type) {
   return out;
 }
 
-std::string name_of(const OptionText& option) {
+std::string names_in_bold(const OptionText& option) {
   std::string out;
   for (const std::string& name : option.names) out += (out.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
   if (option.type.empty()) return out;
@@ -71,7 +71,7 @@ std::string name_of(const OptionText& option) {
 }
 
 void add_options(std::string& out, const std::vector<OptionText>& options) {
-  for (const OptionText& option : options) out += ".TP\n" + name_of(option) + "\n" + escaped(full_help(option)) + "\n";
+  for (const OptionText& option : options) out += ".TP\n" + names_in_bold(option) + "\n" + escaped(full_help(option)) + "\n";
 }
 
 void add_footer(std::string& out, const std::string& footer) {

@@ -34,7 +34,7 @@ BsdfParameters glass(float alpha, float eta) {
 /// Energy that is reflected and that goes through, of light from theta, phi; the squared index of radiance is taken out.
 std::pair<double, double> energy(const BsdfParameters& bsdf, double theta, double phi = 0.4) {
   constexpr int rows = 16, columns = 32;
-  const std::vector<float> integrals = bsdf_on_device().integrate(bsdf, direction(theta, phi), rows, columns, 60);
+  const std::vector<float> integrals = bsdf_on_device().integrate(bsdf, direction(theta, phi), rows, columns, 24);
   const auto values = integrals.begin() + rows * columns, middle = values + rows * columns / 2;
   const double above = std::accumulate(values, middle, 0.0), below = std::accumulate(middle, integrals.end(), 0.0);
   const bool inside = theta > std::numbers::pi / 2;

@@ -2,8 +2,11 @@
 // Copyright Caplet authors
 //
 // PoCL's cache damaged in several ways: each run ends well all the same, and the folder to delete is named.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -22,10 +25,19 @@ using testing::HasSubstr;
 
 class SecondTry : public testing::Test {
  protected:
-  /// A cache that holds what the commands below need.
+  /// A cache that holds what the commands below need: made by the first test of this build, for those in other processes too.
   static void SetUpTestSuite() {
-    const fs::path folder = test::temporary_folder();
-    for (const auto& arguments : commands(folder)) test::run_program(arguments, folder, in(good()));
+    const fs::path lock = good().string() + ".lock", made = good() / "made";
+    const int file = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    ASSERT_EQ(::flock(file, LOCK_EX), 0) << lock;
+    if (!fs::exists(made) || fs::last_write_time(made) < fs::last_write_time(CAPLET_PROGRAM)) {
+      fs::remove_all(good());
+      fs::create_directory(good());
+      const fs::path folder = test::temporary_folder();
+      for (const auto& arguments : commands(folder)) test::run_program(arguments, folder, in(good()));
+      test::write_file(made, "");
+    }
+    ::close(file);
   }
   void SetUp() override {
     bool any = false;
@@ -50,7 +62,7 @@ class SecondTry : public testing::Test {
             {"doctor", "--timeout", "100"}};
   }
   static fs::path good() {
-    static const fs::path folder = test::temporary_folder();
+    static const fs::path folder = fs::path(CAPLET_PROGRAM).parent_path().parent_path() / "second-try-cache";
     return folder;
   }
   fs::path bad() const { return folder_ / "bad"; }

@@ -13,6 +13,7 @@
 #include "program.h"
 #include "support/data.h"
 #include "support/sanitized.h"
+#include "support/thorough.h"
 
 namespace caplet {
 namespace {
@@ -33,7 +34,7 @@ void expect_agreement(std::vector<std::string> arguments, std::uint64_t rays) {
 }
 
 // All of its scenes, of 250,000 rays each; the first one alone under sanitizers.
-TEST(VerifyTortureSet, AMillionRays) { expect_agreement({}, test::sanitized ? 20'000 : 1'000'000); }
+TEST(VerifyTortureSet, ManyRays) { expect_agreement({}, test::sanitized ? 20'000 : test::thorough() ? 1'000'000 : 100'000); }
 
 /// Every file of scenes/ that an importer knows, relative to it.
 std::vector<std::string> scene_files() {

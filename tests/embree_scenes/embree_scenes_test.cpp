@@ -305,8 +305,11 @@ TEST(EmbreeScenes, MaterialsByTheirCode) {
   const auto metal =
       std::get<ConductorMaterial>(material("Metal",
                                            "<float3 name=\"eta\">1.5 .5 1</float3><float3 name=\"k\">2 3 0</float3>"
-                                           "<float3 name=\"reflectance\">1 .5 1</float3>"));
+                                           "<float3 name=\"reflectance\">1 .5 1</float3><float name=\"roughness\">.02</float>"));
   EXPECT_LT(glm::length(rgb(metal.reflectance.value()) - dvec3(4.25 / 10.25, 0.5 * 9.25 / 11.25, 0)), 1e-12);
+  // Half of the microfacets of a power cosine lie within cos^(n + 2) = 1/2, of Beckmann's within tan^2 = alpha^2 ln 2.
+  EXPECT_NEAR(1 + metal.alpha_u * metal.alpha_u * std::log(2.0), std::pow(2, 2 / (50.0 + 2)), 1e-3);
+  EXPECT_EQ(metal.alpha_u, metal.alpha_v);
   for (const char* code : {"ThinDielectric", "ThinGlass"})
     EXPECT_EQ(
         std::get<ConstantSpectrum>(std::get<ThinDielectricMaterial>(material(code, "<float name=\"eta\">1.3</float>")).eta).value,
@@ -316,10 +319,12 @@ TEST(EmbreeScenes, MaterialsByTheirCode) {
       std::get<HairMaterial>(material("Hair", "<float3 name=\"Kr\">.2 .3 .8</float3><float3 name=\"Kt\">.1 .2 .4</float3>"));
   EXPECT_LT(glm::length(rgb(hair.reflectance.value()) - dvec3(0.3, 0.5, 1)), 1e-12);
   for (const auto& [code, color] : {std::pair("Plastic", "pigmentColor"), std::pair("MetallicPaint", "shadeColor")}) {
-    const auto paint = std::get<PrincipledMaterial>(
-        material(code, "<float3 name=\"" + std::string(color) + "\">.9 .5 .1</float3><float name=\"eta\">1.6</float>"));
+    const auto paint = std::get<PrincipledMaterial>(material(code, "<float3 name=\"" + std::string(color) +
+                                                                       "\">.9 .5 .1</float3><float name=\"eta\">1.6</float>" +
+                                                                       "<float name=\"roughness\">.02</float>"));
     EXPECT_EQ(rgb(paint.base_color), dvec3(0.9, 0.5, 0.1)) << code;
     EXPECT_EQ(paint.eta, 1.6) << code;
+    EXPECT_NEAR(paint.roughness * paint.roughness, metal.alpha_u, 1e-12) << code;  // whose alpha is the roughness squared
   }
 }
 

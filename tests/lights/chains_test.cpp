@@ -16,6 +16,7 @@
 
 #include "light_bench.h"
 #include "lower/detail/covered_ends.h"
+#include "support/thorough.h"
 
 namespace caplet::test {
 
@@ -36,7 +37,7 @@ double distance_to_ray(const dvec3& o, const dvec3& d, const dvec3& p) {
 }
 
 /// Whether the ray (d a unit vector) comes to a ball of the axis: the distance minus the radius is convex along the axis, and its
-/// least value is found by golden sections.
+/// least value is found by golden sections: 40 of them leave 4e-9 of the axis.
 bool meets(const dvec3& o, const dvec3& d, const RoundSolid& solid) {
   const dvec3 middle = 0.5 * (solid.p0 + solid.p1);
   if (distance_to_ray(o, d, middle) > 0.5 * glm::length(solid.p1 - solid.p0) + std::max(solid.r0, solid.r1)) return false;
@@ -45,7 +46,7 @@ bool meets(const dvec3& o, const dvec3& d, const RoundSolid& solid) {
   };
   constexpr double section = 0.6180339887498949;
   double low = 0, high = 1, a = 1 - section, b = section, at_a = gap(a), at_b = gap(b);
-  for (int i = 0; i < 60 && at_a > 0 && at_b > 0; ++i) {
+  for (int i = 0; i < 40 && at_a > 0 && at_b > 0; ++i) {
     if (at_a < at_b) {
       high = b;
       b = a;
@@ -104,7 +105,7 @@ std::vector<ChainCase> cases() {
   const auto taper = [](double t) { return 0.15 - 0.1 * t; };
   for (const int count : {1, 30, 100, 1000, 10000})
     all.push_back({"straight_" + std::to_string(count), along(straight, even, count), along(straight, even, 1),
-                   std::size_t{1} << (count > 1000 ? 22 : 20)});
+                   std::size_t{1} << (count > 1000 && thorough() ? 22 : 20)});
   for (const int count : {30, 1000})
     all.push_back({"tapered_" + std::to_string(count), along(straight, taper, count), along(straight, taper, 1)});
   const auto arc = [](double t) { return dvec3(std::cos(pi * t), std::sin(pi * t) - 0.5, 1); };
@@ -170,7 +171,7 @@ void expect_irradiance(const Scene& scene, const std::vector<RoundSolid>& solids
     const double mean = sum / n, error = std::sqrt((squares / n - mean * mean) / n);
     const double expected = irradiance(p, solids);
     EXPECT_NEAR(mean, expected, 3 * error + 5e-4 * expected);
-    EXPECT_LT(error, 2e-3 * expected) << "too few samples to tell";
+    EXPECT_LT(error, (thorough() ? 2e-3 : 4e-3) * expected) << "too few samples to tell";
   }
 }
 

@@ -5,6 +5,7 @@
 
 usage: page_test.py PROGRAM SCENES FOLDER [NAME...]   pictures of the page go to FOLDER. Exit status 77: no browser here.
 """
+import atexit
 import contextlib
 import csv
 import http.client
@@ -67,14 +68,39 @@ def viewer(program, scene, *options):
             out.process.wait()
 
 
+SIZE = (1000, 640)
+idle = []  # browsers that no page has: to start one takes as long as many a test
+
+
+def browser():
+    if idle:
+        return idle.pop()
+    options = Options()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size={},{}".format(*SIZE)):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    atexit.register(driver.quit)
+    return driver
+
+
 class Page:
     def __init__(self, address):
-        options = Options()
-        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1000,640"):
-            options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        self.driver = browser()
         self.driver.get(address)
+
+    def close(self):
+        """Leaves the browser to the next page, with a window that has nothing of this one."""
+        windows = self.driver.window_handles
+        self.driver.switch_to.new_window("window")
+        new = self.driver.current_window_handle
+        for window in windows:
+            self.driver.switch_to.window(window)
+            self.driver.close()
+        self.driver.switch_to.window(new)
+        self.driver.set_window_size(*SIZE)
+        self.driver.get_log("browser")
+        idle.append(self.driver)
 
     def find(self, name):
         return self.driver.find_element(By.ID, name)
@@ -175,8 +201,10 @@ def page(address):
         yield out
         errors = out.errors()
         assert not errors, errors
-    finally:
+    except BaseException:
         out.driver.quit()
+        raise
+    out.close()
 
 
 def editable(scene, out):

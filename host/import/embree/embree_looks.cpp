@@ -75,6 +75,13 @@ Look added(Scene& scene, const Material& material) {
 
 double index_of(double inside, double outside) { return std::clamp(outside > 0 ? inside / outside : inside, 0.2, 5.0); }
 
+/// GGX's alpha as wide as Embree's distribution of microfacets, a power cosine of the exponent 1 / roughness: alpha^2 = 2 / (n +
+/// 2) (Walter et al. 2007, section 5.2).
+double alpha_of(double roughness) {
+  const double inverse_exponent = std::clamp(roughness, 0.0, 1.0);
+  return std::sqrt(2 * inverse_exponent / (1 + 2 * inverse_exponent));
+}
+
 }  // namespace
 
 Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images,
@@ -114,7 +121,7 @@ Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name
     const glm::dvec3 below = (eta - 1.0) * (eta - 1.0) + k * k, above = (eta + 1.0) * (eta + 1.0) + k * k;
     ConductorMaterial metal;
     metal.reflectance = RgbSpectrum{below / above * given.reflectance("reflectance", 1)};
-    metal.alpha_u = metal.alpha_v = std::clamp(given.number("roughness", 0.01), 0.0, 1.0);
+    metal.alpha_u = metal.alpha_v = alpha_of(given.number("roughness", 0.01));
     out.model = metal;
   } else if (code == "Dielectric") {
     out.model =
@@ -125,7 +132,7 @@ Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name
     PrincipledMaterial paint;
     paint.base_color = RgbSpectrum{given.reflectance(code == "Plastic" ? "pigmentColor" : "shadeColor", 1)};
     paint.eta = std::clamp(given.number("eta", 1.4), 1.01, 4.0);
-    paint.roughness = std::sqrt(std::clamp(given.number("roughness", 0.01), 0.0, 1.0));
+    paint.roughness = std::sqrt(alpha_of(given.number("roughness", 0.01)));
     out.model = paint;
   } else {
     notes.add(node.child("parameters") ? "the material " + caplet::quoted(code) + " is not known: it is grey"
