@@ -3,7 +3,7 @@
 # Copyright Caplet authors
 """Random faults of one token each: which of them do the tests see?
 
-usage: faults.py [--seed S] [--count N] [--since COMMIT] [--list] [--fast | --tests EXPRESSION] [--jobs N] [PATH...]
+usage: faults.py [--seed S] [--count N] [--since COMMIT] [--list] [--fast | --tests EXPRESSION] [--only N,...] [--jobs N] [PATH...]
        faults.py --self-test
 
 Draws N places of the sources below the paths (default: host) by their syntax trees, the same ones for the same seed and sources: a
@@ -12,7 +12,8 @@ of the sources (build/faults/tree) as switches that CAPLET_FAULT turns on one at
 is in run until one fails. The table grows in build/faults/result.md.
 
 --since: only lines that differ from those of that commit. --list: draws, builds nothing. --fast: no programs that need a device or
-the built program, no Python. --tests: only the test programs whose names this expression finds, no Python.
+the built program, no Python. --tests: only the test programs whose names this expression finds, no Python. --only: of the
+draw only these, as when what was unseen has got its test.
 Exit status: 0 when all was tried, whatever was seen; 2 where that was not possible.
 """
 import argparse
@@ -134,16 +135,17 @@ class Draw:
 
 class Build:
     def __init__(self):
-        self.written = set()
+        self.originals = {}
 
     def write(self, faults):
         """The sources with their switches; all lines keep their numbers."""
-        (WORK / "caplet_fault.h").write_text(fault_places.SWITCH)
-        for file in self.written - {p.file for p in faults.values()}:
-            (TREE / file).write_bytes((ROOT / file).read_bytes())
-        self.written = {p.file for p in faults.values()}
-        for file in self.written:
-            text = fault_places.switched((ROOT / file).read_bytes(), {n: p for n, p in faults.items() if p.file == file}, WORK / "caplet_fault.h")
+        header = WORK / "caplet_fault.h"
+        header.write_text(fault_places.SWITCH)
+        for place in faults.values():
+            self.originals.setdefault(place.file, (TREE / place.file).read_bytes())
+        for file, text in self.originals.items():
+            here = {n: p for n, p in faults.items() if p.file == file}
+            text = fault_places.switched(text, here, header) if here else text
             if (TREE / file).read_bytes() != text:
                 (TREE / file).write_bytes(text)
 
@@ -154,11 +156,13 @@ class Build:
             failed = mutants.build(["-k", "0", *targets], jobs, TREE)
             if not failed:
                 return
-            told = {(os.path.relpath(f, TREE), int(n)) for f, n in re.findall(r"^(/\S+?):(\d+):(?:\d+:)? ", failed, re.MULTILINE)}
-            errors = {(os.path.relpath(f, TREE), int(n)) for f, n in re.findall(r"^(/\S+?):(\d+):(?:\d+:)? (?:fatal )?error: ", failed, re.MULTILINE)}
+            errors, led = set(), set()
+            for file, line, kind in re.findall(r"^(/\S+?):(\d+):(?:\d+:)? +(\S+)", failed, re.MULTILINE):
+                if kind != "warning:":
+                    (errors if kind in ("error:", "fatal") else led).add((os.path.relpath(file, TREE), int(line)))
             bad = []
             # An error may stand in a header, and the line that led there in a note.
-            for found in (errors, told):
+            for found in (errors, led if errors else set()):
                 bad = bad or [n for n, p in faults.items() if any((p.file, line) in found for line in range(p.line, p.last + 1))]
             bad = bad or [n for n, p in faults.items() if any(p.file == f for f, _ in errors)]
             if not bad:
@@ -314,7 +318,8 @@ def try_all(options):
             say(f"{faults[number].row(number)} {by or 'UNSEEN'} |")
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for _ in pool.map(one, faults):
+        only = [int(n) for n in options.only.split(",")] if options.only else faults
+        for _ in pool.map(one, only):
             pass
     say(f"\nseen: {sum(map(bool, seen.values()))} of {len(seen)}")
 
@@ -328,6 +333,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="draw, and build nothing")
     parser.add_argument("--fast", action="store_true", help="run no test that needs a device or the built program")
     parser.add_argument("--tests", metavar="EXPRESSION", help="run the test programs alone whose names this finds, and nothing of Python")
+    parser.add_argument("--only", metavar="NUMBER,...", help="try these of the draw alone")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers, and tests, at the same time")
     parser.add_argument("--self-test", action="store_true", help="try the draw and the switches on a text of a few lines")
     options = parser.parse_args()
