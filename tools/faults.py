@@ -318,9 +318,13 @@ def try_all(options):
             say(f"{faults[number].row(number)} {by or 'UNSEEN'} |")
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        only = [int(n) for n in options.only.split(",")] if options.only else faults
-        for _ in pool.map(one, only):
-            pass
+        only = [n for n in faults if not options.only or str(n) in options.only.split(",")]
+        try:
+            for _ in pool.map(one, only):
+                pass
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     say(f"\nseen: {sum(map(bool, seen.values()))} of {len(seen)}")
 
 
