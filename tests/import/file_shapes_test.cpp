@@ -42,6 +42,19 @@ class FileShapes : public testing::Test {
   std::filesystem::path folder_ = test::temporary_folder();
 };
 
+TEST_F(FileShapes, FilesOfOptionsLieBesideTheScene) {
+  write_file(folder_ / "m.xyz", "1\n\nC 0 0 0\n");
+  // NumPy's format, version 1.0: one frame of one atom.
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 3), }";
+  header.resize(117, ' ');
+  const double place[3] = {1, 2, 3};
+  write_file(folder_ / "m.npy", std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
+                                    std::string(reinterpret_cast<const char*>(place), sizeof place));
+  const Scene scene = world("Shape \"file\" \"string filename\" \"m.xyz\" \"string positions\" \"m.npy\"\n");
+  ASSERT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).p0, (std::vector<glm::vec3>{{1, 2, 3}}));
+}
+
 TEST_F(FileShapes, HaveTheStatementsTransformAndMaterial) {
   const Scene scene = world(
       "MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\nNamedMaterial \"m\"\nTranslate 10 0 0\nScale 2 2 "

@@ -145,7 +145,7 @@ TEST(Media, GridsOfTheWrongCountHaveTheirPlace) {
               ElementsAre(HasSubstr("\"sigma_a\" has 2 values, but a grid of 1 x 1 x 1 cells takes 1")));
   EXPECT_THAT(grid("\"rgbgrid\" \"float g\" 0"), ElementsAre(HasSubstr("needs an \"rgb sigma_a\" or an \"rgb sigma_s\"")));
   EXPECT_THAT(grid("\"rgbgrid\" \"rgb sigma_s\" [1 1 1] \"rgb Le\" [1 1 1]"),
-              ElementsAre(HasSubstr("\"Le\" needs a \"sigma_a\"")));
+              ElementsAre(AllOf(HasSubstr(": \"Le\" needs a \"sigma_a\""), HasSubstr("scene.pbrt:"))));
   EXPECT_THAT(grid("\"cloud\" \"float density\" -1"), ElementsAre(HasSubstr("\"density\" must be")));
   EXPECT_THAT(grid("\"nanovdb\""), ElementsAre(HasSubstr("\"string filename\" is missing")));
 }

@@ -61,7 +61,7 @@ TEST(Camera, TransformIsColumnMajorAndMapsWorldToCamera) {
 TEST(Camera, AllParameters) {
   const Scene scene = scene_of(
       "Camera \"perspective\" \"float frameaspectratio\" [1.5] \"float screenwindow\" [-1 1 -.5 .5] \"float lensradius\" .1\n"
-      " \"float focaldistance\" [7] \"float shutteropen\" 0 \"float shutterclose\" .25\n"
+      " \"float focaldistance\" [7] \"float shutteropen\" .125 \"float shutterclose\" .375\n"
       "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [32] \"string filename\" \"a.exr\" \"float diagonal\" 35\n"
       " \"bool savefp16\" true \"float iso\" 200 \"string sensor\" \"cie1931\" \"float maxcomponentvalue\" 9\n"
       " \"float cropwindow\" [0 .5 .25 1]\nWorldBegin\nShape \"sphere\"");
@@ -314,6 +314,17 @@ TEST(Lights, PlacesAndDirectionsAreInWorldSpace) {
   const auto& sky = std::get<InfiniteLight>(scene.lights[3].model);
   EXPECT_EQ(std::get<RgbSpectrum>(sky.radiance).space, ColorSpace::rec2020);
   EXPECT_EQ(scene.lights[3].scale, .5);
+}
+
+TEST(Lights, ConesGoUpToHalfATurn) {
+  const auto spot = [](const std::string& cone, const std::string& delta) {
+    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"spot\" \"float coneangle\" " + cone +
+                      " \"float conedeltaangle\" " + delta);
+  };
+  for (const auto& [cone, delta] : {std::pair("180", "0"), std::pair("180", "180"), std::pair("1", "1")})
+    EXPECT_TRUE(spot(cone, delta).empty()) << cone << ' ' << delta;
+  for (const auto& [cone, delta] : {std::pair("180.5", "0"), std::pair("0", "0"), std::pair("10", "10.5"), std::pair("10", "-1")})
+    EXPECT_FALSE(spot(cone, delta).empty()) << cone << ' ' << delta;
 }
 
 TEST(Lights, ImagesOfBothLayouts) {

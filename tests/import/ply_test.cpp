@@ -153,6 +153,13 @@ TEST(Ply, BrokenFiles) {
             "m.ply:11: \"zero\" is no number");
   EXPECT_EQ(complaint(ascii + "element vertex 4000000000\n" + xyz + face + "end_header\n" + points),
             "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more than fit into its 181 bytes");
+  // 12 bytes each.
+  const auto binary = [&](int count) {
+    return complaint("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) + "\n" + xyz + face +
+                     "end_header\n" + std::string(24, '\0'));
+  };
+  EXPECT_THAT(binary(2), testing::Not(testing::HasSubstr("of \"vertex\"")));
+  EXPECT_THAT(binary(3), testing::HasSubstr("its header promises 3 of \"vertex\""));
   EXPECT_EQ(complaint(ascii + vertex + "end_header\n" + points), "m.ply: the PLY file has no face");
   EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"), "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
 }

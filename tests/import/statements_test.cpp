@@ -3,11 +3,13 @@
 //
 // Statements of pbrt-v4's own scenes that say more than the plainest ones: films of cameras, integrators, subdivision surfaces,
 // transforms that flatten, colours by textures where there is one colour.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 
+#include "import/statement.h"
 #include "import_text.h"
 #include "scene/media/homogeneous.h"
 #include "support/log_of.h"
@@ -57,6 +59,27 @@ TEST(Films, OfLayersAndOfSpectraAreFilms) {
   EXPECT_EQ(spectral.film.height, 20);
   EXPECT_THAT(log.text(), HasSubstr("Film \"spectral\": red, green and blue are written"));
   EXPECT_THAT(said_of("Film \"rgb\" \"integer nbuckets\" 8\n" + std::string(ball)), HasSubstr("unknown parameter \"nbuckets\""));
+}
+
+// pbrt-v4's defaults.
+TEST(Filters, SayWhatTheyAreUnlessAsked) {
+  struct Usual {
+    const char* type;
+    PixelFilter::Kind kind;
+    double radius;
+  };
+  for (const Usual& usual : {Usual{"box", PixelFilter::Kind::box, 0.5}, Usual{"triangle", PixelFilter::Kind::triangle, 2},
+                             Usual{"gaussian", PixelFilter::Kind::gaussian, 1.5},
+                             Usual{"mitchell", PixelFilter::Kind::mitchell, 2}, Usual{"sinc", PixelFilter::Kind::sinc, 4}}) {
+    const PixelFilter filter = scene_of(std::string("PixelFilter \"") + usual.type + "\"\n" + ball).filter;
+    EXPECT_EQ(filter.kind, usual.kind) << usual.type;
+    EXPECT_EQ(filter.radius_x, usual.radius) << usual.type;
+    EXPECT_EQ(filter.radius_y, usual.radius) << usual.type;
+  }
+  EXPECT_EQ(scene_of("PixelFilter \"gaussian\"\n" + std::string(ball)).filter.sigma, 0.5);
+  const PixelFilter mitchell = scene_of("PixelFilter \"mitchell\"\n" + std::string(ball)).filter;
+  EXPECT_EQ(mitchell.b, 1.0 / 3);
+  EXPECT_EQ(mitchell.c, 1.0 / 3);
 }
 
 TEST(Filters, Sinc) {
@@ -184,6 +207,38 @@ TEST(LoopSubdivision, Borders) {
   EXPECT_LT(glm::length(finer.positions[0] - glm::vec3(0.175f, 0.175f, 0)), 1e-6f);
 }
 
+// Of points that rise along x alone, regular and with one diagonal. By hand, as pbrt-v4 does it: points go to their limits (a
+// half and 1/12 of six neighbours within, 3/5 and 1/5 of two at a border), and normals are across tangents of those, of a
+// border's vertex of four neighbours r along r3 - r0 and -r0 + 2 r1 + 2 r2 - r3 - 2 p.
+TEST(LoopSubdivision, NormalsOfASheetAndOfItsBorders) {
+  constexpr double height[] = {0, 1, -1, 2, 0.5};
+  std::string points, indices;
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 5; ++x) points += fmt::format("{} {} {}  ", x, y, height[x]);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
+      const int a = 5 * y + x;
+      indices += fmt::format("{} {} {}  {} {} {}  ", a, a + 1, a + 6, a, a + 6, a + 5);
+    }
+  const Scene scene = loop_of("\"point3 P\" [" + points + "] \"integer levels\" 0 \"integer indices\" [" + indices + "]");
+  const TriangleMeshShape& mesh = mesh_of(scene);
+  const auto at = [&](std::size_t x) {
+    return x == 0 || x == 4 ? glm::dvec3(height[x], 0, height[x]) : glm::dvec3(height[x - 1], height[x], height[x + 1]);
+  };
+  const auto within = [&](std::size_t x) { return x == 0 || x == 4 ? height[x] : (at(x).x + 4 * at(x).y + at(x).z) / 6; };
+  const auto border = [&](std::size_t x) { return (at(x).x + 3 * at(x).y + at(x).z) / 5; };
+  const auto expect = [&](std::size_t x, std::size_t y, const glm::dvec3& along, const glm::dvec3& across, double z) {
+    glm::dvec3 normal = glm::normalize(glm::cross(along, across));
+    if (normal.z > 0) normal = -normal;  // pbrt-v4's side
+    EXPECT_LT(glm::length(glm::dvec3(mesh.normals[5 * y + x]) - normal), 1e-5) << x << ' ' << y;
+    EXPECT_NEAR(static_cast<double>(mesh.positions[5 * y + x].z), z, 1e-6) << x << ' ' << y;
+  };
+  for (std::size_t x = 1; x < 4; ++x) expect(x, 2, {2, 0, within(x + 1) - within(x - 1)}, {0, 1, 0}, within(x));
+  const glm::dvec3 along(2, 0, border(3) - border(1));
+  expect(2, 0, along, {2, 4, 2 * within(3) + 2 * within(2) - border(3) - border(1) - 2 * border(2)}, border(2));
+  expect(2, 4, along, {-2, -4, 2 * within(1) + 2 * within(2) - border(3) - border(1) - 2 * border(2)}, border(2));
+}
+
 TEST(LoopSubdivision, WhatMakesNoSurface) {
   const auto said = [](const std::string& indices, const std::string& more = "") {
     return complaint_of(
@@ -197,6 +252,26 @@ TEST(LoopSubdivision, WhatMakesNoSurface) {
   EXPECT_THAT(said("0 1 2", "\"integer levels\" 13"), HasSubstr("more than 2^24 triangles"));
   EXPECT_THAT(said("0 1 2", "\"integer levels\" 100"), HasSubstr("more than 2^24 triangles"));
   EXPECT_THAT(said("0 1 9"), HasSubstr("but there are 5 vertices"));
+}
+
+TEST(ProgramStatements, TypesAreThoseThatValuesSuit) {
+  const Scene scene = world_of(
+      "Texture \"a\" \"float\" \"dots\" \"float inside\" 1\nTexture \"b\" \"float\" \"dots\" \"float inside\" .5\n"
+      "Shape \"sphere\" \"texture alpha\" \"a\"\nShape \"sphere\" \"texture alpha\" \"b\"\n");
+  const auto texture = scene.shapes.at(1).alpha->texture;
+  const Shape shape =
+      shape_of({"Shape",
+                "disk",
+                {{"alpha", "texture", {}, {std::to_string(texture.value())}}, {"name", "", {}, {"lid"}}, {"radius", "", {2}}}},
+               0, scene);
+  EXPECT_EQ(shape.alpha.value().texture, texture);
+  EXPECT_EQ(shape.name, "lid");
+  EXPECT_EQ(std::get<DiskShape>(shape.geometry).radius, 2);
+  const auto said = [&](const StatementParameter& one) {
+    return complaint_of([&] { shape_of({"Shape", "disk", {one}}, 0, scene); });
+  };
+  EXPECT_THAT(said({"radius", "", {}, {"two"}}), HasSubstr("radius"));
+  EXPECT_THAT(said({"name", "", {2}}), HasSubstr("name"));
 }
 
 TEST(Files, WhatIsImportedNamesItsOwnSystems) {

@@ -132,6 +132,35 @@ TEST(Model3mf, UnitsTransformsAndColours) {
             1e-9);
 }
 
+// docs/formats/3mf.md: what has different colours at its corners has their mean, in steps of 1/31.
+TEST(Model3mf, CornersOfColoursHaveTheirMean) {
+  const Scene scene = scene_of(test::package_3mf(
+      "<model><resources><m:colorgroup xmlns:m=\"x\" id=\"7\"><m:color color=\"#FF0000\"/><m:color color=\"#00FF00\"/>"
+      "<m:color color=\"#00FFFF\"/></m:colorgroup><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>"
+      "<vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles>"
+      "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"7\" p1=\"0\" p2=\"1\" p3=\"2\"/></triangles></mesh></object></resources>"
+      "<build><item objectid=\"1\"/></build></model>"));
+  EXPECT_LT(glm::length(color_of(scene, scene.shapes.at(0).material) - glm::dvec3(1, 2, 1) / 3.0), 0.02);
+}
+
+// XML's comments stand anywhere between elements, and say nothing; nor do elements of names that are no part of the format.
+TEST(Model3mf, CommentsAreNoElements) {
+  const std::string c = "<!-- a comment --><other:thing xmlns:other=\"urn:o\"/>\n";
+  const std::string text = "<model>" + c + "<resources>" + c + "<basematerials id=\"2\">" + c +
+                           "<base name=\"a\" displaycolor=\"#FF0000\"/>" + c +
+                           "</basematerials><object id=\"1\" pid=\"2\" pindex=\"0\">" + c + "<mesh>" + c + "<vertices>" + c +
+                           "<vertex x=\"0\" y=\"0\" z=\"0\"/>" + c +
+                           "<vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles>" + c +
+                           "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>" + c + "</triangles></mesh></object><object id=\"3\">" + c +
+                           "<components>" + c + "<component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 7 8 9\"/>" + c +
+                           "</components></object></resources><build>" + c + "<item objectid=\"3\"/>" + c + "</build></model>";
+  const Scene scene = scene_of(test::package_3mf(text), {{{"up", "y"}}});
+  ASSERT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(std::get<TriangleMeshShape>(scene.shapes[0].geometry).positions.size(), 3U);
+  EXPECT_EQ(glm::dvec3(scene.shapes[0].world_from_object[3]), glm::dvec3(7, 8, 9));
+  EXPECT_EQ(color_of(scene, scene.shapes[0].material), glm::dvec3(1, 0, 0));
+}
+
 // Numbers of what files/make.py gave to lib3mf 2.5.
 TEST(Model3mf, AFileOfLib3mf) {
   const Scene scene = import_scene(test::source_folder() / "tests/lattices/files/lib3mf.3mf", test::NoImages());

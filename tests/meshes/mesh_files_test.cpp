@@ -52,6 +52,96 @@ Scene scene_beside(const std::string& name, const std::string& bytes, const std:
 const TriangleMeshShape& mesh_of(const Shape& shape) { return std::get<TriangleMeshShape>(shape.geometry); }
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
+/// What was in the files that were asked for, and how their names ended.
+class Seen : public OneTexel {
+ public:
+  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override {
+    std::ifstream stream(path, std::ios::binary);
+    files.emplace_back(path.extension().string(), std::string(std::istreambuf_iterator<char>(stream), {}));
+    return OneTexel::read_texture(path, encoding);
+  }
+  mutable std::vector<std::pair<std::string, std::string>> files;
+};
+
+// glTF 2.0, 3.10.1: an image is a file, a data URI or a view of a buffer.
+TEST(Gltf, ImagesAreWithinTheFileOrBesideIt) {
+  // "\x89PNG" and "\xff\xd8\xff\xe0" in base64; a triangle, and behind it the first of both.
+  std::string buffer(36, '\0');
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::memcpy(buffer.data(), corners, sizeof corners);
+  const std::filesystem::path folder = test::write_file("t.bin", buffer + "\x89PNG").parent_path();
+  std::ofstream(folder / "beside.png") << "beside";
+  std::ofstream(folder / "\xc3\xa4 [k].png") << "coded";
+  const auto seen = [&](const std::string& image) {
+    std::ofstream(folder / "t.gltf")
+        << R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0}}]}],)"
+        << R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[)"
+        << image
+        << R"(],"buffers":[{"byteLength":40,"uri":"t.bin"}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":4}],)"
+        << R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]})";
+    const Seen images;
+    import_scene(folder / "t.gltf", images);
+    return images.files;
+  };
+  using Files = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(seen(R"({"uri":"data:image/png;base64,iVBORw=="})"), (Files{{".png", "\x89PNG"}}));
+  EXPECT_EQ(seen(R"({"uri":"data:image/jpeg;base64,/9j/4A=="})"), (Files{{".jpg", "\xff\xd8\xff\xe0"}}));
+  EXPECT_EQ(seen(R"({"bufferView":1,"mimeType":"image/png"})"), (Files{{".png", "\x89PNG"}}));
+  EXPECT_EQ(seen(R"({"uri":"beside.png"})"), (Files{{".png", "beside"}}));
+  for (const char* uri : {"%c3%a4%20%5bk%5d.png", "%C3%A4%20%5Bk%5D.png"})  // RFC 3986, 2.1: letters of either case
+    EXPECT_EQ(seen(std::string(R"({"uri":")") + uri + R"("})"), (Files{{".png", "coded"}})) << uri;
+}
+
+TEST(Gltf, LinesAreNoShapes) {
+  const Scene scene = scene_of(
+      "l.gltf",
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":1},)"
+      R"({"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":39,"uri":"data:;base64,)" +
+          std::string(52, 'A') + R"("}]})");
+  ASSERT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(mesh_of(scene.shapes[0]).triangles.size(), 1U);
+}
+
+// glTF 2.0, 5.11: a view lies within its buffer.
+TEST(Gltf, ViewsLieWithinTheirBuffers) {
+  const auto said = [](const std::string& view) {
+    return complaint([&] {
+      scene_of("v.gltf",
+               R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+               R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,)" +
+                   view + R"(}],"buffers":[{"byteLength":39,"uri":"data:;base64,)" + std::string(52, 'A') + R"("}]})");
+    });
+  };
+  EXPECT_EQ(said(R"("byteLength":36)"), "");
+  EXPECT_EQ(said(R"("byteOffset":3,"byteLength":36)"), "");
+  for (const char* view : {R"("byteOffset":4,"byteLength":36)", R"("byteOffset":40,"byteLength":0)", R"("byteLength":40)",
+                           R"("byteOffset":-4,"byteLength":36)", R"("byteOffset":36,"byteLength":-36)"})
+    EXPECT_THAT(said(view), HasSubstr("buffer view 0 goes from byte")) << view;
+}
+
+TEST(Stl, TextMayHaveEmptyLines) {
+  const Scene scene = scene_of("t.stl",
+                               "solid a\n\nfacet normal 0 0 1\n \nouter loop\nvertex 0 0 0\n\nvertex 1 0 0\nvertex 0 2 0\n"
+                               "endloop\nendfacet\n\nendsolid a\n\n");
+  EXPECT_EQ(mesh_of(scene.shapes.at(0)).positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}));
+}
+
+#ifdef CAPLET_WITH_PLY
+// docs/formats/ply.md: the names that programs give to texture coordinates.
+TEST(PlyFiles, NamesOfTextureCoordinates) {
+  for (const auto& [u, v] :
+       {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v"), std::pair("texture_s", "texture_t")}) {
+    const Scene scene =
+        scene_of("t.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+                              std::string("property float ") + u + "\nproperty float " + v +
+                              "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                              "0 0 0 .25 .5\n1 0 0 .75 1\n0 1 0 0 .125\n3 0 1 2\n");
+    EXPECT_EQ(mesh_of(scene.shapes.at(0)).uvs, (std::vector<glm::vec2>{{0.25F, 0.5F}, {0.75F, 1}, {0, 0.125F}})) << u;
+  }
+}
+#endif
+
 TEST(Obj, CornersOfAllKinds) {
   const Scene scene =
       scene_of("a.obj",

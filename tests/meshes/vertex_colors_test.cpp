@@ -51,6 +51,7 @@ vec3 color_at(const Scene& scene, const Shape& shape, std::size_t triangle, vec3
   if (material.textures.empty()) return vec3(-1);
   EXPECT_EQ(material.textures.at(0).field, field);
   const auto& texture = std::get<ImagemapTexture>(scene.textures.at(material.textures.at(0).texture).model);
+  EXPECT_STREQ(texture_wrap_names.at(static_cast<std::size_t>(texture.wrap)), "clamp");  // as looked_up does
   const auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
   glm::vec2 uv(0);
   for (std::size_t k = 0; k < 3; ++k) uv += part[static_cast<glm::length_t>(k)] * mesh.uvs.at(mesh.triangles.at(triangle)[k]);

@@ -2,9 +2,11 @@
 // Copyright Caplet authors
 //
 // Molecules: the conventions of docs/formats/molecules.md, the shared files with counts by other programs, and bad input.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <random>
 #include <set>
@@ -110,6 +112,40 @@ TEST(Assemblies, AreInstancesOfTheirChains) {
                 scene_of(test::data_folder() / "mol/pdb/1crn.pdb", {{{"assembly", "7"}}});
               }),
               AllOf(HasSubstr("--assembly"), HasSubstr("(1)")));
+}
+
+/// A line of a PDB file, by its columns.
+std::string atom_line(int serial, char chain, double x) {
+  return fmt::format("ATOM  {:5}  CA  ALA {}{:4}    {:8.3f}{:8.3f}{:8.3f}{:6.2f}{:6.2f}          {:>2}\n", serial, chain, 1, x,
+                     0.0, 0.0, 1.0, 0.0, "C");
+}
+
+// REMARK 350 of wwPDB's format, version 3.3: operators stand in three rows of a turn and a place; chains go on in lines of
+// "AND CHAINS:". What is none of it is passed over.
+TEST(Assemblies, OfRemarksByTheirWords) {
+  const std::string remark = "REMARK 350 ";
+  const auto row = [&](int i, int n, const std::string& numbers) {
+    return remark + "  BIOMT" + std::to_string(i) + "   " + std::to_string(n) + " " + numbers + "\n";
+  };
+  const std::string text =
+      remark + "APPLY THE FOLLOWING TO CHAINS: A\n" + row(1, 1, "9 0 0 9") +  // before there is a molecule
+      remark + "BIOMOLECULE: 1\n" + remark + "APPLY THE FOLLOWING TO\n" + remark + "APPLY THE FOLLOWING TO CHAINS: A,\n" +
+      remark + "                   AND CHAINS: B\n" + row(1, 1, "1 0 0 5") + row(4, 1, "7 7 7 7") + row(2, 1, "0 1 0 6") +
+      row(0, 1, "8 8 8 8") + row(3, 1, "0 0 1 7") + row(1, 2, "0 -1 0 1") + row(2, 2, "1 0 0 2") + row(3, 2, "0 0 1 3") + remark +
+      "BIOMOLECULE: 2\n" + remark + "APPLY THE FOLLOWING TO CHAINS: C\n" + row(1, 1, "1 0 0 -4") + row(2, 1, "0 1 0 0") +
+      row(3, 1, "0 0 1 0") + atom_line(1, 'A', 0) + atom_line(2, 'B', 10) + atom_line(3, 'C', 20) + "END\n";
+  const auto scene = [&](const std::string& name) {
+    return scene_of_text("a.pdb", text, {{{"assembly", name}, {"style", "spheres"}}});
+  };
+  const Scene first = scene("1");
+  ASSERT_EQ(first.objects.size(), 1U);
+  EXPECT_EQ(counts_of(first.objects[0].shapes).balls, 2U);
+  ASSERT_EQ(first.instances.size(), 2U);
+  EXPECT_EQ(first.instances[0].world_from_object, glm::dmat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {5, 6, 7, 1}));
+  EXPECT_EQ(first.instances[1].world_from_object, glm::dmat4({0, 1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 1, 0}, {1, 2, 3, 1}));
+  const Scene second = scene("2");
+  const Bounds bounds = bounds_of(second);
+  EXPECT_NEAR((bounds.min.x + bounds.max.x) / 2, 16, 1e-5);
 }
 
 TEST(Traces, GoThroughTheAlphaCarbons) {
@@ -413,6 +449,54 @@ TEST(Xyz, FramesAndColumns) {
                 read_xyz(text, "f.xyz", {{{"model", "3"}}});
               }),
               AllOf(HasSubstr("--model"), HasSubstr("2 frames")));
+  // All frames of the file, whichever is read, but for a last one that is cut off.
+  for (const char* model : {"1", "2"}) EXPECT_EQ(read_xyz(text, "f.xyz", {{{"model", model}}}).frames, 2U) << model;
+  EXPECT_EQ(read_xyz(text + "\n1\nthird\nHe 0 0 0\n", "f.xyz", {}).frames, 3U);
+  EXPECT_EQ(read_xyz(text + "2\nthird\nHe 0 0 0\n", "f.xyz", {}).frames, 2U);
+  EXPECT_EQ(read_xyz(text + "and more\n", "f.xyz", {}).frames, 2U);
+}
+
+/// A file of NumPy's format, version 1.0, of doubles.
+std::string npy(const std::string& shape, const std::vector<double>& values) {
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }";
+  header.resize(117, ' ');
+  return std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
+         std::string(reinterpret_cast<const char*>(values.data()), 8 * values.size());
+}
+
+TEST(Molecules, AtomsAreWhereAnArrayHasThem) {
+  const std::filesystem::path path = test::write_file("m.xyz", "2\n\nC 0 0 0\nO 1.2 0 0\n");
+  const auto centres = [&](const std::vector<double>& places, const std::string& model, const std::string& shape = "2, 2, 3") {
+    const std::filesystem::path array = test::write_file("m.npy", npy(shape, places));
+    ImportOptions options{{{"positions", array.string()}, {"style", "spheres"}}};
+    if (!model.empty()) options.set("model", model);
+    std::vector<glm::vec3> out;
+    for (const Shape& shape_of_one : scene_of(path, options).shapes)
+      for (const glm::vec3& p : std::get<CapsulesShape>(shape_of_one.geometry).p0) out.push_back(p);
+    return out;
+  };
+  const std::vector<double> two{1, 2, 3, 4, 5, 6, -1, -2, -3, -4, -5, -6};
+  EXPECT_THAT(centres(two, ""), testing::UnorderedElementsAre(glm::vec3(1, 2, 3), glm::vec3(4, 5, 6)));
+  EXPECT_THAT(centres(two, "2"), testing::UnorderedElementsAre(glm::vec3(-1, -2, -3), glm::vec3(-4, -5, -6)));
+  const auto said = [&](const std::vector<double>& places, const std::string& model, const std::string& shape) {
+    return complaint([&] { centres(places, model, shape); });
+  };
+  EXPECT_THAT(said(two, "3", "2, 2, 3"), HasSubstr("3: the array has 2 frames"));
+  EXPECT_THAT(said(two, "", "4, 1, 3"), HasSubstr("has places of 1 atoms, and 2 are drawn"));
+  for (const double bad : {std::nan(""), 1e39, -1e39, static_cast<double>(INFINITY)})
+    EXPECT_THAT(said({1, 2, 3, 4, bad, 6}, "", "1, 2, 3"), HasSubstr("frame 1, atom 2: the place is not finite")) << bad;
+}
+
+TEST(Sdf, V2000BondsNameTheLastAtom) {
+  const auto molfile = [](const std::string& bond) {
+    return "n\n\n\n  2  1  0  0  0  0  0  0  0  0999 V2000\n    1.0000    2.0000    3.0000 C   0  0\n"
+           "    1.0000    2.0000    4.2000 O   0  0\n" +
+           bond + "  2  0\nM  END\n";
+  };
+  using Bonds = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  for (const char* bond : {"  1  2", "  2  1"}) EXPECT_EQ(read_sdf(molfile(bond), "f.sdf", {}).bonds, (Bonds{{0, 1}})) << bond;
+  for (const char* bond : {"  3  1", "  1  3", "  0  1", "  1  0", "  1  1"})
+    EXPECT_THAT(complaint([&] { read_sdf(molfile(bond), "f.sdf", {}); }), HasSubstr("there are 2")) << bond;
 }
 
 TEST(Sdf, V3000) {
@@ -425,6 +509,12 @@ TEST(Sdf, V3000) {
   EXPECT_EQ(m.atoms[1].position, glm::vec3(0.9F, 0.1F, 0));
   EXPECT_EQ(all_bonds(m, "v.sdf"), (std::vector<Bond>{{0, 1}, {0, 2}}));
   EXPECT_THAT(complaint([&] { read_sdf(text, "v.sdf", {{{"model", "2"}}}); }), HasSubstr("--model"));
+  for (const auto& [good, bad] : {std::pair("1 O 0 0", "x O 0 0"), std::pair("1 O 0 0", "1 O a 0"),
+                                  std::pair("2 1 1 3", "2 1 x 3"), std::pair("2 1 1 3", "2 1 1 3x")}) {
+    std::string broken = text;
+    broken.replace(broken.find(good), std::string(good).size(), bad);
+    EXPECT_THAT(complaint([&] { read_sdf(broken, "v.sdf", {}); }), AllOf(HasSubstr("v.sdf:"), HasSubstr("is no number"))) << bad;
+  }
 }
 
 // --- Bad input ---

@@ -136,41 +136,46 @@ def check():
 # --- The copy of the sources, and its build ---
 
 
-def copy_sources():
-    """Makes TREE what ROOT is; files that are equal stay untouched, so that little is built again."""
+def copy_sources(tree=TREE):
+    """Makes the tree what ROOT is; files that are equal stay untouched, so that little is built again."""
     wanted = set()
     for folder, names, files in os.walk(ROOT):
         here = pathlib.Path(folder).relative_to(ROOT)
         names[:] = [n for n in names if n != ".git" and not (here == pathlib.Path() and n.startswith("build"))]
         wanted.update(here / f for f in files if not (ROOT / here / f).is_symlink())
     for file in wanted:
-        to, contents = TREE / file, (ROOT / file).read_bytes()
+        to, contents = tree / file, (ROOT / file).read_bytes()
         if not to.is_file() or to.read_bytes() != contents:
             to.parent.mkdir(parents=True, exist_ok=True)
             to.write_bytes(contents)
             shutil.copymode(ROOT / file, to)
-    for folder, names, files in os.walk(TREE):
-        here = pathlib.Path(folder).relative_to(TREE)
+    for folder, names, files in os.walk(tree):
+        here = pathlib.Path(folder).relative_to(tree)
         if here == pathlib.Path():
             names[:] = [n for n in names if n != "build"]
         for file in files:
             if here / file not in wanted:
-                (TREE / here / file).unlink()
+                (tree / here / file).unlink()
 
 
-def build(programs, jobs):
-    """Empty when it went well, or the end of the output."""
+def ran(command, tree):
+    """Empty when it went well, or the output."""
     # Compilers' caches are to find what was built elsewhere.
-    env = dict(os.environ, CCACHE_BASEDIR=str(TREE), CCACHE_NOHASHDIR="1")
-    commands = [["ninja", "-C", str(BUILD), "-j", str(jobs), *programs]]
-    if not (BUILD / "build.ninja").exists():
-        commands.insert(0, ["cmake", "-S", str(TREE), "--preset", "release", "-DCAPLET_BENCH=OFF"])
-    for command in commands:
-        done = subprocess.run(command, env=env, cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                              text=True, errors="replace")
-        if done.returncode != 0:
-            return done.stdout[-4000:] or "no output"
-    return ""
+    env = dict(os.environ, CCACHE_BASEDIR=str(tree), CCACHE_NOHASHDIR="1")
+    done = subprocess.run(command, env=env, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                          text=True, errors="replace")
+    return "" if done.returncode == 0 else done.stdout or "no output"
+
+
+def configure(tree=TREE, options=("-DCAPLET_BENCH=OFF",)):
+    return ran(["cmake", "-S", str(tree), "--preset", "release", *options], tree)
+
+
+def build(targets, jobs, tree=TREE):
+    """Empty when it went well, or the output."""
+    folder = tree / "build/release"
+    failed = "" if (folder / "build.ninja").exists() else configure(tree)
+    return failed or ran(["ninja", "-C", str(folder), "-j", str(jobs), *targets], tree)
 
 
 def program_path(name):
@@ -187,16 +192,22 @@ def take(name, folder):
 # --- Running a test ---
 
 
-def outcome(program, test_filter, kernels, folder):
-    """Runs the tests in an own folder. One of PASSED, CAUGHT, or why neither can be said; and the output."""
-    env = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "CAPLET_TEST_", "CAPLET_KERNELS"))}
+def environment(folder, kernel_cache, program):
+    """Of a test that has the folder for itself and may run the built program."""
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "CAPLET_TEST_", "CAPLET_KERNELS", "CAPLET_FAULT"))}
     for name in ("CAPLET_CACHE", "TMPDIR"):
         env[name] = str(folder / name.lower())
         pathlib.Path(env[name]).mkdir(parents=True, exist_ok=True)
     # PoCL finds compiled kernels by their text: those that a mutant leaves alone are compiled once for all.
-    env["POCL_CACHE_DIR"] = str(folder.parent / "pocl")
+    env["POCL_CACHE_DIR"] = str(kernel_cache)
+    env["CAPLET_TEST_PROGRAM"] = str(program)
+    return env
+
+
+def outcome(program, test_filter, kernels, folder):
+    """Runs the tests in an own folder. One of PASSED, CAUGHT, or why neither can be said; and the output."""
     # The built program that tests run is the one beside them: another mutant may be built meanwhile.
-    env["CAPLET_TEST_PROGRAM"] = str(program.with_name("caplet"))
+    env = environment(folder, folder.parent / "pocl", program.with_name("caplet"))
     if kernels:
         env["CAPLET_KERNELS"] = str(kernels)
     try:
@@ -246,7 +257,7 @@ class Run:
         programs = sorted({m.program for m in self.mutants})
         print(f"building {', '.join(programs)} (minutes the first time)", file=sys.stderr, flush=True)
         if failed := build(programs, self.jobs):
-            raise ListError(f"the unmutated sources do not build:\n{failed}")
+            raise ListError(f"the unmutated sources do not build:\n{failed[-4000:]}")
         shutil.rmtree(self.logs, ignore_errors=True)
         self.logs.mkdir(parents=True)
         self.plain = self.temporary / "plain"
@@ -310,7 +321,7 @@ class Run:
         finally:
             path.write_bytes(original)
         if failed:
-            self.report(m, "does not build", time.monotonic() - start, failed)
+            self.report(m, "does not build", time.monotonic() - start, failed[-4000:])
             return None
 
         def test():

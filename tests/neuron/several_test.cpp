@@ -94,6 +94,23 @@ TEST(SeveralFiles, OfOneNameAreNumbered) {
   EXPECT_THAT(names_of(scene), ElementsAre("one 1: sample 1", "one 1", "one 2: sample 1", "one 2"));
 }
 
+// The media of the file with the camera stand behind those of the one before it, whichever comes first.
+TEST(SeveralFiles, TheCameraIsWithinItsOwnFilesMedium) {
+  const auto scene_in = [](const std::string& name, const std::string& medium, bool has_camera) {
+    const std::string made = "MakeNamedMedium \"" + medium + "\" \"string type\" \"homogeneous\"\n";
+    return write_file(name, made + (has_camera ? "MediumInterface \"\" \"" + medium + "\"\nCamera \"perspective\"\n" : "") +
+                                "WorldBegin\nMediumInterface \"" + medium +
+                                "\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  };
+  const fs::path fog = scene_in("fog.pbrt", "fog", true), smoke = scene_in("smoke.pbrt", "smoke", false);
+  for (const Paths& paths : {Paths{smoke, fog}, Paths{fog, smoke}}) {
+    const Scene scene = several(paths);
+    ASSERT_EQ(scene.media.size(), 2U);
+    ASSERT_TRUE(scene.camera.medium);
+    EXPECT_THAT(scene.media.at(*scene.camera.medium).name, testing::EndsWith("fog")) << paths[0];
+  }
+}
+
 TEST(SeveralFiles, AScenesCameraAndLightsCountForAll) {
   const Scene scene = several({write_file("one.swc", neuron(0)), write_file("scene.pbrt", pbrt_with_camera)});
   EXPECT_FALSE(scene.automatic_camera);
@@ -290,6 +307,9 @@ TEST(SwcColors, HaveOneScale) {
   ASSERT_TRUE(asked.legend);
   EXPECT_EQ(asked.legend->high, 3);
   EXPECT_FALSE(several(two, color("file")).legend);
+  EXPECT_THAT(scene.legend->title, HasSubstr("way from the soma"));
+  const Scene order = several({write_file("tree.swc", tree)}, color("order"));
+  EXPECT_EQ(order.legend.value().title, "branch order");
 }
 
 TEST(SwcColors, OfAFileForEachNeuron) {

@@ -368,6 +368,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"missing_parent", "1 1 0 0 0 1 -1\n2 3 1 0 0 1 7\n", ":2: ", "parent 7 is no sample"},
                     Bad{"own_parent", "1 1 0 0 0 1 -1\n2 3 1 0 0 1 2\n", ":2:13: ", "its own parent"},
                     Bad{"odd_parent", "1 1 0 0 0 1 -2\n", ":1:13: ", "neither an id nor -1"},
+                    Bad{"first_cycle", "1 1 0 0 0 1 2\n2 3 1 0 0 1 1\n", ":1: ", "sample 1 is its own ancestor"},
                     Bad{"cycle", "1 1 0 0 0 1 -1\n2 3 1 0 0 1 4\n3 3 2 0 0 1 2\n4 3 2 0 0 1 3\n", ":2: ", "its own ancestor"},
                     Bad{"binary",
                         "9 1 0 0 0 1 -1\n" + std::string("\x7f"

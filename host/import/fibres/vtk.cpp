@@ -126,7 +126,9 @@ class VtkReader {
   bool next_is(std::string_view name) {
     return skip() && text_.starts_with(name) && (text_.size() == name.size() || is_space(text_[name.size()]));
   }
+  /// What follows the word, up to an empty line.
   void metadata() {
+    if (!text_.empty()) line();
     while (!text_.empty() && !trimmed(line()).empty()) {
     }
   }
@@ -271,7 +273,10 @@ class VtkReader {
         fail(fmt::format("{} has {} rows; there are {} {}", quoted(name), rows, rows_, *of_points ? "points" : "cells"));
       numbers(rows, components, type, taken);
       if (taken >= 0) return;
-      if (next_is("METADATA")) metadata();
+      if (next_is("METADATA")) {
+        word();
+        metadata();
+      }
     }
   }
 
