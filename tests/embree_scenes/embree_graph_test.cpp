@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+
 #include "import/import.h"
 #include "support/import_files.h"
 
@@ -27,6 +29,14 @@ TEST(EmbreeGraph, MeshesHaveTheirOwnNames) {
   ASSERT_EQ(scene.shapes.size(), 2U);
   EXPECT_EQ(scene.shapes[0].name, "wing");
   EXPECT_EQ(scene.shapes[1].name, "TriangleMesh");
+}
+
+TEST(EmbreeGraph, CamerasLookFromTo) {
+  const Scene scene = scene_of(triangle() + "<PerspectiveCamera from=\"1 2 3\" to=\"5 2 3\" up=\"0 0 2\" fov=\"60\"/>");
+  const glm::dmat4& camera = scene.camera.world_from_camera;
+  EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
+  EXPECT_LT(glm::length(glm::dvec3(camera[2]) - glm::dvec3(1, 0, 0)), 1e-12);
+  EXPECT_LT(glm::length(glm::dvec3(camera[1]) - glm::dvec3(0, 0, 1)), 1e-12);
 }
 
 // XML's comments and white space stand anywhere between elements, and say nothing.

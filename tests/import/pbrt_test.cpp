@@ -316,6 +316,23 @@ TEST(Lights, PlacesAndDirectionsAreInWorldSpace) {
   EXPECT_EQ(scene.lights[3].scale, .5);
 }
 
+// pbrt-v4's samplers that are randomised in ways of choice.
+TEST(Options, RandomizationIsOfSomeSamplers) {
+  const auto said = [](const std::string& name) {
+    return complaints("Sampler \"" + name + "\" \"string randomization\" \"fastowen\"\nWorldBegin\nShape \"sphere\"");
+  };
+  for (const char* name : {"halton", "paddedsobol", "sobol", "zsobol"}) EXPECT_TRUE(said(name).empty()) << name;
+  for (const char* name : {"independent", "pmj02bn", "stratified"}) EXPECT_FALSE(said(name).empty()) << name;
+}
+
+TEST(Lights, BlackBodiesAreWarm) {
+  const auto said = [](const std::string& kelvin) {
+    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"infinite\" \"blackbody L\" " + kelvin);
+  };
+  EXPECT_TRUE(said("1").empty());
+  for (const char* kelvin : {"0", "-1"}) EXPECT_FALSE(said(kelvin).empty()) << kelvin;
+}
+
 TEST(Lights, ConesGoUpToHalfATurn) {
   const auto spot = [](const std::string& cone, const std::string& delta) {
     return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"spot\" \"float coneangle\" " + cone +

@@ -127,7 +127,6 @@ TEST(Stl, TextMayHaveEmptyLines) {
   EXPECT_EQ(mesh_of(scene.shapes.at(0)).positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}));
 }
 
-#ifdef CAPLET_WITH_PLY
 // docs/formats/ply.md: the names that programs give to texture coordinates.
 TEST(PlyFiles, NamesOfTextureCoordinates) {
   for (const auto& [u, v] :
@@ -140,7 +139,6 @@ TEST(PlyFiles, NamesOfTextureCoordinates) {
     EXPECT_EQ(mesh_of(scene.shapes.at(0)).uvs, (std::vector<glm::vec2>{{0.25F, 0.5F}, {0.75F, 1}, {0, 0.125F}})) << u;
   }
 }
-#endif
 
 TEST(Obj, CornersOfAllKinds) {
   const Scene scene =
