@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Threads, forked processes, and the interpreter's end: each script in an interpreter of its own, 5 times; 100 times under sanitizers."""
+"""Threads, forked processes, and the interpreter's end: each script in an interpreter of its own, 3 times; 100 times under sanitizers."""
 import os
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-TIMES = 100 if os.environ.get("CAPLET_SANITIZED") else 5
+TIMES = 100 if os.environ.get("CAPLET_SANITIZED") else 3
 SECONDS = 300  # that a script may take: it takes one or two, and more where others work beside it
 
 BEGIN = """
