@@ -22,7 +22,7 @@ inline bool caplet_fault(int number) { return number == caplet_fault_number; }
 """
 REPLACED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+", "*": "/", "/": "*", "&&": "||", "||": "&&"}
 MEMBERS = {"x": "y", "y": "z", "z": "x"}
-# What these are given are words for people.
+# Arguments of these functions are texts that people read, which no test compares.
 MESSAGE = re.compile(r"(format|fail\w*|error\w*|warn\w*|notes?_?|print\w*|complain\w*|refuse\w*|message\w*|log_\w+|InputError|RunError)"
                      r"(\s*(\.|->|::)\s*\w+)?$")
 # Calls that change nothing but time and memory, or what is printed.
