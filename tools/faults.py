@@ -93,7 +93,7 @@ class Draw:
         self.files = {os.path.relpath(s, TREE): (os.path.relpath(s, TREE), pathlib.Path(s), told[s]) for s in known}
         self.lines = changed_lines(options.since) if options.since else None
         if self.lines is not None:
-            self.files = {f: w for f, w in self.files.items() if f in self.lines}
+            self.files = {f: w for f, w in self.files.items() if self.lines.get(f)}
         if not self.files:
             raise Impossible("there is no source below these paths that is built")
         self.random = random.Random(options.seed)
