@@ -117,7 +117,7 @@ void run(std::size_t count, const std::string& choice) {
   });
   measure("the camera", [&] {
     ViewEdit to = view_of(live.scene());
-    to.camera.fov = random.uniform(0.5, 1);
+    to.camera.projection = PerspectiveProjection{random.uniform(0.5, 1)};
     return to;
   });
   measure("a material", [&] {

@@ -136,18 +136,25 @@ class SceneWriter {
   std::string here() const { return scene_.source; }
 
   void write_camera(const Camera& camera) {
-    const auto& [world_from_camera, fov, frame_aspect_ratio, screen_window, lens_radius, focal_distance, medium] = camera;
+    const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius, focal_distance, medium] = camera;
     const SourceLocation where{here()};
     stream_.text << inverse_text(world_from_camera);
     if (medium) stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
-    Statement out(fov == 0 ? "Camera \"orthographic\"" : "Camera \"perspective\"", nullptr, where);
-    if (fov != 0) out.number("fov", degrees_of(fov));
+    const auto* perspective = std::get_if<PerspectiveProjection>(&projection);
+    const auto* spherical = std::get_if<SphericalProjection>(&projection);
+    Statement out(perspective ? "Camera \"perspective\""
+                  : spherical ? "Camera \"spherical\""
+                              : "Camera \"orthographic\"",
+                  nullptr, where);
+    if (perspective) out.number("fov", degrees_of(perspective->fov));
+    if (spherical && spherical->mapping == SphericalProjection::Mapping::equirectangular) out.text("mapping", "equirectangular");
     if (frame_aspect_ratio) out.number("frameaspectratio", *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;
       out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});
     }
     if (lens_radius != 0) out.number("lensradius", lens_radius);
+    if (lens_radius != 0 && is_orthographic(camera)) out.boolean("parallellens", true);
     out.number("focaldistance", focal_distance);
     if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
     if (scene_.automatic_camera) out.boolean("automatic", true);
@@ -201,15 +208,30 @@ class SceneWriter {
   }
 
   void write_sampler(const SamplerSettings& sampler, const IntegratorSettings& integrator) {
-    const auto& [samples_per_pixel, seed] = sampler;
-    const auto& [max_depth] = integrator;
+    const auto& [sampler_kind, samples_per_pixel, seed, x_strata, y_strata, jitter] = sampler;
+    const auto& [integrator_kind, max_depth, max_distance, cosine_sample, sample_bsdf, sample_lights] = integrator;
     const SourceLocation where{here()};
-    Statement samples("Sampler \"zsobol\"", nullptr, where);
-    samples.whole("pixelsamples", samples_per_pixel);
+    Statement samples("Sampler " + quoted(sampler_names[static_cast<std::size_t>(sampler_kind)], where), nullptr, where);
+    if (sampler_kind == SamplerSettings::Kind::stratified) {
+      const std::array<int, 2> strata = strata_of(sampler);
+      samples.whole("xsamples", strata[0]);
+      samples.whole("ysamples", strata[1]);
+      if (!jitter) samples.boolean("jitter", false);
+    } else {
+      samples.whole("pixelsamples", samples_per_pixel);
+    }
     if (seed != 0) samples.whole("seed", static_cast<std::int32_t>(seed));
     samples.write(stream_);
-    Statement paths("Integrator \"path\"", nullptr, where);
+    Statement paths("Integrator " + quoted(integrator_names[static_cast<std::size_t>(integrator_kind)], where), nullptr, where);
     paths.whole("maxdepth", max_depth);
+    if (integrator_kind == IntegratorSettings::Kind::ambient_occlusion) {
+      if (!cosine_sample) paths.boolean("cossample", false);
+      if (std::isfinite(max_distance)) paths.number("maxdistance", max_distance);
+    }
+    if (integrator_kind == IntegratorSettings::Kind::simple_path) {
+      if (!sample_bsdf) paths.boolean("samplebsdf", false);
+      if (!sample_lights) paths.boolean("samplelights", false);
+    }
     paths.write(stream_);
   }
 

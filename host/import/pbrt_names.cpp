@@ -53,7 +53,7 @@ const std::vector<NameTable>& name_tables() {
       {"Accelerator", {"bvh", "kdtree"}, {}},
       {"ActiveTransform", {"All"}, {"EndTime", "StartTime"}},
       {"AreaLightSource", {"diffuse"}, {}},
-      {"Camera", {"orthographic", "perspective"}, {"realistic", "spherical"}},
+      {"Camera", {"orthographic", "perspective", "spherical"}, {"realistic"}},
       {"ColorSpace", {"aces2065-1", "dci-p3", "rec2020", "srgb"}, {}},
       {"Film", {"gbuffer", "rgb", "spectral"}, {}},
       {"Integrator",

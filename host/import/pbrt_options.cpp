@@ -108,21 +108,28 @@ std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* i
   return out;
 }
 
+Projection projection_of(const std::string& type, Parameters& parameters) {
+  if (type == "orthographic") return OrthographicProjection{};
+  if (type == "spherical") {
+    const std::string mapping = parameters.text("mapping", "equalarea");
+    if (mapping != "equalarea" && mapping != "equirectangular")
+      parameters.error("mapping", "must be \"equalarea\" or \"equirectangular\"");
+    return SphericalProjection{mapping == "equirectangular" ? SphericalProjection::Mapping::equirectangular
+                                                            : SphericalProjection::Mapping::equal_area};
+  }
+  const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
+  const double degrees = half > 0 ? 2 * half : given;
+  if (degrees > 0 && degrees < 180) return PerspectiveProjection{degrees * glm::pi<double>() / 180};
+  parameters.error(half > 0 ? "halffov" : "fov", half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
+  return PerspectiveProjection{};
+}
+
 }  // namespace
 
 void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
   Camera camera;
   camera.world_from_camera = world_from_camera;
-  const bool is_parallel = type == "orthographic";
-  const double given = is_parallel ? 0 : parameters.number("fov", 90), half = is_parallel ? 0 : parameters.number("halffov", -1);
-  const double degrees = half > 0 ? 2 * half : given;
-  if (is_parallel)
-    camera.fov = 0;
-  else if (degrees > 0 && degrees < 180)
-    camera.fov = degrees * glm::pi<double>() / 180;
-  else
-    parameters.error(half > 0 ? "halffov" : "fov",
-                     half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
+  camera.projection = projection_of(type, parameters);
   if (parameters.has("frameaspectratio")) camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
   if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
     const auto& v = window->numbers;
@@ -136,6 +143,12 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
   camera.lens_radius = parameters.number("lensradius", 0);
   if (camera.lens_radius < 0) parameters.error("lensradius", "must not be negative");
   camera.focal_distance = positive(parameters, "focaldistance", 1e6);
+  const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean("parallellens", false);
+  if (is_orthographic(camera) && camera.lens_radius > 0 && !has_parallel_lens) {
+    // pbrt-v4's rays then leave one lens around the camera's axis: a perspective through the window at the focal distance.
+    camera.projection = PerspectiveProjection{2 * std::atan(1 / camera.focal_distance)};
+    warn(parameters, "lensradius", "makes a perspective of it, as in pbrt-v4; with \"bool parallellens\" true it makes none");
+  }
   const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
   if (close > open)
     scene.film.exposure_time = close - open;
@@ -143,7 +156,7 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
     parameters.error("shutterclose", "must be after shutteropen");
   scene.automatic_camera = parameters.boolean("automatic", false);
   scene.has_no_up = parameters.boolean("noup", false);
-  scene.framing = framing_of(parameters, is_parallel && scene.automatic_camera);
+  scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
   scene.unit = parameters.text("unit", "");
   parameters.finish();
   scene.camera = camera;
@@ -233,35 +246,51 @@ void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
 std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene) {
   std::optional<std::uint32_t> seed;
   if (parameters.has("seed")) seed = static_cast<std::uint32_t>(parameters.integer("seed", 0));
+  SamplerSettings sampler;
+  sampler.seed = scene.sampler.seed;
   if (type == "stratified") {
-    const auto samples = std::int64_t{positive_integer(parameters, "xsamples", 4)} * positive_integer(parameters, "ysamples", 4);
+    sampler.kind = SamplerSettings::Kind::stratified;
+    sampler.x_strata = positive_integer(parameters, "xsamples", 4);
+    sampler.y_strata = positive_integer(parameters, "ysamples", 4);
+    const std::int64_t samples = std::int64_t{sampler.x_strata} * sampler.y_strata;
     if (samples > INT32_MAX)
       parameters.error("xsamples", "times \"ysamples\" is more than 2^31 samples a pixel");
     else
-      scene.sampler.samples_per_pixel = static_cast<int>(samples);
-    if (!parameters.boolean("jitter", true)) parameters.error("jitter", "false is not rendered yet");
+      sampler.samples_per_pixel = static_cast<int>(samples);
+    sampler.jitter = parameters.boolean("jitter", true);
   } else {
-    scene.sampler.samples_per_pixel = positive_integer(parameters, "pixelsamples", 16);
+    sampler.samples_per_pixel = positive_integer(parameters, "pixelsamples", 16);
+    if (type == "independent") sampler.kind = SamplerSettings::Kind::independent;
+    if (type == "zsobol") sampler.kind = SamplerSettings::Kind::zsobol;
+    if (type == "halton" || type == "paddedsobol" || type == "pmj02bn")
+      warn(parameters, {}, "rendered by the sampler \"sobol\", whose noise is another");
   }
   if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol") parameters.text("randomization", "");
   parameters.finish();
+  scene.sampler = sampler;
   return seed;
 }
 
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
+  using enum IntegratorSettings::Kind;
+  IntegratorSettings integrator;
   if (type == "ambientocclusion")
-    warn(parameters, {}, "rendered by the path tracer, which gives another image: the scene by its lights and materials");
+    integrator.kind = ambient_occlusion;
+  else if (type == "simplepath")
+    integrator.kind = simple_path;
+  else if (type == "randomwalk")
+    integrator.kind = random_walk;
   else if (type != "path" && type != "volpath")
     warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
-  const int depth = parameters.integer("maxdepth", 5);
-  if (depth < 0)
+  integrator.max_depth = parameters.integer("maxdepth", 5);
+  if (integrator.max_depth < 0) {
     parameters.error("maxdepth", "must not be negative");
-  else
-    scene.integrator.max_depth = depth;
+    integrator.max_depth = 5;
+  }
   if (type == "path" || type == "volpath") parameters.text("lightsampler", "bvh");
   if (type == "simplepath") {
-    parameters.boolean("samplebsdf", true);
-    parameters.boolean("samplelights", true);
+    integrator.sample_bsdf = parameters.boolean("samplebsdf", true);
+    integrator.sample_lights = parameters.boolean("samplelights", true);
   }
   if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
     if (parameters.boolean("regularize", false))
@@ -270,14 +299,17 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   if (type == "bdpt")
     for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
   if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");
-  if (type == "ambientocclusion")
-    for (const char* name : {"cossample", "maxdistance"}) parameters.ignore(name);
+  if (integrator.kind == ambient_occlusion) {
+    integrator.cosine_sample = parameters.boolean("cossample", true);
+    if (parameters.has("maxdistance")) integrator.max_distance = positive(parameters, "maxdistance", 1);
+  }
   if (type == "mlt")
     for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
       parameters.ignore(name);
   if (type == "sppm")
     for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
   parameters.finish();
+  scene.integrator = integrator;
 }
 
 void check_accelerator(const std::string& type, Parameters& parameters) {

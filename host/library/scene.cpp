@@ -279,11 +279,11 @@ void Scene::widen_to_least() {
   if (caplet::widen_to_least(data.model) > 0) data.as_a_whole_in_view();
 }
 
-double Scene::fov() const { return data_->model.camera.fov * degrees_per_radian; }
+double Scene::fov() const { return fov_of(data_->model.camera) * degrees_per_radian; }
 void Scene::set_fov(double degrees) {
   if (data_->open_camera) present();
   ViewEdit view = view_of(data_->model);
-  view.camera.fov = degrees / degrees_per_radian;
+  view.camera.projection = PerspectiveProjection{degrees / degrees_per_radian};
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
   changed().open_camera = false;

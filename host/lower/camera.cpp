@@ -24,40 +24,32 @@ void lower_camera(const Scene& scene, FlatView& out) {
   view.crop_width = narrow<uint>(window[1] - window[0]);
   view.crop_height = narrow<uint>(window[3] - window[2]);
 
-  const std::array<double, 4> screen = screen_window_of(camera, film);
-  const bool is_parallel = camera.fov == 0;
-  const double unit = is_parallel ? 1 : std::tan(camera.fov / 2);  // half the shorter side, at distance 1
-
   CameraRecord& record = out.camera;
   record = CameraRecord{};
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c) record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
-  record.screen_min_x = static_cast<float>(unit * screen[0]);
-  record.screen_min_y = static_cast<float>(unit * screen[3]);
-  record.screen_per_pixel_x = static_cast<float>(unit * (screen[1] - screen[0]) / film.width);
-  record.screen_per_pixel_y = static_cast<float>(unit * (screen[2] - screen[3]) / film.height);
-  record.lens_radius = static_cast<float>(camera.lens_radius);
-  record.focal_distance = static_cast<float>(camera.focal_distance);
+  std::array<double, 4> plane{0, 1, 1, 0};  // of spherical cameras: the unit square, y down
+  if (const auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
+    const bool is_equal_area = spherical->mapping == SphericalProjection::Mapping::equal_area;
+    record.kind = is_equal_area ? camera_equal_area : camera_equirectangular;
+  } else {
+    plane = image_plane_of(camera, film);
+    record.kind = is_orthographic(camera) ? camera_orthographic : camera_perspective;
+    record.lens_radius = static_cast<float>(camera.lens_radius);
+    record.focal_distance = static_cast<float>(camera.focal_distance);
+  }
+  record.plane_x = static_cast<float>(plane[0]);
+  record.plane_y = static_cast<float>(plane[3]);
+  record.per_pixel_x = static_cast<float>((plane[1] - plane[0]) / film.width);
+  record.per_pixel_y = static_cast<float>((plane[2] - plane[3]) / film.height);
   record.medium = camera.medium.value_or(CAPLET_NONE);
-  record.origins = is_parallel ? CAPLET_ORTHOGRAPHIC : camera.lens_radius > 0 ? 1 : 0;
+  record.origins = is_orthographic(camera) || record.lens_radius > 0 ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
-  FlatView view;
-  lower_camera(scene, view);
-  const CameraRecord& camera = view.camera;
-  const float* m = camera.world_from_camera;
-  // In double from the numbers the device has.
-  glm::dvec3 local(camera.screen_min_x + (x + 0.5) * camera.screen_per_pixel_x,
-                   camera.screen_min_y + (y + 0.5) * camera.screen_per_pixel_y, 1);
-  glm::dvec3 origin(m[3], m[7], m[11]);
-  if (camera.origins == CAPLET_ORTHOGRAPHIC) {
-    for (int r = 0; r < 3; ++r) origin[r] += m[4 * r] * local.x + m[4 * r + 1] * local.y;
-    local = {0, 0, 1};
-  }
-  glm::dvec3 direction;
-  for (int r = 0; r < 3; ++r) direction[r] = m[4 * r] * local.x + m[4 * r + 1] * local.y + m[4 * r + 2] * local.z;
-  direction = glm::normalize(direction);
+  const CameraRay of = unproject(scene.camera, scene.film, {x + 0.5, y + 0.5});
+  const glm::dmat4& world = scene.camera.world_from_camera;
+  const glm::dvec3 origin(world * glm::dvec4(of.origin, 1)), direction = glm::normalize(glm::dmat3(world) * of.direction);
   RayRecord ray{};
   ray.ox = static_cast<float>(origin.x) + 0.0f;  // no -0
   ray.oy = static_cast<float>(origin.y) + 0.0f;

@@ -15,7 +15,7 @@ namespace caplet {
 void lower_camera(const Scene& scene, FlatView& out);
 
 /// The ray through the middle of pixel (x, y) of the full image, from the top left, and the middle of the lens: world space, unit
-/// direction, t in (0, infinity). What kernels/math/camera.cl makes of it, up to rounding.
+/// direction, t in (0, infinity). What kernels/camera/camera.cl makes of it, up to rounding.
 RayRecord ray_of_pixel(const Scene& scene, int x, int y);
 
 }  // namespace caplet

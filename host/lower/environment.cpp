@@ -93,11 +93,7 @@ glm::dvec3 environment_direction(bool equal_area, double u, double v) {
     const double theta = pi * v, phi = 2 * pi * u;
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
   }
-  const double a = std::abs(2 * u - 1), b = std::abs(2 * v - 1);
-  const double fold = 1 - (a + b), r = 1 - std::abs(fold);
-  const double phi = pi / 4 * (r > 0 ? (b - a) / r + 1 : 1), across = r * std::sqrt(2 - r * r);
-  return {std::copysign(across * std::cos(phi), 2 * u - 1), std::copysign(across * std::sin(phi), 2 * v - 1),
-          std::copysign(1 - r * r, fold)};
+  return sphere_from_square({u, v});
 }
 
 void append_texels(const EnvironmentImage& image, FlatScene& out) {
@@ -117,11 +113,9 @@ void append_texels(const EnvironmentImage& image, FlatScene& out) {
 glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
   double u, v;
   if (image.equal_area) {
-    // sphere_to_square of kernels/lights/environment.cl.
-    const double r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
-    const double b = r * std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi, a = r - b;
-    u = 0.5 * (std::copysign(d.z < 0 ? 1 - b : a, d.x) + 1);
-    v = 0.5 * (std::copysign(d.z < 0 ? 1 - a : b, d.y) + 1);
+    const glm::dvec2 uv = square_from_sphere(d);
+    u = uv.x;
+    v = uv.y;
   } else {
     u = std::atan2(d.y, d.x) / (2 * pi);
     if (u < 0) u += 1;

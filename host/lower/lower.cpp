@@ -3,6 +3,8 @@
 #include "lower/lower.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 
 #include "base/check.h"
@@ -28,14 +30,64 @@ Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), 
   flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+namespace {
+
+void lower_sampler(const SamplerSettings& sampler, ViewRecord& out) {
+  using enum SamplerSettings::Kind;
+  out.seed = sampler.seed;
+  switch (sampler.kind) {
+    case sobol:
+      out.sampler = sampler_sobol;
+      break;
+    case independent:
+      out.sampler = sampler_independent;
+      break;
+    case stratified: {
+      const std::array<int, 2> strata = strata_of(sampler);
+      out.sampler = sampler_stratified;
+      out.sampler_x = narrow<uint>(strata[0]);
+      out.sampler_y = narrow<uint>(strata[1]);
+      if (!sampler.jitter) out.strategy |= CAPLET_STRATEGY_UNJITTERED;
+      break;
+    }
+    case zsobol:
+      out.sampler = sampler_zsobol;
+      out.sampler_x = narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));
+      break;
+  }
+}
+
+void lower_integrator(const IntegratorSettings& integrator, ViewRecord& out) {
+  using enum IntegratorSettings::Kind;
+  out.max_depth = narrow<uint>(integrator.max_depth);
+  switch (integrator.kind) {
+    case path:
+      break;
+    case ambient_occlusion:
+      out.strategy |= CAPLET_STRATEGY_OCCLUSION | (integrator.cosine_sample ? 0 : CAPLET_STRATEGY_UNIFORM);
+      out.max_distance = static_cast<float>(integrator.max_distance);
+      out.max_depth = 1;
+      break;
+    case simple_path:
+      out.strategy |= integrator.sample_lights ? CAPLET_STRATEGY_NO_MIS : CAPLET_STRATEGY_NO_LIGHTS;
+      if (!integrator.sample_bsdf) out.strategy |= CAPLET_STRATEGY_UNIFORM;
+      break;
+    case random_walk:
+      out.strategy |= CAPLET_STRATEGY_NO_LIGHTS | CAPLET_STRATEGY_UNIFORM | CAPLET_STRATEGY_SPHERE;
+      break;
+  }
+}
+
+}  // namespace
+
 FlatScene lower(const Scene& scene) { return std::move(Lowering(scene).flat); }
 
 FlatView lower_view(const Scene& scene) {
   FlatView out;
   lower_camera(scene, out);
   lower_filter(scene.filter, out);
-  out.view.seed = scene.sampler.seed;
-  out.view.max_depth = narrow<uint>(scene.integrator.max_depth);
+  lower_sampler(scene.sampler, out.view);
+  lower_integrator(scene.integrator, out.view);
   if (scene.film.max_component_value > 0)
     out.view.sample_limit =
         static_cast<float>(scene.film.max_component_value / (scene.film.exposure_time * scene.film.iso / 100));

@@ -77,8 +77,9 @@ ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
 BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag) {
   const auto& [scene, bounds] = sight;
   if (bounds.empty()) throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
+  if (is_spherical(scene.camera)) throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
-  const double footprint = pixel_footprint(scene, middle);
+  const double footprint = pixel_footprint(scene.camera, scene.film, middle);
   if (!(footprint > 0)) throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");
   const auto own = unit_named(scene.unit);
   double per_unit = 1;  // scene units in what the bar is told in
@@ -94,7 +95,7 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
   const double length = asked.length > 0 ? asked.length : round_length(kMostOfWidth * scene.film.width * footprint / per_unit);
   out.pixels = length * per_unit / footprint;
   out.label = label.empty() ? fmt::format("{:g}", length) : fmt::format("{:g} {}", length, label);
-  if (scene.camera.fov != 0) {
+  if (!is_orthographic(scene.camera)) {
     const glm::dmat4& m = scene.camera.world_from_camera;
     out.distance = glm::dot(middle - glm::dvec3(m[3]), glm::normalize(glm::dvec3(m[2])));
   }

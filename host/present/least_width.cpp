@@ -3,7 +3,6 @@
 #include "present/least_width.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -13,29 +12,6 @@
 namespace caplet {
 
 namespace {
-
-/// What a camera's pixels cover.
-class Footprints {
- public:
-  explicit Footprints(const Scene& scene) : camera_(scene.camera) {
-    const std::array<double, 4> window = screen_window_of(camera_, scene.film);
-    const double unit = camera_.fov == 0 ? 1 : std::tan(camera_.fov / 2);
-    at_one_ = unit * std::min((window[1] - window[0]) / scene.film.width, (window[3] - window[2]) / scene.film.height) *
-              glm::length(glm::dvec3(camera_.world_from_camera[0]));
-    forward_ = glm::normalize(glm::dvec3(camera_.world_from_camera[2]));
-    scale_ = glm::length(glm::dvec3(camera_.world_from_camera[2]));
-  }
-  double at(const glm::dvec3& point) const {
-    if (camera_.fov == 0) return at_one_;
-    const double away = glm::dot(point - glm::dvec3(camera_.world_from_camera[3]), forward_) / scale_;
-    return away > 0 ? at_one_ * away : 0;
-  }
-
- private:
-  const Camera& camera_;
-  double at_one_ = 0, scale_ = 1;
-  glm::dvec3 forward_{0, 0, 1};
-};
 
 /// The least stretch of a matrix: its smallest singular value, by power iteration on the inverse of its Gram matrix.
 double least_stretch(const glm::dmat4& m) {
@@ -50,7 +26,7 @@ struct Place {
   double stretch;
 };
 
-std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Footprints& footprints, double pixels) {
+std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Scene& scene, double pixels) {
   auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   auto* sphere = std::get_if<SphereShape>(&shape.geometry);
   if ((!capsules && !sphere) || worlds.empty()) return 0;
@@ -63,7 +39,9 @@ std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Foo
     double radius = 0;
     for (const Place& place : places)
       radius =
-          std::max(radius, 0.5 * pixels * footprints.at(glm::dvec3(place.world_from_shape * glm::dvec4(p, 1))) / place.stretch);
+          std::max(radius, 0.5 * pixels *
+                               pixel_footprint(scene.camera, scene.film, glm::dvec3(place.world_from_shape * glm::dvec4(p, 1))) /
+                               place.stretch);
     return radius;
   };
   std::size_t grown = 0;
@@ -93,18 +71,15 @@ std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Foo
 
 }  // namespace
 
-double pixel_footprint(const Scene& scene, const glm::dvec3& point) { return Footprints(scene).at(point); }
-
 std::size_t widen_to_least(Scene& scene) {
   const double pixels = scene.film.least_width;
   if (!(pixels > 0)) return 0;
-  const Footprints footprints(scene);
   std::size_t grown = 0;
-  for (Shape& shape : scene.shapes) grown += widen(shape, {glm::dmat4(1)}, footprints, pixels);
+  for (Shape& shape : scene.shapes) grown += widen(shape, {glm::dmat4(1)}, scene, pixels);
   std::vector<std::vector<glm::dmat4>> placed(scene.objects.size());
   for (const Instance& instance : scene.instances) placed.at(instance.object).push_back(instance.world_from_object);
   for (std::size_t i = 0; i < placed.size(); ++i)
-    for (Shape& shape : scene.objects[i].shapes) grown += widen(shape, placed[i], footprints, pixels);
+    for (Shape& shape : scene.objects[i].shapes) grown += widen(shape, placed[i], scene, pixels);
   return grown;
 }
 

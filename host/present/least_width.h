@@ -4,15 +4,9 @@
 // Lines thinner than a pixel, drawn as wide as they can be seen.
 #pragma once
 
-#include <glm/vec3.hpp>
-
 #include "scene/scene.h"
 
 namespace caplet {
-
-/// The length, in scene units, that a pixel covers across the view at a point before the camera; 0 at and behind it. The pixel's
-/// shorter side; the camera is a similarity.
-double pixel_footprint(const Scene& scene, const glm::dvec3& point);
 
 /// Makes every capsule and sphere of the scene, its film and camera as they are, at least FilmSettings::least_width pixels wide:
 /// a radius below half of that many footprints at its end's (sphere's) middle becomes it. In objects the footprints are the

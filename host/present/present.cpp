@@ -196,11 +196,11 @@ View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
   return scene.has_no_up && !framing.up && !framing.toward_viewer ? along_image(view, balls, aspect) : view;
 }
 
-void set_camera(Scene& scene, const View& view, const glm::dvec3& eye, double fov) {
+void set_camera(Scene& scene, const View& view, const glm::dvec3& eye, const Projection& projection) {
   scene.camera = Camera{};
   scene.camera.world_from_camera =
       glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
-  scene.camera.fov = fov;
+  scene.camera.projection = projection;
   scene.automatic_camera = true;
 }
 
@@ -217,7 +217,7 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
   if (!(per_pixel > 0)) per_pixel = 1 / width;  // a point
   const double away = 2 * std::max({half.x, half.y, half.z});
-  set_camera(scene, view, middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward, 0);
+  set_camera(scene, view, middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward, OrthographicProjection{});
   const double x = 0.5 * per_pixel * width, y = 0.5 * per_pixel * height;
   scene.camera.screen_window = {-x, x, -y, y};
 }
@@ -254,7 +254,7 @@ void frame_camera(Scene& scene) {
   const double x = (horizontal.right - horizontal.left) / (2 * horizontal.cosine);
   const double y = (vertical.right - vertical.left) / (2 * vertical.cosine);
   const glm::dvec3 eye = x * view.right + y * view.up + z * view.forward;
-  set_camera(scene, view, eye, kFieldOfView);
+  set_camera(scene, view, eye, PerspectiveProjection{kFieldOfView});
 }
 
 Bounds bounds_or_unit_of(const Scene& scene) {

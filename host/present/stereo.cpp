@@ -13,11 +13,11 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   const glm::dvec3 right(camera.world_from_camera[0]), forward(camera.world_from_camera[2]);
   const double side = eye == Eye::left ? -0.5 : 0.5;
   camera.world_from_camera[3] += glm::dvec4(side * stereo.separation * glm::normalize(right), 0);
-  if (!stereo.convergence || camera.fov == 0) return camera;  // of parallel rays all is at one depth
+  if (!stereo.convergence || fov_of(camera) == 0) return camera;  // there is no image plane at a distance
   // By similar triangles, in the camera's own units, which transforms may stretch: what was in the middle at that distance is as
   // far to the other side as the eye has moved.
   const double across = side * stereo.separation / glm::length(right), away = *stereo.convergence / glm::length(forward);
-  const double shift = across / (away * std::tan(camera.fov / 2));
+  const double shift = across / (away * std::tan(fov_of(camera) / 2));
   std::array<double, 4> window = screen_window_of(camera, scene.film);
   window[0] -= shift;
   window[1] -= shift;

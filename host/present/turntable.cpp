@@ -65,7 +65,7 @@ Turntable::Turntable(const Scene& scene) : camera_(scene.camera), is_automatic_(
     nearest[main] = axis_[main] < 0 ? -1 : 1;
     axis_ = nearest;
   }
-  if (is_automatic_ && camera_.fov > 0) step_back(scene);
+  if (is_automatic_ && fov_of(camera_) > 0) step_back(scene);
 }
 
 void Turntable::step_back(const Scene& scene) {
@@ -86,7 +86,7 @@ void Turntable::step_back(const Scene& scene) {
       glm::normalize(glm::cross(axis_, std::abs(axis_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(axis_, across);
   const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
-  const double half = std::tan(camera_.fov / 2) * (1 - frame_margin);
+  const double half = std::tan(fov_of(camera_) / 2) * (1 - frame_margin);
   const double rim = swept.radius / std::cos(std::numbers::pi / kSides);
   double distance = 0;
   for (const double along : {swept.low, swept.high})

@@ -5,13 +5,16 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace caplet {
 
-std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film) {
-  const double aspect = camera.frame_aspect_ratio.value_or(static_cast<double>(film.width) / film.height);
-  const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
-  return camera.screen_window.value_or(std::array<double, 4>{-x, x, -y, y});
+std::array<int, 2> strata_of(const SamplerSettings& sampler) {
+  const int samples = sampler.samples_per_pixel;
+  if (std::int64_t{sampler.x_strata} * sampler.y_strata == samples) return {sampler.x_strata, sampler.y_strata};
+  int across = static_cast<int>(std::sqrt(static_cast<double>(samples)));
+  while (samples % across != 0) --across;
+  return {across, samples / across};
 }
 
 Bounds bounds_of(const Scene& scene) {

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,7 +19,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/backdrop.h"
+#include "scene/camera.h"
+#include "scene/film.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/medium.h"
@@ -40,46 +42,32 @@ struct Instance {
   SourceLocation where;
 };
 
-// --- Camera, film, sampler, integrator ---
-
-struct Camera {
-  glm::dmat4 world_from_camera{1};  // camera space: +x right, +y up, +z forward
-  double fov = 1.5707963267948966;  // of the shorter image side, full angle; 0: orthographic, the screen window in scene units
-  std::optional<double> frame_aspect_ratio;
-  std::optional<std::array<double, 4>> screen_window;  // x min, x max, y min, y max
-  double lens_radius = 0;
-  double focal_distance = 1e6;
-  std::optional<std::uint32_t> medium = {};  // where no solid holds the camera: index into Scene::media
-};
-
-struct PixelFilter {
-  enum class Kind { box, triangle, gaussian, mitchell, sinc } kind = Kind::gaussian;
-  double radius_x = 1.5, radius_y = 1.5;  // pixels
-  double sigma = 0.5;                     // gaussian
-  double b = 1.0 / 3, c = 1.0 / 3;        // mitchell
-  double tau = 3;                         // sinc: cycles until the window's zero
-};
-
-struct FilmSettings {
-  int width = 1280, height = 720;
-  std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
-  std::string filename;                    // as the scene file states it
-  double iso = 100, exposure_time = 1;     // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
-  double max_component_value = 0;          // of a sample's exposed XYZ; 0: none
-  double white_balance = 0;                // kelvin: this daylight becomes the colour space's white; 0: nothing does
-  ColorSpace space = ColorSpace::srgb;
-  std::optional<Backdrop> backdrop = {};
-  double least_width = 0;  // pixels: capsules and spheres are drawn no thinner (present/least_width.h); 0: as they are
-};
+// --- Sampler, integrator ---
 
 struct SamplerSettings {
+  enum class Kind { sobol, independent, stratified, zsobol } kind = Kind::sobol;
   int samples_per_pixel = 16;
   std::uint32_t seed = 0;
+  int x_strata = 4, y_strata = 4;  // stratified, where their product is samples_per_pixel; else strata_of divides it
+  bool jitter = true;              // stratified
 };
 
+/// Names in scene files, by SamplerSettings::Kind.
+inline constexpr std::array sampler_names = {"sobol", "independent", "stratified", "zsobol"};
+
+/// Strata along x and y whose product is samples_per_pixel: the sampler's own, or else those nearest to a square.
+std::array<int, 2> strata_of(const SamplerSettings& sampler);
+
 struct IntegratorSettings {
-  int max_depth = 5;
+  enum class Kind { path, ambient_occlusion, simple_path, random_walk } kind = Kind::path;
+  int max_depth = 5;                                              // scattering events
+  double max_distance = std::numeric_limits<double>::infinity();  // ambient occlusion, scene units
+  bool cosine_sample = true;                                      // ambient occlusion: else directions are uniform
+  bool sample_bsdf = true, sample_lights = true;                  // simple path
 };
+
+/// Names in scene files, by IntegratorSettings::Kind.
+inline constexpr std::array integrator_names = {"path", "ambientocclusion", "simplepath", "randomwalk"};
 
 /// How the automatic camera looks, where it is told.
 struct Framing {
@@ -116,9 +104,6 @@ struct Scene {
   std::string unit;               // of lengths, as people write it ("µm"); empty: not known
   std::optional<Legend> legend;   // of its colours
 };
-
-/// The camera's screen window: its own, or that of its or the film's aspect ratio.
-std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film);
 
 /// Of all shapes where they lie, instances among them.
 Bounds bounds_of(const Scene& scene);

@@ -552,8 +552,9 @@ class Validator {
     medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
-    if (!(c.fov >= 0 && c.fov < 3.14159265358979))
-      error(file, "the camera's field of view must be from 0 (orthographic) to below 180 degrees");
+    const auto* perspective = std::get_if<PerspectiveProjection>(&c.projection);
+    if (perspective && !(perspective->fov > 0 && perspective->fov < 3.14159265358979))
+      error(file, "the camera's field of view must lie between 0 and 180 degrees");
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius))) error(file, "the camera's lens radius must be from 0 up");
     if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))
       error(file, "the camera's focal distance must be positive");
@@ -570,6 +571,7 @@ class Validator {
             "the image of " + std::to_string(f.width) + " x " + std::to_string(f.height) + " pixels is larger than 2^28 pixels");
     if (scene_.sampler.samples_per_pixel <= 0) error(file, "the samples per pixel must be positive");
     if (scene_.integrator.max_depth < 0) error(file, "the depth must not be negative");
+    if (!(scene_.integrator.max_distance > 0)) error(file, "the integrator's greatest distance must be positive");
     if (!(scene_.filter.radius_x > 0 && scene_.filter.radius_y > 0)) error(file, "the pixel filter's radius must be positive");
   }
 

@@ -537,12 +537,29 @@ void visit_form(FormFields& fields, ViewEdit& view, Part::Kind of) {
     }
     if (filter.kind == PixelFilter::Kind::sinc) fields.number("tau", filter.tau, 0, 64);
   } else if (of == Part::Kind::sampler) {
+    int kind = static_cast<int>(view.sampler.kind);
+    fields.choice(kind_field, kind, {sampler_names.begin(), sampler_names.end()});
+    view.sampler.kind = static_cast<SamplerSettings::Kind>(kind);
     fields.whole("pixelsamples", view.sampler.samples_per_pixel, 1, 1 << 24);
+    if (view.sampler.kind == SamplerSettings::Kind::stratified) fields.flag("jitter", view.sampler.jitter);
     int seed = static_cast<int>(view.sampler.seed);  // as scene files say it
     fields.whole("seed", seed, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
     view.sampler.seed = static_cast<std::uint32_t>(seed);
   } else {
-    fields.whole("maxdepth", view.integrator.max_depth, 0, 10000);
+    IntegratorSettings& integrator = view.integrator;
+    int kind = static_cast<int>(integrator.kind);
+    fields.choice(kind_field, kind, {integrator_names.begin(), integrator_names.end()});
+    integrator.kind = static_cast<IntegratorSettings::Kind>(kind);
+    if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) {
+      fields.flag("cossample", integrator.cosine_sample);
+      fields.number("maxdistance", integrator.max_distance, 0, infinity);
+      return;
+    }
+    fields.whole("maxdepth", integrator.max_depth, 0, 10000);
+    if (integrator.kind == IntegratorSettings::Kind::simple_path) {
+      fields.flag("samplebsdf", integrator.sample_bsdf);
+      fields.flag("samplelights", integrator.sample_lights);
+    }
   }
 }
 

@@ -11,7 +11,7 @@ namespace caplet::view {
 
 namespace {
 
-constexpr double usual_fov = 0.7;  // of an orthographic camera that becomes a perspective one
+constexpr double usual_fov = 0.7;  // of an orthographic or spherical camera that becomes a perspective one
 
 }  // namespace
 
@@ -21,10 +21,10 @@ Look look_of_scene(const Scene& scene) {
   out.width = scene.film.width;
   out.height = scene.film.height;
   out.world_from_camera = camera.world_from_camera;
-  out.fov = camera.fov > 0 ? camera.fov : usual_fov;
+  out.fov = fov_of(camera) > 0 ? fov_of(camera) : usual_fov;
   out.lens_radius = camera.lens_radius;
   out.focal_distance = camera.focal_distance;
-  if (camera.fov > 0) return out;
+  if (!is_orthographic(camera)) return out;
   const std::array<double, 4> window = screen_window_of(camera, scene.film);
   out.orthographic = 0.5 * std::min(window[1] - window[0], window[3] - window[2]);
   return out;
@@ -33,13 +33,13 @@ Look look_of_scene(const Scene& scene) {
 ViewEdit shown_view(const ViewEdit& own, const Look& look, int scale, int eye) {
   ViewEdit view = own;
   view.camera.world_from_camera = look.world_from_camera;
-  view.camera.fov = look.fov;
+  view.camera.projection = PerspectiveProjection{look.fov};
   view.camera.lens_radius = look.lens_radius;
   view.camera.focal_distance = look.focal_distance;
   if (look.orthographic > 0) {
     const double pixel = look.orthographic / std::min(look.width, look.height);
     const double x = pixel * look.width, y = pixel * look.height;
-    view.camera.fov = 0;
+    view.camera.projection = OrthographicProjection{};
     view.camera.screen_window = {-x, x, -y, y};
   }
   view.film.crop.reset();

@@ -48,6 +48,20 @@ enum {
 };
 
 enum {
+#define CAMERA(name) camera_##name,
+#include "shared/cameras.def"
+#undef CAMERA
+  camera_count
+};
+
+enum {
+#define SAMPLER(name) sampler_##name,
+#include "shared/samplers.def"
+#undef SAMPLER
+  sampler_count
+};
+
+enum {
 #define TEXTURE(name) texture_##name,
 #include "shared/textures.def"
 #undef TEXTURE
@@ -182,7 +196,12 @@ enum {
 #ifdef __cplusplus
 }
 #endif
-// CameraRecord::origins of parallel rays
-#define CAPLET_ORTHOGRAPHIC 2u
+// ViewRecord::strategy: which directions a path takes, and how it finds lights.
+#define CAPLET_STRATEGY_NO_MIS 1u         // light samples and scattered rays are not weighted against each other
+#define CAPLET_STRATEGY_NO_LIGHTS 2u      // lights are not sampled
+#define CAPLET_STRATEGY_UNIFORM 4u        // directions are uniform, not those of the BSDF
+#define CAPLET_STRATEGY_SPHERE 8u         // uniform over the whole sphere, even of opaque surfaces
+#define CAPLET_STRATEGY_OCCLUSION 16u     // ambient occlusion
+#define CAPLET_STRATEGY_UNJITTERED 32u    // stratified samples lie in the middles of their strata
 
 #endif

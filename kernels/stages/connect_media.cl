@@ -18,7 +18,7 @@ static void stage_item(const Stage* g, uint item) {
   const float2 pdfs = g->immersion.shadow_pdfs[path];
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
-  const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {hash_combine(path_hash(at, g->carried.path_flags[path]), 0x5bd1e995u), 0u};
   MediumWeights weights;
   weights.throughput = g->shadows.path_shadow_radiance[path];

@@ -10,7 +10,7 @@
 #ifndef CAPLET_STAGES_PATH_CL
 #define CAPLET_STAGES_PATH_CL
 
-#include "math/rng.cl"
+#include "samplers/samplers.cl"
 #include "shared/records.h"
 
 // path_flags
@@ -37,11 +37,16 @@ enum {
 #define CAMERA_SAMPLE(name) camera_dimension_##name
 #define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
 
-typedef struct {
-  uint x, y;  // pixel of the full image
-  uint sample;
-  uint seed;  // of the pixel
-} PathSample;
+// The density of a scattered direction, as it is weighted against that of light samples. Without such weights it is so small that
+// scattered rays find only lights that samples cannot.
+static inline float path_pdf(__global const ViewRecord* view, float pdf) {
+  return (view->strategy & CAPLET_STRATEGY_NO_MIS) != 0u ? 0x1p-60f : pdf;
+}
+
+// PATH_SPECULAR where what is hit next counts in full.
+static inline uint path_flag(__global const ViewRecord* view, int specular) {
+  return specular || (view->strategy & CAPLET_STRATEGY_NO_LIGHTS) != 0u ? PATH_SPECULAR : 0u;
+}
 
 // A key for numbers that a scattering takes beside those of dimensions.def.
 static inline uint path_hash(PathSample at, uint depth) {
@@ -65,14 +70,9 @@ static inline uint path_number(__global const BatchRecord* batch, uint pixel, ui
 }
 
 // Of path number `path` of a batch.
-static inline PathSample path_sample(__global const BatchRecord* batch, uint seed, uint path) {
+static inline PathSample path_sample(__global const BatchRecord* batch, __global const ViewRecord* view, uint path) {
   const uint2 pixel = batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
-  PathSample s;
-  s.x = pixel.x;
-  s.y = pixel.y;
-  s.sample = batch->sample_begin + (batch->by_sample ? path / batch->pixel_count : path % batch->sample_count);
-  s.seed = pixel_seed(s.x, s.y, seed);
-  return s;
+  return sample_of_pixel(view, pixel.x, pixel.y, batch->sample_begin + (batch->by_sample ? path / batch->pixel_count : path % batch->sample_count));
 }
 
 // The ray of a path that goes on from a point.
@@ -89,7 +89,7 @@ static inline RayRecord path_onward(float3 origin, float3 direction) {
 static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
   const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));
   if (depth < 3 || survival >= 1.0f) return 1;
-  if (sampler_1d(at.seed, at.sample, SCATTERING_SAMPLE(roulette, depth)) >= survival) return 0;
+  if (sampler_1d(at, SCATTERING_SAMPLE(roulette, depth)) >= survival) return 0;
   *throughput /= survival;
   return 1;
 }

@@ -19,10 +19,14 @@
 #include "stages/media.cl"
 #endif
 
-// CIE XYZ under the white of the film's colour space, whatever lights there are: a white surface has albedo 1 1 1.
+// The white of the film's colour space, of luminance 1.
+static inline float4 film_white(const Stage* g, float4 wavelengths) {
+  return spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
+}
+
+// CIE XYZ under white, whatever lights there are: a white surface has albedo 1 1 1.
 static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
-  const float4 white = spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
-  return xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * white, wavelengths, pdfs);
+  return xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * film_white(g, wavelengths), wavelengths, pdfs);
 }
 
 // Number in the object-id layer: the shape's, or that of the instance which holds it.
@@ -89,6 +93,7 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   if (crosses && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
+  bsdf_pdf = path_pdf(g->view.view, bsdf_pdf);
 #ifdef SHADE_IN_MEDIA
   const float weight = 1.0f;  // connect_media knows it
   media_shadow(g, path, hit, s, wo, &light, bsdf_pdf);
@@ -102,6 +107,48 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   g->shadows.path_shadow_target[path] = target;
   g->shadows.path_shadow_radiance[path] = contribution;
   append_shadow(g, out, path);
+}
+
+// Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the integrator asks for it, in place of
+// bsdf_sample: the integrators "simplepath" and "randomwalk". Returns 0 where nothing is scattered there.
+static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_local, float2 u, BsdfSample* s) {
+  const int is_sphere = (strategy & CAPLET_STRATEGY_SPHERE) != 0u || !bsdf_is_opaque(bsdf);
+  const float z = is_sphere ? 1.0f - 2.0f * u.x : copysign(u.x, wo_local.z), across = sqrt(fmax(0.0f, 1.0f - z * z));
+  const float phi = 2.0f * CAPLET_PI * u.y;
+  s->wi = (float3)(across * cos(phi), across * sin(phi), z);
+  s->pdf = CAPLET_INV_PI * (is_sphere ? 0.25f : 0.5f);
+  s->specular = 0;
+  s->transmitted = z * wo_local.z < 0.0f;
+  s->eta_scale = 1.0f;
+  float bsdf_pdf;
+  s->weight = bsdf_eval(bsdf, wo_local, s->wi, &bsdf_pdf) / s->pdf;
+  return max4(s->weight) > 0.0f;
+}
+
+// Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it does not meet within the greatest
+// distance is white.
+static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, const HitRecord* hit, const Surface* s, float3 wo) {
+  __global const ViewRecord* view = g->view.view;
+  const float2 u = sampler_2d(path_sample(g->batch.batch, view, path), SCATTERING_SAMPLE(bsdf, 0));
+  float3 wi_local = sample_cosine_hemisphere(u);
+  if ((view->strategy & CAPLET_STRATEGY_UNIFORM) != 0u) {
+    const float across = sqrt(1.0f - u.x * u.x), phi = 2.0f * CAPLET_PI * u.y;
+    wi_local = (float3)(across * cos(phi), across * sin(phi), u.x);
+    g->carried.path_throughput[path] *= 2.0f * u.x;  // the cosine over pi and the density
+  }
+  const Frame frame = frame_from_normal(dot(wo, s->ng) < 0.0f ? -s->ng : s->ng);
+  const float3 wi = to_world(&frame, wi_local), origin = offset_origin(s->p, s->ng, s->error, wi);
+  RayRecord ray = path_onward(origin, wi);
+  ray.t_max = view->max_distance;
+  g->rays.path_ray[path] = ray;
+  g->carried.path_flags[path] = (1u << PATH_DEPTH_SHIFT) | PATH_SPECULAR;
+#ifdef SHADE_IN_MEDIA
+  media_scattered(g, path, hit, 0);
+#else
+  (void)hit;
+#endif
+  const uint bits = g->batch.batch->sort_bits;
+  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);
 }
 
 #if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
@@ -143,6 +190,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const uint flags = g->carried.path_flags[path];
   const uint depth = flags >> PATH_DEPTH_SHIFT;
   const int specular = (flags & PATH_SPECULAR) != 0;
+  const uint strategy = g->view.view->strategy;
+  const int is_occlusion = (strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
 #ifdef SHADE_IN_MEDIA
   if (hit.slot == CAPLET_SCATTERED) return;
@@ -153,14 +202,19 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #ifdef CAPLET_UNSEEN_SKY
     if (depth == 0u) return;  // a backdrop takes its place
 #endif
-    const float4 sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
+    float4 sky = (float4)(0.0f);
+    if (!is_occlusion)
+      sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
+    else if (depth > 0u)
+      sky = film_white(g, wavelengths);
     g->radiance.path_radiance[path] += throughput * sky;
     return;
   }
 
+  if (is_occlusion && depth > 0u) return;
   Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
   const float3 wo = -direction;
-  if (any_surface_light && s.light != CAPLET_NONE) {
+  if (any_surface_light && s.light != CAPLET_NONE && !is_occlusion) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
@@ -189,8 +243,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   }
   uint material = s.material;
   if (any_choice_material) {
-    const PathSample here = path_sample(g->batch.batch, g->view.view->seed, path);
-    const float u = sampler_2d(here.seed, here.sample, SCATTERING_SAMPLE(roulette, depth)).y;
+    const PathSample here = path_sample(g->batch.batch, g->view.view, path);
+    const float u = sampler_2d(here, SCATTERING_SAMPLE(roulette, depth)).y;
     material = bsdf_chosen(&g->materials, &g->spectra, material, &place, wavelengths, u);
   }
 #ifdef SHADE_IN_MEDIA
@@ -207,6 +261,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float3 wo_local = to_local(&frame, wo);
   Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
+  if (is_occlusion) return send_occlusion_ray(g, out, path, &hit, &s, wo);
 #ifdef SHADE_IN_MEDIA
   const uint within = g->immersion.path_within[path];
   const int is_within = boundary_is_met_within(g, path, &hit);
@@ -224,17 +279,20 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     g->carried.path_wavelength_pdfs[path] = pdfs;
   }
 
-  const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   if (any_stochastic_material) bsdf.random = path_hash(at, depth);
-  const float2 choices = sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth));
+  const float2 choices = sampler_2d(at, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
   const int by_shading = goes_by_shading_normal(&s, &bsdf, bumped);
-  if (g->lights.lighting->sampled_light_count > 0 && !bsdf_is_specular(&bsdf))
+  if (g->lights.lighting->sampled_light_count > 0 && (strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u && !bsdf_is_specular(&bsdf))
     sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, by_shading, wo_local, wo, throughput, wavelengths,
-                 sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
+                 sampler_bits(at, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
 
   BsdfSample sample;
-  if (!bsdf_sample(&bsdf, wo_local, choices.y, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &sample)) return;
+  const float2 u_bsdf = sampler_2d(at, SCATTERING_SAMPLE(bsdf, depth));
+  if ((strategy & CAPLET_STRATEGY_UNIFORM) == 0u ? !bsdf_sample(&bsdf, wo_local, choices.y, u_bsdf, &sample)
+                                                 : !uniform_sample(&bsdf, strategy, wo_local, u_bsdf, &sample))
+    return;
   float3 wi = to_world(&frame, sample.wi);
   int crosses = dot(wi, s.ng) * dot(wo, s.ng) < 0.0f;
   if (sample.transmitted != crosses && !by_shading) {
@@ -244,7 +302,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     crosses = 0;
   }
   throughput *= sample.weight;
-  scatter.x = sample.pdf;
+  scatter.x = path_pdf(g->view.view, sample.pdf);
   scatter.y *= sample.eta_scale;
   scatter.z = as_float(crosses ? s.primitive_light : CAPLET_NONE);
 
@@ -274,7 +332,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #ifdef CAPLET_LIGHT_TREE
   g->carried.path_normal[path] = side;
 #endif
-  g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | (sample.specular ? PATH_SPECULAR : 0u);
+  g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | path_flag(g->view.view, sample.specular);
 #ifdef SHADE_IN_MEDIA
   media_scattered(g, path, &hit, crosses);
 #endif

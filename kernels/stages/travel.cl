@@ -21,7 +21,7 @@ static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene*
   const float4 contribution = throughput * light.radiance * (phase / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;
   set_shadow_held(g, path, held, settled);
-  g->immersion.shadow_pdfs[path] = (float2)(light.pdf, light.delta ? 0.0f : phase);
+  g->immersion.shadow_pdfs[path] = (float2)(light.pdf, light.delta ? 0.0f : path_pdf(g->view.view, phase));
   ShadowTarget target;
   g->shadows.path_shadow[path] = shadow_ray(&light, p, &target);
   g->shadows.path_shadow_target[path] = target;
@@ -52,14 +52,14 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   }
   const Held here = held_before(&g->tree, &g->surfaces, &g->media, &hit, 1, held);
   const uint medium = held_medium(&g->media, &here);
-  if (medium == CAPLET_NONE) return;
+  if (medium == CAPLET_NONE || (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u) return;
 
   const uint within = g->immersion.path_within[path];
   const int is_within = medium_is_within(&g->media, medium);
   const int may_scatter = is_within || depth - within < g->view.view->max_depth;
-  const PathSample at = path_sample(g->batch.batch, g->view.view->seed, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {hash_combine(path_hash(at, depth) ^ 0x2c1b3c6du, as_uint(ray.t_min)), 0u};
-  const float u = ray.t_min == 0.0f ? sampler_1d(at.seed, at.sample, MEDIUM_SAMPLE(depth)) : medium_number(&numbers);
+  const float u = ray.t_min == 0.0f ? sampler_1d(at, MEDIUM_SAMPLE(depth)) : medium_number(&numbers);
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   weights.throughput = g->carried.path_throughput[path];
@@ -87,14 +87,14 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const int settled = t - ray.t_min > ends && hit.t - t > ends;
   g->immersion.path_near[path] = settled ? CAPLET_ALONE : CAPLET_UNSETTLED;
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
-  if (g->lights.lighting->sampled_light_count > 0)
+  if (g->lights.lighting->sampled_light_count > 0 && (g->view.view->strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u)
     sample_medium_light(g, out, &scene, path, p, d, asymmetry, here, settled, throughput, wavelengths,
-                        sampler_bits(at.seed, at.sample, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(light, depth)));
+                        sampler_bits(at, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
 
   float4 scatter = g->carried.path_scatter[path];
   float pdf;
-  const float3 wi = phase_sample(d, asymmetry, sampler_2d(at.seed, at.sample, SCATTERING_SAMPLE(bsdf, depth)), &pdf);
-  scatter.x = pdf;
+  const float3 wi = phase_sample(d, asymmetry, sampler_2d(at, SCATTERING_SAMPLE(bsdf, depth)), &pdf);
+  scatter.x = path_pdf(g->view.view, pdf);
   scatter.z = as_float(CAPLET_NONE);
   if (!path_survives(at, depth, scatter.y, &throughput)) return;
   if (is_within) {
@@ -107,7 +107,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #ifdef CAPLET_LIGHT_TREE
   g->carried.path_normal[path] = CAPLET_NONE;
 #endif
-  g->carried.path_flags[path] = (depth + 1) << PATH_DEPTH_SHIFT;
+  g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | path_flag(g->view.view, 0);
   if (has_cones) {
     const float2 cone = g->cones.path_cone[path];
     g->cones.path_cone[path] = (float2)(fabs(cone.x + cone.y * t), cone.y);

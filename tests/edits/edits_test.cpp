@@ -274,7 +274,7 @@ SceneEdit random_edit(const Scene& scene, Random& random, std::string& what) {
     default: {
       what = "the camera";
       ViewEdit to = view_of(scene);
-      to.camera.fov = random.uniform(0.4, 0.9);
+      to.camera.projection = PerspectiveProjection{random.uniform(0.4, 0.9)};
       to.sampler.seed = static_cast<std::uint32_t>(random.below(100));
       return to;
     }
@@ -460,7 +460,7 @@ TEST_F(OneEdit, AWrongOneChangesNothing) {
   EXPECT_THROW(edited.edit(MaterialEdit{0, DiffuseMaterial{ConstantSpectrum{-1}}}), InputError);
   EXPECT_THROW(edited.edit(EmissionEdit{{{}, 0}, {}}), InputError);
   ViewEdit view = view_of(edited.live.scene());
-  view.camera.fov = 4;
+  view.camera.projection = PerspectiveProjection{4};
   EXPECT_THROW(edited.edit(view), InputError);
   EXPECT_EQ(capsule_at(edited.live.scene(), capsules, 3).p0, was.p0);
   EXPECT_TRUE(std::holds_alternative<PointLight>(edited.live.scene().lights[1].model));
@@ -530,7 +530,7 @@ TEST(EditBytes, OneCapsuleOfMany) {
   EXPECT_LT(edited.device.bytes_updated() - before, 4096u);
   before = edited.device.bytes_updated();
   ViewEdit view = view_of(edited.live.scene());
-  view.camera.fov = 1;
+  view.camera.projection = PerspectiveProjection{1};
   edited.edit(view);
   edited.send();
   EXPECT_EQ(edited.device.bytes_updated(), before);

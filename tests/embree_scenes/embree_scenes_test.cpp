@@ -283,7 +283,7 @@ TEST(EmbreeScenes, MaterialsLightsAndCamera) {
   ASSERT_TRUE(scene.shapes.back().emission);
   EXPECT_EQ(bounds_of(scene.shapes.back()).max, dvec3(2, 2, 0));
   EXPECT_EQ(dvec3(scene.camera.world_from_camera[3]), dvec3(0, 0, -5));
-  EXPECT_NEAR(scene.camera.fov, std::acos(-1.0) / 3, 1e-12);  // over the height, which is the shorter side
+  EXPECT_NEAR(fov_of(scene.camera), std::acos(-1.0) / 3, 1e-12);  // over the height, which is the shorter side
   EXPECT_LT(glm::length(dvec3(scene.camera.world_from_camera[0]) - dvec3(-1, 0, 0)), 1e-12);  // right of what looks along z, y up
 }
 
@@ -348,7 +348,7 @@ TEST(EmbreeScenes, TheViewersOptions) {
   EXPECT_EQ(dvec3(scene.camera.world_from_camera[3]), dvec3(0, 0, -5));
   EXPECT_LT(glm::length(dvec3(scene.camera.world_from_camera[0]) - dvec3(1, 0, 0)), 1e-12);
   EXPECT_EQ(scene.film.height, 512);
-  EXPECT_NEAR(std::tan(scene.camera.fov / 2), 0.5, 1e-12);  // 90 degrees over the height, half as wide
+  EXPECT_NEAR(std::tan(fov_of(scene.camera) / 2), 0.5, 1e-12);  // 90 degrees over the height, half as wide
   EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_TRUE(options("-i v.xml\n").automatic_camera);
   const auto refused = [&](const std::string& text) { return complaint([&] { options(text); }); };

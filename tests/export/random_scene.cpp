@@ -454,7 +454,11 @@ class Maker {
   void camera() {
     scene_.camera.world_from_camera = glm::dmat4(random_.turn());
     scene_.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
-    scene_.camera.fov = random_.uniform(0.3, 1.5);
+    const std::size_t projection = random_.below(4);
+    if (projection < 2) scene_.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
+    if (projection == 2) scene_.camera.projection = OrthographicProjection{};
+    if (projection == 3)
+      scene_.camera.projection = SphericalProjection{static_cast<SphericalProjection::Mapping>(random_.below(2))};
     scene_.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8, random_.uniform(0.5, 1)};
     scene_.camera.lens_radius = random_.uniform(0.01, 0.1);
@@ -465,8 +469,27 @@ class Maker {
     if (scene_.filter.kind == PixelFilter::Kind::sinc) scene_.filter.tau = 2.5;
     scene_.film = {64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7,
                    12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
-    scene_.sampler = {1 + static_cast<int>(random_.below(1000)), static_cast<std::uint32_t>(0xfffffff0u + random_.below(9))};
-    scene_.integrator.max_depth = static_cast<int>(random_.below(20));
+    SamplerSettings& sampler = scene_.sampler;
+    sampler.kind = static_cast<SamplerSettings::Kind>(random_.below(4));
+    sampler.samples_per_pixel = 1 + static_cast<int>(random_.below(1000));
+    sampler.seed = static_cast<std::uint32_t>(0xfffffff0u + random_.below(9));
+    if (sampler.kind == SamplerSettings::Kind::stratified) {
+      sampler.x_strata = 1 + static_cast<int>(random_.below(9));
+      sampler.y_strata = 1 + static_cast<int>(random_.below(9));
+      sampler.samples_per_pixel = sampler.x_strata * sampler.y_strata;
+      sampler.jitter = random_.one_in(2);
+    }
+    IntegratorSettings& integrator = scene_.integrator;
+    integrator.kind = static_cast<IntegratorSettings::Kind>(random_.below(4));
+    integrator.max_depth = static_cast<int>(random_.below(20));
+    if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) {
+      integrator.cosine_sample = random_.one_in(2);
+      if (random_.one_in(2)) integrator.max_distance = random_.uniform(0.1, 10);
+    }
+    if (integrator.kind == IntegratorSettings::Kind::simple_path) {
+      integrator.sample_bsdf = random_.one_in(2);
+      integrator.sample_lights = random_.one_in(2);
+    }
     scene_.automatic_camera = random_.one_in(2);
     scene_.has_no_up = random_.one_in(2);
     if (random_.one_in(2)) scene_.framing.toward_viewer = random_.direction();

@@ -110,7 +110,7 @@ void expect_same(const fs::path& folder) {
   each_written_again(folder, [](const Scene& scene, const Scene& read, const fs::path& file) {
     EXPECT_EQ(text_of(read, file.parent_path()), contents(file));
     EXPECT_EQ(read.camera.world_from_camera, scene.camera.world_from_camera);
-    EXPECT_EQ(read.camera.fov, scene.camera.fov);
+    EXPECT_EQ(fov_of(read.camera), fov_of(scene.camera));
     EXPECT_EQ(count_primitives(read), count_primitives(scene));
     EXPECT_EQ(read.lights.size(), scene.lights.size());
   });
@@ -389,6 +389,7 @@ Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
   EXPECT_THAT(said(ends + "\"float radius\" [1 -1]"), HasSubstr("must not be negative"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2]"), HasSubstr("\"u\" takes two values a capsule, 4, not 3"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2 1e20]"), HasSubstr("\"u\" is too large a number"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [-1e20 1 2 1]"), HasSubstr("\"u\" is too large a number"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\""),
               HasSubstr("needs \"integer materialindices\""));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\" \"integer materialindices\" [0 1]"),

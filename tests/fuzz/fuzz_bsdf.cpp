@@ -126,7 +126,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (int row = 0; row < 3; ++row)
         if (const std::uint8_t byte = numbers.byte(); byte >= 200)
           scene.camera.world_from_camera[column][row] = numbers.coordinate();
-    scene.camera.fov = 3.1 * numbers.fraction();
+    scene.camera.projection = PerspectiveProjection{3.1 * numbers.fraction()};
     scene.camera.lens_radius = numbers.below(2) != 0 ? numbers.length() : 0;
     scene.camera.focal_distance = numbers.length();
     scene.filter.kind = static_cast<PixelFilter::Kind>(numbers.below(4));

@@ -5,7 +5,7 @@
 #include "groups.cl"
 #include "bsdf/bsdf.cl"
 #include "lights/lights.cl"
-#include "math/camera.cl"
+#include "camera/camera.cl"
 #include "math/filter.cl"
 #include "shapes/surface.cl"
 #include "stages/pick_record.cl"

@@ -41,7 +41,7 @@ TEST(Camera, LookAtSeesItsTargetAhead) {
   expect_near(direction_of(m, {0, 0, 1}), {0, 0, 1});
   expect_near(direction_of(m, {0, 1, 0}), {0, 1, 0});
   expect_near(direction_of(m, {1, 0, 0}), {1, 0, 0});
-  EXPECT_DOUBLE_EQ(scene.camera.fov, std::acos(-1.0) / 2);
+  EXPECT_DOUBLE_EQ(fov_of(scene.camera), std::acos(-1.0) / 2);
 }
 
 TEST(Camera, MirroredLookAt) {

@@ -173,6 +173,19 @@ TEST(Csg, OperandsKeepTheirTransformsAndMaterials) {
   EXPECT_EQ(count_primitives(scene), (std::map<std::string, std::uint64_t>{{"csg", 1}}));
 }
 
+// A list of one capsule has the material that its list names, whatever the current one is.
+TEST(Csg, ACapsuleOfAListKeepsItsMaterial) {
+  const Scene scene =
+      world_of(parts +
+               "ObjectBegin \"one\" Shape \"capsules\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 1] \"float radius\" .5"
+               " \"string capsulematerials\" \"a\" \"integer materialindices\" 0 ObjectEnd\n"
+               "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"pin\" \"one\"]");
+  const auto& whole = geometry_of<CsgShape>(scene);
+  EXPECT_EQ(scene.materials.at(whole.operands.at(0)->material).name, "b");
+  EXPECT_EQ(scene.materials.at(whole.operands.at(1)->material).name, "a");
+  EXPECT_TRUE(std::get<CapsulesShape>(whole.operands[1]->geometry).materials.empty());
+}
+
 TEST(Csg, MaterialsOfTheWholeCountAllSurfaces) {
   const Scene scene = world_of(parts +
                                "Shape \"csg\" \"string operation\" \"intersection\" \"string operands\" [\"ball\" \"box\"]\n"

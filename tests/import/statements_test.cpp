@@ -98,12 +98,90 @@ TEST(Integrators, AllThatMakePicturesAreTaken) {
   EXPECT_EQ(depth("Integrator \"sppm\" \"integer maxdepth\" 7 \"float radius\" .02"), 7);
   EXPECT_EQ(depth("Integrator \"bdpt\" \"bool visualizestrategies\" true"), 5);
   EXPECT_EQ(depth("Integrator \"volpath\" \"float rrthreshold\" 0 \"integer maxdepth\" 256"), 256);
-  EXPECT_EQ(depth("Integrator \"randomwalk\" \"integer maxdepth\" 3"), 3);
-  EXPECT_THAT(log.text(), HasSubstr("Integrator \"randomwalk\": rendered by the path tracer, which converges to the same image"));
-  EXPECT_EQ(depth("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3"), 5);
-  EXPECT_THAT(log.text(), HasSubstr("Integrator \"ambientocclusion\": rendered by the path tracer, which gives another image"));
+  EXPECT_EQ(depth("Integrator \"lightpath\" \"integer maxdepth\" 3"), 3);
+  EXPECT_THAT(log.text(), HasSubstr("Integrator \"lightpath\": rendered by the path tracer, which converges to the same image"));
   EXPECT_EQ(depth("Integrator \"volpath\" \"bool regularize\" true"), 5);
   EXPECT_THAT(log.text(), HasSubstr("scene.pbrt:1:22: Integrator \"volpath\": nothing is made rougher than it is"));
+}
+
+TEST(Integrators, AreThoseThatAreNamed) {
+  using Kind = IntegratorSettings::Kind;
+  const auto of = [](const std::string& statement) { return scene_of(statement + "\n" + ball).integrator; };
+  EXPECT_EQ(of("").kind, Kind::path);
+  const IntegratorSettings usual = of("Integrator \"ambientocclusion\"");
+  EXPECT_EQ(usual.kind, Kind::ambient_occlusion);
+  EXPECT_TRUE(usual.cosine_sample);
+  EXPECT_TRUE(std::isinf(usual.max_distance));
+  const IntegratorSettings near = of("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3");
+  EXPECT_FALSE(near.cosine_sample);
+  EXPECT_EQ(near.max_distance, 3);
+  EXPECT_THAT(said_of("Integrator \"ambientocclusion\" \"float maxdistance\" 0\n" + std::string(ball)),
+              HasSubstr("\"maxdistance\" must be positive"));
+  const IntegratorSettings simple = of("Integrator \"simplepath\" \"integer maxdepth\" 4");
+  EXPECT_EQ(simple.kind, Kind::simple_path);
+  EXPECT_EQ(simple.max_depth, 4);
+  EXPECT_TRUE(simple.sample_bsdf && simple.sample_lights);
+  EXPECT_FALSE(of("Integrator \"simplepath\" \"bool samplebsdf\" false").sample_bsdf);
+  EXPECT_FALSE(of("Integrator \"simplepath\" \"bool samplelights\" false").sample_lights);
+  EXPECT_EQ(of("Integrator \"randomwalk\"").kind, Kind::random_walk);
+}
+
+TEST(Samplers, AreThoseThatAreNamed) {
+  using Kind = SamplerSettings::Kind;
+  const auto of = [](const std::string& statement) { return scene_of(statement + "\n" + ball).sampler; };
+  EXPECT_EQ(of("").kind, Kind::sobol);
+  EXPECT_EQ(of("").samples_per_pixel, 16);
+  for (const auto& [name, kind] : {std::pair{"sobol", Kind::sobol},
+                                   {"independent", Kind::independent},
+                                   {"zsobol", Kind::zsobol},
+                                   {"halton", Kind::sobol},
+                                   {"paddedsobol", Kind::sobol},
+                                   {"pmj02bn", Kind::sobol}}) {
+    const SamplerSettings sampler = of(std::string("Sampler \"") + name + "\" \"integer pixelsamples\" 12 \"integer seed\" 5");
+    EXPECT_EQ(sampler.kind, kind) << name;
+    EXPECT_EQ(sampler.samples_per_pixel, 12) << name;
+    EXPECT_EQ(sampler.seed, 5u) << name;
+  }
+  const SamplerSettings usual = of("Sampler \"stratified\"");
+  EXPECT_EQ(usual.kind, Kind::stratified);
+  EXPECT_EQ(usual.samples_per_pixel, 16);
+  EXPECT_TRUE(usual.jitter);
+  const SamplerSettings stratified =
+      of("Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5 \"bool jitter\" false");
+  EXPECT_EQ(stratified.x_strata, 3);
+  EXPECT_EQ(stratified.y_strata, 5);
+  EXPECT_EQ(stratified.samples_per_pixel, 15);
+  EXPECT_FALSE(stratified.jitter);
+  LogOf log;
+  of("Sampler \"halton\"");
+  EXPECT_THAT(log.text(), HasSubstr("Sampler \"halton\": rendered by the sampler \"sobol\", whose noise is another"));
+}
+
+// With a lens, pbrt-v4's orthographic camera is a perspective through its window at the focal distance.
+TEST(Cameras, OrthographicWithALens) {
+  const auto of = [](const std::string& more) {
+    return scene_of("Camera \"orthographic\" \"float screenwindow\" [-3 3 -2 2] \"float focaldistance\" 8" + more + "\n" + ball);
+  };
+  EXPECT_TRUE(is_orthographic(of("").camera));
+  EXPECT_TRUE(is_orthographic(of(" \"float lensradius\" 0.1 \"bool parallellens\" true").camera));
+  LogOf log;
+  const Scene scene = of(" \"float lensradius\" 0.1");
+  EXPECT_THAT(log.text(), HasSubstr("makes a perspective of it, as in pbrt-v4"));
+  const std::array<double, 4> plane = image_plane_of(scene.camera, scene.film);
+  EXPECT_NEAR(8 * plane[0], -3, 1e-12);
+  EXPECT_NEAR(8 * plane[3], 2, 1e-12);
+}
+
+TEST(Cameras, Spherical) {
+  const auto of = [](const std::string& more) {
+    return std::get<SphericalProjection>(scene_of("Camera \"spherical\"" + more + "\n" + ball).camera.projection).mapping;
+  };
+  EXPECT_EQ(of(""), SphericalProjection::Mapping::equal_area);
+  EXPECT_EQ(of(" \"string mapping\" \"equalarea\" \"float lensradius\" 1"), SphericalProjection::Mapping::equal_area);
+  EXPECT_EQ(of(" \"string mapping\" \"equirectangular\""), SphericalProjection::Mapping::equirectangular);
+  EXPECT_THAT(said_of("Camera \"spherical\" \"string mapping\" \"mercator\"\n" + std::string(ball)),
+              HasSubstr("\"mapping\" must be \"equalarea\" or \"equirectangular\""));
+  EXPECT_THAT(said_of("Camera \"spherical\" \"float fov\" 40\n" + std::string(ball)), HasSubstr("unknown parameter \"fov\""));
 }
 
 // Edges of a crop are rounded up: 0.05, 0.55, 0.25 and 0.75 of 10 pixels.
@@ -120,7 +198,7 @@ TEST(Cameras, LensesHaveARadius) {
 }
 
 TEST(Cameras, HalfTheFieldOfView) {
-  EXPECT_NEAR(scene_of("Camera \"perspective\" \"float halffov\" 20 \"float fov\" 10\n" + std::string(ball)).camera.fov,
+  EXPECT_NEAR(fov_of(scene_of("Camera \"perspective\" \"float halffov\" 20 \"float fov\" 10\n" + std::string(ball)).camera),
               40 * 3.14159265358979 / 180, 1e-12);
   EXPECT_THAT(said_of("Camera \"perspective\" \"float halffov\" 90\n" + std::string(ball)),
               HasSubstr("scene.pbrt:1:22: Camera \"perspective\": \"halffov\" must be below 90"));

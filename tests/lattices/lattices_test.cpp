@@ -244,6 +244,9 @@ TEST(Bad3mf, ArchivesThatUnpackToTooMuchAreRefused) {
   const std::string bomb = test::zip_of({{"_rels/.rels", std::string(std::size_t{100} << 20, ' ')}}, true);
   ASSERT_LT(bomb.size(), std::size_t{1} << 20);
   EXPECT_THAT(refusal(bomb), HasSubstr("unpacks to more than"));
+  // 64 MiB may be unpacked of small archives (most_unpacked), to the last byte.
+  const std::string most = test::zip_of({{"_rels/.rels", std::string(std::size_t{64} << 20, ' ')}}, true);
+  EXPECT_THAT(refusal(most), HasSubstr("no XML"));
   // One that lies about its size.
   std::string liar = bomb;
   for (std::size_t at = liar.find(std::string("\0\0\x40\x06", 4)); at != std::string::npos;

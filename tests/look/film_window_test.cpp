@@ -102,7 +102,7 @@ Shape capsules(const std::vector<glm::vec4>& from, const std::vector<glm::vec4>&
 /// How far towards the film's edges points of a ball are seen, 1 at the edge.
 double reach(const Camera& camera, const FilmSettings& film, const glm::dvec4& ball) {
   const glm::dmat4 camera_from_world = glm::inverse(camera.world_from_camera);
-  const double shorter = std::min(film.width, film.height), tangent = std::tan(camera.fov / 2);
+  const double shorter = std::min(film.width, film.height), tangent = std::tan(fov_of(camera) / 2);
   double most = 0;
   for (int i = 0; i < 800; ++i) {  // the golden spiral
     const double h = 1 - (2 * i + 1) / 800.0, phi = i * 2.399963229728653, r = std::sqrt(1 - h * h);

@@ -96,7 +96,7 @@ Scene ball(int width = 400, int height = 200) {
   scene.film.width = width;
   scene.film.height = height;
   scene.unit = "nm";
-  scene.camera.fov = 0;
+  scene.camera.projection = OrthographicProjection{};
   scene.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
   scene.camera.screen_window = {-50, 50, -25, 25};
   return scene;

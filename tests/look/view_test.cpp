@@ -116,7 +116,7 @@ glm::dvec2 pixel_of(const Scene& scene, const glm::dvec3& p) {
 TEST(Orthographic, PointsLieWhereTheyAreDrawn) {
   Scene scene = three_balls(200, 100);
   look(scene, {{"view", "front"}, {"projection", "orthographic"}});
-  EXPECT_EQ(scene.camera.fov, 0);
+  EXPECT_EQ(fov_of(scene.camera), 0);
   // 22 wide and 10 high with a margin of 5 % of the half image on each side: 22 / (0.95 * 200) is more than 10 / (0.95 * 100).
   const double per_pixel = 22 / (0.95 * 200);
   EXPECT_NEAR(pixel_of(scene, {10, 0, 0}).x, 100 + 10 / per_pixel, 1e-9);
@@ -152,7 +152,7 @@ TEST(Perspective, EverythingFitsFromEverySide) {
       Scene scene = three_balls(300, 200);
       look(scene, {{"view", view}, {"up", up}});
       const glm::dmat4 camera_from_world = glm::inverse(scene.camera.world_from_camera);
-      const double tangent = std::tan(scene.camera.fov / 2);
+      const double tangent = std::tan(fov_of(scene.camera) / 2);
       double most = 0;
       for (const glm::vec3& p : test::capsules_of(scene).p0)
         for (int i = 0; i < 2000; ++i) {

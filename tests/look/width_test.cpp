@@ -19,7 +19,7 @@ Scene before_camera() {
   scene.materials.push_back({DiffuseMaterial{}, "m", {}});
   scene.film.width = 200;
   scene.film.height = 100;
-  scene.camera.fov = std::acos(-1.0) / 2;
+  scene.camera.projection = PerspectiveProjection{std::acos(-1.0) / 2};
   CapsulesShape capsules;
   capsules.p0 = {{0, 0, 10}, {0, 0, 10}, {0, 0, -10}};
   capsules.p1 = {{0, 0, 20}, {0, 0, 20}, {0, 0, -10}};
@@ -56,10 +56,10 @@ TEST(LeastWidth, NothingIsAskedNothingGrows) {
 
 TEST(LeastWidth, OrthographicPixelsAreOfOneSize) {
   Scene scene = before_camera();
-  scene.camera.fov = 0;
+  scene.camera.projection = OrthographicProjection{};
   scene.camera.screen_window = {-10, 10, -5, 5};
   scene.film.least_width = 2;
-  EXPECT_DOUBLE_EQ(pixel_footprint(scene, {0, 0, 1000}), 0.1);
+  EXPECT_DOUBLE_EQ(pixel_footprint(scene.camera, scene.film, {0, 0, 1000}), 0.1);
   widen_to_least(scene);
   EXPECT_FLOAT_EQ(test::capsules_of(scene).radius0[0], 0.1F);
   EXPECT_FLOAT_EQ(test::capsules_of(scene).radius0[2], 0.1F);

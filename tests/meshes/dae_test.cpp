@@ -176,6 +176,7 @@ TEST(Collada, MaterialsAreThoseThatAreBound) {
               1e-12);
   EXPECT_NEAR(alpha("<transparent opaque='RGB_ZERO'><color>0.25 0.25 0.25 1</color></transparent>"), 0.75, 1e-6);
   EXPECT_EQ(alpha("<transparent><color>1 1 1 1</color></transparent><transparency><float>0</float></transparency>"), 1);
+  EXPECT_EQ(alpha("<transparent><color>1 1 1 1</color></transparent><transparency><float>3</float></transparency>"), 1);
   EXPECT_EQ(material(with("", "", "#none")).name, "default");
 }
 

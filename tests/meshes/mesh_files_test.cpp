@@ -382,7 +382,7 @@ TEST(Gltf, MaterialsCamerasAndLights) {
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].scale, 1);
   EXPECT_EQ(std::get<PointLight>(scene.lights[0].model).position, glm::dvec3(0, 3, 0));
-  EXPECT_EQ(scene.camera.fov, 0.5);
+  EXPECT_EQ(fov_of(scene.camera), 0.5);
   EXPECT_FALSE(scene.automatic_camera);
   // It looks along -z, y up, x right.
   EXPECT_EQ(glm::dvec3(scene.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)), glm::dvec3(1, 2, 1));
@@ -499,7 +499,7 @@ TEST(Gltf, OrthographicCameras) {
                               R"(,"cameras":[{"type":"orthographic","orthographic":{)" + window + R"("znear":0.1,"zfar":9}}])"));
   };
   const Scene scene = with(R"("xmag":4,"ymag":1,)");
-  EXPECT_EQ(scene.camera.fov, 0);
+  EXPECT_EQ(fov_of(scene.camera), 0);
   EXPECT_EQ(scene.camera.screen_window, (std::array<double, 4>{-4, 4, -1, 1}));
   EXPECT_EQ(scene.film.height, scene.film.width / 4);
   EXPECT_FALSE(scene.automatic_camera);
@@ -571,7 +571,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"d.stl", "solid x\nouter loop\nvertex 0 0 0\nendloop\n", ":4:1:"}, Bad{"e.stl", "solid x\nendsolid x\n", "no faces"},
         Bad{"f.stl", "solid x\nfacet\nbox 1 2\n", ":3:1: 'box'"}, Bad{"a.off", "OFF\n1000000000 1 0\n0 0 0\n", ":3:"},
         Bad{"b.off", "PLY\n", ":1:"}, Bad{"c.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1: there are 1"},
-        Bad{"d.off", "OFF\n1 -1 0\n", ":2:"}, Bad{"a.gltf", "{\n  \"asset\": }", ":2:12:"}, Bad{"b.gltf", "{}", "glTF 2.0"},
+        Bad{"d.off", "OFF\n1 -1 0\n", ":2:"}, Bad{"e.off", "OFF\n-1 0 0\n", "a count is negative"},
+        Bad{"a.gltf", "{\n  \"asset\": }", ":2:12:"}, Bad{"b.gltf", "{}", "glTF 2.0"},
         Bad{"c.gltf", R"({"asset":{"version":"2.0"}})", "no triangles"},
         Bad{"d.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"children":[0]}]})", "cycles"},
         Bad{"e.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"mesh":3}]})", "mesh 3: there are 0"},

@@ -3,9 +3,9 @@
 # Copyright Caplet authors
 """Seeded faults: each is put into a copy of the sources, where the test that it names must fail.
 
-usage: mutants.py [--jobs N] [--write] [NAME...]   run all mutants, or those named; --write: when all are caught, docs/mutants.md
-       mutants.py --check                          is every mutant's place still there, once, its test, and its row in docs/mutants.md?
-       mutants.py --page                           what docs/mutants.md should be. The last two run no test.
+usage: mutants.py [--jobs N] [NAME...]   run all mutants, or those named
+       mutants.py --check                is every mutant's place still there, once, and its test?
+       mutants.py --page                 print a table of all. The last two run no test.
 
 A mutant is an entry of a *.toml file of this folder: `old` is the text of `file` that becomes `new`, `test` a test program and a
 filter of its tests. Kernels are mutated for the device alone (CAPLET_KERNELS), so one of kernels/shared makes host and device differ.
@@ -29,12 +29,6 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(__file__).resolve().parent
-PAGE = ROOT / "docs/mutants.md"
-INTRODUCTION = """# Seeded faults
-
-Written by `./run mutants --write`; [testing](testing.md#mutants) says what they are for. Each of these faults, put into the sources alone, must
-make its test fail.
-"""
 WORK = ROOT / "build/mutants"
 TREE = WORK / "tree"  # the copy of the sources
 BUILD = TREE / "build/release"
@@ -118,7 +112,7 @@ def complaints(mutants):
 
 
 def page(mutants):
-    return "\n".join([INTRODUCTION, "| mutant | file | fault | test |", "|---|---|---|---|", *(m.row() for m in mutants), ""])
+    return "\n".join(["# Seeded faults", "", "| mutant | file | fault | test |", "|---|---|---|---|", *(m.row() for m in mutants), ""])
 
 
 def check():
@@ -126,9 +120,6 @@ def check():
     bad = complaints(mutants)
     for line in bad:
         print(line)
-    if not PAGE.is_file() or PAGE.read_text() != page(mutants):
-        bad.append("docs/mutants.md is not that of the list: ./run mutants --write")
-        print(bad[-1])
     print(f"{len(mutants)} mutants, {len(bad)} complaints")
     return 2 if bad else 0
 
@@ -349,9 +340,8 @@ def main():
     parser = argparse.ArgumentParser(prog="mutants", description="Seeded faults: each must be caught by the test that it names.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="these mutants only")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at the same time")
-    parser.add_argument("--write", action="store_true", help="run all, and write docs/mutants.md when all are caught")
-    parser.add_argument("--check", action="store_true", help="look at the list and docs/mutants.md alone")
-    parser.add_argument("--page", action="store_true", help="print what docs/mutants.md should be")
+    parser.add_argument("--check", action="store_true", help="look at the list alone")
+    parser.add_argument("--page", action="store_true", help="print a table of all mutants")
     options = parser.parse_args()
     if options.check:
         return check()
@@ -363,8 +353,6 @@ def main():
         raise ListError("\n".join(bad))
     if unknown := set(options.names) - {m.name for m in mutants}:
         raise ListError(f"unknown mutants: {', '.join(sorted(unknown))}")
-    if options.write and options.names:
-        raise ListError("--write is for all mutants")
     chosen = [m for m in mutants if not options.names or m.name in options.names]
     start = time.monotonic()
     WORK.mkdir(parents=True, exist_ok=True)
@@ -376,8 +364,6 @@ def main():
     caught = sum(r.startswith(CAUGHT) for r in results.values())
     print(f"\n{caught} of {len(chosen)} mutants caught, {time.monotonic() - start:.0f} s "
           f"(output of their tests: {(WORK / 'logs').relative_to(ROOT)})")
-    if options.write and caught == len(chosen):
-        PAGE.write_text(page(mutants))
     return 0 if caught == len(chosen) else 1
 
 

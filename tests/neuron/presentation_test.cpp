@@ -50,7 +50,7 @@ CapsulesShape cloud(const glm::vec3& half, int count, float radius, unsigned see
 /// edge of the film. By projecting points of the spheres, where the code under test uses planes.
 glm::dvec2 reach(const Scene& scene) {
   const glm::dmat4 camera_from_world = glm::inverse(scene.camera.world_from_camera);
-  const double shorter = std::min(scene.film.width, scene.film.height), tangent = std::tan(scene.camera.fov / 2);
+  const double shorter = std::min(scene.film.width, scene.film.height), tangent = std::tan(fov_of(scene.camera) / 2);
   const glm::dvec2 edge(tangent * scene.film.width / shorter, tangent * scene.film.height / shorter);
   glm::dvec2 most(0);
   const CapsulesShape capsules = test::capsules_of(scene);
@@ -126,7 +126,7 @@ TEST(FramingDegenerate, OneSphereAndOnePointCloudOnALine) {
   add_presentation(sphere);
   const glm::dvec3 eye(sphere.camera.world_from_camera[3]);
   // The sphere touches the margin above and below: sin(angle) = radius / distance.
-  const double angle = std::atan(0.95 * std::tan(sphere.camera.fov / 2));
+  const double angle = std::atan(0.95 * std::tan(fov_of(sphere.camera) / 2));
   EXPECT_NEAR(glm::length(eye), 2 / std::sin(angle), 1e-9);
 
   for (const glm::vec3& along : {glm::vec3(9, 0, 0), glm::vec3(0, 9, 0), glm::vec3(0, 0, 9), glm::vec3(3, 3, 3)}) {
@@ -158,7 +158,7 @@ TEST(Studio, BackgroundIsDimAndEvenInTheFrame) {
   for (const Size size : {Size{960, 540}, Size{540, 960}, Size{512, 512}}) {
     const Scene scene = capsules_scene(cloud({30, 40, 10}, 50, 0.1F, 5), size.width, size.height);
     const glm::dmat3 axes(scene.camera.world_from_camera);
-    const double shorter = std::min(size.width, size.height), tangent = std::tan(scene.camera.fov / 2);
+    const double shorter = std::min(size.width, size.height), tangent = std::tan(fov_of(scene.camera) / 2);
     const glm::dvec3 center = radiance_from(scene, axes[2]);
     EXPECT_GT(center.x, 0.005);
     EXPECT_LT(center.z, 0.1);

@@ -271,7 +271,7 @@ TEST(SwcColors, OfFilesAreTheirs) {
 TEST(SwcColors, OfValuesByOrderIdAndFile) {
   const Paths paths{write_file("tree.swc", tree)};
   const auto last = linear(253, 231, 37), first = linear(68, 1, 84);
-  const fs::path by_order = write_file("order.txt", "# potential (mV)\n0\n10\n0\n0\n0\n0\n0\n0\n0\n");
+  const fs::path by_order = write_file("order.txt", "# potential (mV)\n# of a model\n0\n10\n# spiking\n0\n0\n0\n0\n0\n0\n0\n");
   Scene scene = several(paths, color(by_order.string()));
   EXPECT_LT(glm::length(color_of_segment(scene, 0) - last), 0.01);
   EXPECT_LT(glm::length(color_of_segment(scene, 1) - first), 0.01);

@@ -315,7 +315,7 @@ TEST(RayOfPixel, IsTheDevicesCameraRay) {
     scene.film.crop = {8, 24, 5, 20};
     const FlatView flat = lower_view(scene);
     const std::string source = flatten_kernels(R"(
-#include "math/camera.cl"
+#include "camera/camera.cl"
 __kernel void rays(__global const CameraRecord* camera, uint width, uint count, __global RayRecord* out) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;

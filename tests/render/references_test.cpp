@@ -77,6 +77,9 @@ INSTANTIATE_TEST_SUITE_P(Pbrt, PbrtReferences,
                                          ReferenceScene{"coated", false, 0.005, 0.01, 1, 2},
                                          ReferenceScene{"sheets", false, 0.005, 0.01, 1, 1},
                                          ReferenceScene{"textures", false, 0.005, 0.01, 1, 1},
+                                         ReferenceScene{"orthographic", false, 0.005, 0.01, 1, 1},
+                                         ReferenceScene{"spherical-equalarea", false, 0.005, 0.01, 1, 1},
+                                         ReferenceScene{"spherical-equirectangular", false, 0.005, 0.01, 1, 1},
                                          ReferenceScene{"alpha-normal", false, 0.005, 0.01, 1, 1}),
                          name_of);
 

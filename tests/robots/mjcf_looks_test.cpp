@@ -222,7 +222,7 @@ TEST(MjcfLooks, LightsAndCamerasFollowTheirTargets) {
   EXPECT_NEAR(camera[1].z, 0.42640143, 1e-8);
   EXPECT_NEAR(camera[2].z, -0.90453403, 1e-8);
   EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
-  EXPECT_NEAR(scene.camera.fov, std::acos(-1.0) / 3, 1e-12);
+  EXPECT_NEAR(fov_of(scene.camera), std::acos(-1.0) / 3, 1e-12);
   EXPECT_THAT(complaint([&] {
                 scene_of_text("<worldbody><geom size='1'/><camera name='a'/></worldbody>", {{{"camera", "b"}}});
               }),

@@ -364,6 +364,10 @@ TEST(Mjcf, BadFilesAreRefusedWithTheirPlace) {
   std::string closed = deep + "<geom size='1'/>";
   for (int i = 0; i < 600; ++i) closed += "</body>";
   EXPECT_THAT(said("<worldbody>" + closed + "</worldbody>"), HasSubstr("nested"));
+  std::string classes = "<default>";
+  for (int i = 0; i < 600; ++i) classes += fmt::format("<default class='c{}'>", i);
+  for (int i = 0; i < 601; ++i) classes += "</default>";
+  EXPECT_THAT(said(classes), HasSubstr("default classes are nested too deep"));
 }
 
 /// An L of height 1/2, as a mesh in the file.
@@ -456,6 +460,9 @@ TEST(Mjcf, SolidsAreFittedToMeshes) {
     const Scene rest = scene_of_text(prism("inertia='convex'", "", std::string("<geom size='1'/>") + left_out));
     EXPECT_EQ(rest.shapes.size(), 1U) << left_out;
   }
+  // A square has no volume.
+  const std::string flat = "<asset><mesh name='f' vertex='0 0 0 1 0 0 1 1 0 0 1 0' face='0 1 2 0 2 3'/></asset>";
+  EXPECT_EQ(scene_of_text(flat + "<worldbody><geom size='1'/><geom type='box' mesh='f'/></worldbody>").shapes.size(), 1U);
   EXPECT_THAT(complaint([&] { scene_of_text(prism("", "", "<geom type='box' mesh='m' fitscale='0'/>")); }),
               HasSubstr("fitscale"));
 }

@@ -19,6 +19,7 @@
 #include "device/device.h"
 #include "lower/camera.h"
 #include "lower/detail/filter.h"
+#include "lower/lower.h"
 #include "support/filters.h"
 #include "support/test_device.h"
 
@@ -27,16 +28,17 @@ namespace caplet::test {
 namespace {
 
 const char* const kernel_text = R"(
-#include "math/camera.cl"
+#include "camera/camera.cl"
 #include "math/exact.cl"
 #include "math/filter.cl"
-#include "math/rng.cl"
+#include "samplers/samplers.cl"
 
-__kernel void numbers(uint seed, uint pair, __global float* out, uint count) {
+__kernel void numbers(__global const ViewRecord* view, uint x, uint y, uint dimension, __global float* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  vstore2(sampler_2d(seed, i, pair), i, out);
-  out[2 * count + i] = sampler_1d(seed, i, pair);
+  const PathSample at = sample_of_pixel(view, x, y, i);
+  vstore2(sampler_2d(at, dimension), i, out);
+  out[2 * count + i] = sampler_1d(at, dimension);
 }
 __kernel void units(__global float* out) {
   out[0] = unit_float(0u);
@@ -89,13 +91,21 @@ struct Numbers {
   std::vector<glm::dvec2> pairs;
   std::vector<double> singles;
 };
-Numbers numbers(std::uint32_t seed, std::uint32_t pair, std::uint32_t count) {
+/// Of pixel `pixel` of an image that is 256 pixels wide.
+Numbers numbers(std::uint32_t pixel, std::uint32_t pair, std::uint32_t count, const SamplerSettings& sampler = {}) {
+  Scene scene;
+  scene.film.width = scene.film.height = 256;
+  scene.sampler = sampler;
+  const FlatView flat = lower_view(scene);
+  const Buffer<ViewRecord> view(bench().device, std::span(&flat.view, 1));
   Buffer<float> out(bench().device, 3 * count);
   cl::Kernel kernel = bench().program.kernel("numbers");
-  kernel.setArg(0, seed);
-  kernel.setArg(1, pair);
-  kernel.setArg(2, out.handle());
-  kernel.setArg(3, count);
+  kernel.setArg(0, view.handle());
+  kernel.setArg(1, pixel % 256);
+  kernel.setArg(2, pixel / 256);
+  kernel.setArg(3, pair);
+  kernel.setArg(4, out.handle());
+  kernel.setArg(5, count);
   launch(bench().device, kernel, count, 1);
   const std::vector<float> values = out.read();
   Numbers result;
@@ -171,7 +181,7 @@ RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
 }  // namespace
 
 TEST(Sampler, EveryPowerOfTwoPrefixIsANet) {
-  for (std::uint32_t seed : {0u, 1u, 0xdeadbeefu}) {
+  for (std::uint32_t seed : {0u, 1u, 0xbeefu}) {
     const Numbers all = numbers(seed, seed % 7, 1024);
     for (int m = 0; m <= 10; ++m) {
       for (int k = 0; k <= m; ++k) {
@@ -217,7 +227,7 @@ TEST(Sampler, PixelsAndPairsAreUncorrelated) {
   constexpr std::uint32_t n = 4096;
   std::vector<std::vector<glm::dvec2>> sets;
   for (std::uint32_t pair = 0; pair < 6; ++pair) sets.push_back(numbers(77, pair, n).pairs);
-  for (const std::uint32_t seed : hashed("seeds", 4)) sets.push_back(numbers(seed, 0, n).pairs);
+  for (std::uint32_t pixel = 0; pixel < 4; ++pixel) sets.push_back(numbers(pixel, 0, n).pairs);
   for (std::size_t a = 0; a < sets.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       for (int i = 0; i < 2; ++i)
@@ -231,8 +241,8 @@ TEST(Sampler, FirstSamplesOfPixelsAreUniform) {
   EXPECT_EQ(std::set<std::uint32_t>(seeds.begin(), seeds.end()).size(), seeds.size());
   std::vector<glm::dvec2> firsts;
   glm::dvec2 mean(0);
-  for (const std::uint32_t seed : seeds) {
-    firsts.push_back(numbers(seed, 1, 1).pairs[0]);
+  for (std::uint32_t pixel = 0; pixel < 512; ++pixel) {
+    firsts.push_back(numbers(pixel, 1, 1).pairs[0]);
     mean += firsts.back() / 512.0;
   }
   EXPECT_NEAR(mean.x, 0.5, 4 / std::sqrt(12 * 512.0));
@@ -265,6 +275,194 @@ TEST(Sampler, SmoothIntegralsConvergeFasterThanAtRandom) {
     squares += (sum - exact) * (sum - exact) / pixels;
   }
   EXPECT_LT(squares, 0.0272 / n / 50);
+}
+
+// --- Spherical cameras ---
+
+Scene spherical_scene(SphericalProjection::Mapping mapping) {
+  Scene scene;
+  scene.film.width = 400;
+  scene.film.height = 200;
+  scene.camera.projection = SphericalProjection{mapping};
+  return scene;
+}
+
+glm::dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
+
+// Rows run from +y to -y, and columns from +x by +z.
+TEST(SphericalCamera, LooksByLongitudeAndLatitude) {
+  const Scene scene = spherical_scene(SphericalProjection::Mapping::equirectangular);
+  const std::pair<glm::vec2, glm::dvec3> all[] = {
+      {{0, 100}, {1, 0, 0}}, {{100, 100}, {0, 0, 1}}, {{200, 100}, {-1, 0, 0}}, {{50, 0}, {0, 1, 0}}, {{50, 200}, {0, -1, 0}}};
+  for (const auto& [raster, direction] : all)
+    EXPECT_LT(glm::length(direction_of(camera_ray(scene, raster, {0.5f, 0.5f})) - direction), 1e-6)
+        << raster.x << ' ' << raster.y;
+}
+
+// The middle of the square is +y, its corners are -y, and the middles of its sides the horizon.
+TEST(SphericalCamera, LooksByTheOctahedralMap) {
+  const Scene scene = spherical_scene(SphericalProjection::Mapping::equal_area);
+  const std::pair<glm::vec2, glm::dvec3> all[] = {
+      {{200, 100}, {0, 1, 0}}, {{0, 0}, {0, -1, 0}}, {{400, 200}, {0, -1, 0}}, {{400, 100}, {1, 0, 0}}, {{200, 200}, {0, 0, 1}}};
+  for (const auto& [raster, direction] : all)
+    EXPECT_LT(glm::length(direction_of(camera_ray(scene, raster, {0.5f, 0.5f})) - direction), 1e-6)
+        << raster.x << ' ' << raster.y;
+  // Each of equal parts of the square has an equal share of the sphere: the mean of z^2 over it is 1/3.
+  double sum = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const double z = unproject(scene.camera, scene.film, {10 * x + 5, 5 * y + 2.5}).direction.z;
+      sum += z * z / 1600;
+    }
+  EXPECT_NEAR(sum, 1.0 / 3, 1e-3);
+}
+
+// Over an edge lies the other half of the edge.
+TEST(SphericalCamera, GoesOnBeyondTheImage) {
+  const Scene area = spherical_scene(SphericalProjection::Mapping::equal_area);
+  const auto at = [](const Scene& scene, float x, float y) { return direction_of(camera_ray(scene, {x, y}, {0.5f, 0.5f})); };
+  EXPECT_LT(glm::length(at(area, -3, 40) - at(area, 3, 160)), 1e-6);
+  EXPECT_LT(glm::length(at(area, 403, 40) - at(area, 397, 160)), 1e-6);
+  EXPECT_LT(glm::length(at(area, 90, -2) - at(area, 310, 2)), 1e-6);
+  EXPECT_LT(glm::length(at(area, 90, 202) - at(area, 310, 198)), 1e-6);
+  const Scene around = spherical_scene(SphericalProjection::Mapping::equirectangular);
+  EXPECT_LT(glm::length(at(around, -3, 40) - at(around, 397, 40)), 1e-6);
+}
+
+// The host's rays are the device's, and points project back to where their ray came from.
+TEST(Projections, UndoEachOther) {
+  std::vector<Scene> scenes(4);
+  scenes[0].camera.projection = PerspectiveProjection{0.9};
+  scenes[1].camera.projection = OrthographicProjection{};
+  scenes[2].camera.projection = SphericalProjection{SphericalProjection::Mapping::equal_area};
+  scenes[3].camera.projection = SphericalProjection{SphericalProjection::Mapping::equirectangular};
+  std::mt19937 random(5);
+  for (Scene& scene : scenes) {
+    scene.film.width = 300;
+    scene.film.height = 200;
+    for (int i = 0; i < 50; ++i) {
+      const glm::dvec2 raster(std::uniform_real_distribution(0.0, 300.0)(random),
+                              std::uniform_real_distribution(0.0, 200.0)(random));
+      const CameraRay ray = unproject(scene.camera, scene.film, raster);
+      EXPECT_NEAR(glm::length(ray.direction), 1, 1e-14);
+      const RayRecord there = camera_ray(scene, raster, {0.5f, 0.5f});
+      EXPECT_LT(glm::length(direction_of(there) - ray.direction), 2e-6);
+      EXPECT_LT(glm::length(glm::dvec3(there.ox, there.oy, there.oz) - ray.origin), 2e-6);
+      const auto back = project(scene.camera, scene.film, ray.origin + 7.0 * ray.direction);
+      ASSERT_TRUE(back);
+      EXPECT_LT(glm::length(*back - raster), 1e-6) << i;
+    }
+  }
+  EXPECT_FALSE(project(scenes[0].camera, scenes[0].film, {0, 0, -1}));
+  EXPECT_FALSE(project(scenes[2].camera, scenes[2].film, {0, 0, 0}));
+}
+
+// --- Other samplers ---
+
+SamplerSettings sampler_of(SamplerSettings::Kind kind, int samples, int x = 4, int y = 4, bool jitter = true) {
+  SamplerSettings out;
+  out.kind = kind;
+  out.samples_per_pixel = samples;
+  out.x_strata = x;
+  out.y_strata = y;
+  out.jitter = jitter;
+  return out;
+}
+
+/// How many of the points lie in each of x times y equal parts of the square.
+std::vector<int> counts_of(const std::vector<glm::dvec2>& points, int x, int y) {
+  std::vector<int> counts(static_cast<std::size_t>(x * y));
+  for (const glm::dvec2& p : points)
+    ++counts[static_cast<std::size_t>(static_cast<int>(p.y * y) * x + static_cast<int>(p.x * x))];
+  return counts;
+}
+
+TEST(Stratified, EachPartHasOneSampleInEachRound) {
+  for (const auto& [x, y] : {std::pair{4, 4}, {5, 3}, {1, 7}, {1, 1}, {12, 8}}) {
+    const int n = x * y;
+    const Numbers all =
+        numbers(300, 5, static_cast<std::uint32_t>(3 * n), sampler_of(SamplerSettings::Kind::stratified, n, x, y));
+    for (int round = 0; round < 3; ++round) {
+      const auto begin = all.pairs.begin() + round * n;
+      EXPECT_EQ(counts_of({begin, begin + n}, x, y), std::vector<int>(static_cast<std::size_t>(n), 1)) << x << ' ' << y;
+      std::set<int> parts;
+      for (int i = round * n; i < (round + 1) * n; ++i)
+        parts.insert(static_cast<int>(all.singles[static_cast<std::size_t>(i)] * n));
+      EXPECT_EQ(parts.size(), static_cast<std::size_t>(n));
+    }
+  }
+}
+
+// The place within a part is uniform, and the order of the parts is another in each pixel and dimension.
+TEST(Stratified, IsUniformWithinPartsAndInItsOrder) {
+  constexpr int n = 6;
+  const SamplerSettings settings = sampler_of(SamplerSettings::Kind::stratified, n, 3, 2);
+  std::vector<int> firsts(n), inside(16);
+  constexpr std::uint32_t pixels = 1200;
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const glm::dvec2 p = numbers(pixel, pixel % 5, 1, settings).pairs[0];
+    ++firsts[static_cast<std::size_t>(3 * static_cast<int>(2 * p.y) + static_cast<int>(3 * p.x))];
+    const glm::dvec2 q = glm::fract(p * glm::dvec2(3, 2));
+    ++inside[static_cast<std::size_t>(4 * static_cast<int>(4 * q.y) + static_cast<int>(4 * q.x))];
+  }
+  // Each count is binomial.
+  for (const auto& counts : {firsts, inside})
+    for (const int count : counts) {
+      const double p = 1.0 / static_cast<double>(counts.size());
+      EXPECT_NEAR(count, pixels * p, 4 * std::sqrt(pixels * p * (1 - p)));
+    }
+}
+
+TEST(Stratified, WithoutJitterSamplesLieInTheMiddles) {
+  std::set<std::pair<double, double>> places;
+  for (const glm::dvec2& p : numbers(9, 1, 6, sampler_of(SamplerSettings::Kind::stratified, 6, 3, 2, false)).pairs)
+    places.emplace(std::round(p.x * 6e5) / 1e5, std::round(p.y * 4e5) / 1e5);
+  EXPECT_EQ(places, (std::set<std::pair<double, double>>{{1, 1}, {3, 1}, {5, 1}, {1, 3}, {3, 3}, {5, 3}}));
+}
+
+// As pbrt-v4 divides another number of samples: the nearest to a square.
+TEST(Stratified, OtherNumbersOfSamplesAreDivided) {
+  EXPECT_EQ(strata_of(sampler_of(SamplerSettings::Kind::stratified, 16)), (std::array{4, 4}));
+  EXPECT_EQ(strata_of(sampler_of(SamplerSettings::Kind::stratified, 12)), (std::array{3, 4}));
+  EXPECT_EQ(strata_of(sampler_of(SamplerSettings::Kind::stratified, 7)), (std::array{1, 7}));
+  EXPECT_EQ(strata_of(sampler_of(SamplerSettings::Kind::stratified, 15, 5, 3)), (std::array{5, 3}));
+}
+
+TEST(Independent, CountsAreThoseOfChance) {
+  constexpr std::uint32_t n = 1u << 16;
+  const Numbers all = numbers(40, 2, n, sampler_of(SamplerSettings::Kind::independent, 16));
+  double chi_squared = 0;
+  for (const int count : counts_of(all.pairs, 16, 16)) chi_squared += std::pow(count - n / 256.0, 2) / (n / 256.0);
+  // 255 degrees of freedom: mean 255, standard deviation sqrt(510). Stratified points would give almost 0.
+  EXPECT_NEAR(chi_squared, 255, 5 * std::sqrt(510.0));
+  EXPECT_LT(std::abs(correlation(all.pairs, all.pairs, 0, 1)), 4 / std::sqrt(n));
+}
+
+// The samples of an aligned block of 2^k by 2^k pixels are a net together, as are those of one pixel.
+TEST(Zsobol, BlocksOfPixelsAreNets) {
+  for (const int samples : {1, 2, 4, 8}) {
+    const SamplerSettings settings = sampler_of(SamplerSettings::Kind::zsobol, samples);
+    for (const std::uint32_t size : {1u, 2u, 4u, 8u})
+      for (const std::uint32_t corner : {0u, 16 * 256u + 8u}) {
+        std::vector<glm::dvec2> points;
+        for (std::uint32_t y = 0; y < size; ++y)
+          for (std::uint32_t x = 0; x < size; ++x) {
+            const Numbers of = numbers(corner + 256 * y + x, 3, static_cast<std::uint32_t>(samples), settings);
+            points.insert(points.end(), of.pairs.begin(), of.pairs.end());
+          }
+        const int n = static_cast<int>(points.size());
+        for (int x = 1; x <= n; x *= 2)
+          EXPECT_EQ(counts_of(points, x, n / x), std::vector<int>(points.size(), 1)) << samples << ' ' << size << ' ' << x;
+      }
+  }
+}
+
+// More samples than were asked for are other points.
+TEST(Zsobol, GoesOnBeyondItsSamples) {
+  const SamplerSettings settings = sampler_of(SamplerSettings::Kind::zsobol, 5);
+  std::set<std::pair<double, double>> points;
+  for (const glm::dvec2& p : numbers(70, 1, 64, settings).pairs) points.emplace(p.x, p.y);
+  EXPECT_EQ(points.size(), 64u);
 }
 
 std::vector<PixelFilter> filters() {
@@ -354,7 +552,7 @@ TEST(Filter, HistogramFollowsTheFilter) {
 
 TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
   Scene scene;
-  scene.camera.fov = std::numbers::pi / 2;
+  scene.camera.projection = PerspectiveProjection{std::numbers::pi / 2};
   scene.film.width = 200;
   scene.film.height = 100;
   const RayRecord top = camera_ray(scene, {100, 0}, {0.5f, 0.5f});
@@ -375,7 +573,7 @@ TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
 // 1/aspect], times tan(fov / 2); the aspect is the film's unless the file gives one.
 TEST(Camera, FrameAspectRatioStretchesTheScreen) {
   Scene scene;
-  scene.camera.fov = 2 * std::atan(0.5);
+  scene.camera.projection = PerspectiveProjection{2 * std::atan(0.5)};
   scene.film.width = scene.film.height = 60;
   for (const double aspect : {1.0, 2.5, 0.4}) {
     scene.camera.frame_aspect_ratio = aspect;

@@ -316,7 +316,7 @@ TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   Editor editor(live);
   ViewEdit looked = view_of(live.scene());
   looked.film.width = 100;
-  looked.camera.fov = 0.5;
+  looked.camera.projection = PerspectiveProjection{0.5};
   live.edit(looked);
   editor.make(Set{{Kind::film}, "xresolution", 77.0});
   editor.make(Set{{Kind::film}, "iso", 200.0});
@@ -325,7 +325,7 @@ TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   const Scene kept = editor.document();
   EXPECT_EQ(kept.film.width, 77);
   EXPECT_EQ(kept.film.height, 24);
-  EXPECT_NEAR(kept.camera.fov, 40 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_NEAR(fov_of(kept.camera), 40 * 3.14159265358979 / 180, 1e-12);
   EXPECT_EQ(kept.film.iso, 200);
   EXPECT_EQ(kept.filter.kind, PixelFilter::Kind::box);
   EXPECT_EQ(kept.filter.radius_x, 0.5);

@@ -56,7 +56,7 @@ class Guest {
          {"width", width},
          {"height", height},
          {"world_from_camera", rows},
-         {"fov", scene.camera.fov},
+         {"fov", fov_of(scene.camera)},
          {"lens_radius", scene.camera.lens_radius},
          {"focal_distance", scene.camera.focal_distance},
          {"separation", separation}});

@@ -546,23 +546,23 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
     // The page's size and camera are not the scene's.
     ViewEdit page = view_of(run.live.scene());
     page.film.width = 123;
-    page.camera.fov = 1;
+    page.camera.projection = PerspectiveProjection{1};
     run.live.edit(page);
     run.save();
     Scene saved = import_scene(file, FileImageReader());
     EXPECT_EQ(saved.film.width, 40);
-    EXPECT_EQ(saved.camera.fov, before.camera.fov);
+    EXPECT_EQ(fov_of(saved.camera), fov_of(before.camera));
     EXPECT_EQ(saved.camera.world_from_camera, before.camera.world_from_camera);
     run.keeping->save({{}, true, true}, look, {});
     saved = import_scene(file, FileImageReader());
     EXPECT_EQ(saved.film.width, 40);
-    EXPECT_EQ(saved.camera.fov, 0.5);
+    EXPECT_EQ(fov_of(saved.camera), 0.5);
     EXPECT_EQ(saved.camera.world_from_camera, look.world_from_camera);
     run.say(move_line(1, 0.5));
   }
   Sitting run(file);
   run.save();
-  EXPECT_EQ(import_scene(file, FileImageReader()).camera.fov, 0.5);
+  EXPECT_EQ(fov_of(import_scene(file, FileImageReader()).camera), 0.5);
 }
 
 TEST(KeptToken, StaysForOneAddressAndScene) {

@@ -121,7 +121,7 @@ TEST(Orthographic, IsKeptInFiles) {
   write_pbrt(scene, std::filesystem::temp_directory_path(), [&](std::string_view piece) { written += piece; });
   EXPECT_NE(written.find("Camera \"orthographic\""), std::string::npos);
   const Scene again = test::scene_of_text(written);
-  EXPECT_EQ(again.camera.fov, 0);
+  EXPECT_EQ(fov_of(again.camera), 0);
   EXPECT_EQ(words_of(again), words_of(scene));
   const Look looked = look_of_scene(again);
   EXPECT_EQ(looked.orthographic, 1.5);
@@ -151,7 +151,7 @@ TEST(Pairs, AreCamerasMovedByHand) {
     // With a window that is moved so that what is 6 away stays: 0.25 / (6 tan 20 degrees).
     look.convergence = 6;
     Scene by_hand = looked_at(moved, 1, 0);
-    const double shift = (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(by_hand.camera.fov / 2)), x = 64.0 / 48;
+    const double shift = (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(fov_of(by_hand.camera) / 2)), x = 64.0 / 48;
     by_hand.camera.screen_window = {-x - shift, x - shift, -1, 1};
     const RayRecord hand = ray_of_pixel(by_hand, 3, 7), ours = ray_of_pixel(looked_at(look, 1, eye), 3, 7);
     EXPECT_NEAR(hand.dx, ours.dx, 1e-6);

@@ -267,7 +267,7 @@ Camera camera_of(const View& view, const FilmSettings& film, const SourceLocatio
   out.world_from_camera = {glm::dvec4(right, 0), glm::dvec4(y, 0), glm::dvec4(z, 0), glm::dvec4(view.from, 1)};
   const double over_height = std::tan(glm::radians(view.fov) / 2);
   const double narrower = film.width < film.height ? static_cast<double>(film.width) / film.height : 1;
-  out.fov = 2 * std::atan(over_height * narrower);
+  out.projection = PerspectiveProjection{2 * std::atan(over_height * narrower)};
   return out;
 }
 

@@ -84,12 +84,13 @@ class GltfReader {
       const double x = std::abs(file_.number(window, "xmag", 1)), y = std::abs(file_.number(window, "ymag", 1));
       const double height = std::round(scene_.film.width * y / x);
       if (!(height >= 1 && height <= kHighestPicture)) file_.fail("a camera's xmag and ymag are no window");
-      out.fov = 0;
+      out.projection = OrthographicProjection{};
       out.screen_window = {-x, x, -y, y};
       scene_.film.height = static_cast<int>(height);
     } else {
-      out.fov = file_.number(file_.object(camera, "perspective"), "yfov", 0.8);
-      if (!(out.fov > 0 && out.fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
+      const double fov = file_.number(file_.object(camera, "perspective"), "yfov", 0.8);
+      if (!(fov > 0 && fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
+      out.projection = PerspectiveProjection{fov};
     }
     // It looks along -z; ours along +z.
     glm::dmat4 rigid(1);

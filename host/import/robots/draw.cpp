@@ -369,10 +369,10 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
     const glm::dmat4 at = world * camera->world;
     scene.camera = Camera{};
     scene.camera.world_from_camera = glm::dmat4(at[0], at[1], -at[2], at[3]);
-    scene.camera.fov = glm::radians(camera->fovy);
+    scene.camera.projection = PerspectiveProjection{glm::radians(camera->fovy)};
     if (camera->orthographic) {
       const double aspect = static_cast<double>(scene.film.width) / scene.film.height, half = camera->fovy / 2;
-      scene.camera.fov = 0;
+      scene.camera.projection = OrthographicProjection{};
       scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
     }
   }

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Cameras: where they stand, and how they project. Camera space: +x right, +y up, +z forward (left-handed, as in pbrt).
+// Raster space: pixels of the full image, (0, 0) its top left corner.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <variant>
+
+namespace caplet {
+
+struct FilmSettings;
+
+struct PerspectiveProjection {
+  double fov = 1.5707963267948966;  // radians, of the shorter image side, full angle
+};
+/// Parallel rays; the screen window is in camera units.
+struct OrthographicProjection {};
+/// All directions from one point, over the whole image.
+struct SphericalProjection {
+  enum class Mapping { equal_area, equirectangular } mapping = Mapping::equal_area;
+};
+using Projection = std::variant<PerspectiveProjection, OrthographicProjection, SphericalProjection>;
+
+struct Camera {
+  glm::dmat4 world_from_camera{1};
+  Projection projection;
+  std::optional<double> frame_aspect_ratio;            // perspective and orthographic
+  std::optional<std::array<double, 4>> screen_window;  // perspective and orthographic: x min, x max, y min, y max
+  double lens_radius = 0;                              // perspective and orthographic, camera units
+  double focal_distance = 1e6;                         // along z, camera units
+  std::optional<std::uint32_t> medium = {};            // where no solid holds the camera: index into Scene::media
+};
+
+inline bool is_spherical(const Camera& camera) { return std::holds_alternative<SphericalProjection>(camera.projection); }
+inline bool is_orthographic(const Camera& camera) { return std::holds_alternative<OrthographicProjection>(camera.projection); }
+
+/// Field of view in radians; 0 where the projection has none.
+double fov_of(const Camera& camera);
+
+/// The part of the image plane z = 1 (perspective, in units of tan(fov / 2)) or z = 0 (orthographic) that the image shows.
+std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film);
+
+/// The same in camera units: {x min, x max, y min, y max}.
+std::array<double, 4> image_plane_of(const Camera& camera, const FilmSettings& film);
+
+struct CameraRay {
+  glm::dvec3 origin{0}, direction{0, 0, 1};  // camera space; the direction is a unit vector of camera space
+};
+
+/// The ray from the middle of the lens through `raster`.
+CameraRay unproject(const Camera& camera, const FilmSettings& film, const glm::dvec2& raster);
+
+/// Where the image shows a point of camera space; none behind a perspective camera or at its place. The result may lie outside
+/// the image. unproject(project(p)) is a ray through p.
+std::optional<glm::dvec2> project(const Camera& camera, const FilmSettings& film, const glm::dvec3& point);
+
+/// World units that one pixel covers at a point of the world: of the shorter of its sides; 0 where the camera does not see it.
+double pixel_footprint(const Camera& camera, const FilmSettings& film, const glm::dvec3& point);
+
+/// The point of [0, 1]^2 for a unit direction by the equal-area octahedral map, and back (Clarberg, "Fast equal-area mapping of
+/// the (hemi)sphere using SIMD", 2008). The middle of the square is +z.
+glm::dvec2 square_from_sphere(const glm::dvec3& direction);
+glm::dvec3 sphere_from_square(const glm::dvec2& uv);
+
+}  // namespace caplet

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// What samplers share: the address of a path's random numbers.
+#ifndef CAPLET_SAMPLERS_SAMPLER_TYPES_CL
+#define CAPLET_SAMPLERS_SAMPLER_TYPES_CL
+
+#include "math/rng.cl"
+#include "shared/records.h"
+
+typedef struct {
+  uint x, y;  // pixel of the full image
+  uint sample;
+  uint seed;  // of the pixel
+  __global const ViewRecord* view;
+} PathSample;
+
+static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y, uint sample) {
+  PathSample s = {x, y, sample, pixel_seed(x, y, view->seed), view};
+  return s;
+}
+
+static inline uint reverse_bits(uint x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+
+// Each bit is flipped by a hash of the bits below it: on reversed bits, an Owen scrambling (constants: Vegdahl, "Building a
+// better LK hash", 2021).
+static inline uint scramble_reversed(uint x, uint seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  return x ^ (x * 0x53a22864u);
+}
+
+// The place of a number in the shuffled sequence; an aligned block of 2^m numbers stays an aligned block.
+static inline uint shuffled_index(uint number, uint seed) { return reverse_bits(scramble_reversed(reverse_bits(number), seed)); }
+
+// The second Sobol dimension, digits least significant first on both sides: digit j is the sum over k of C(k, j) times digit k,
+// modulo 2, and C(k, j) is odd exactly when j is a subset of k (Lucas).
+static inline uint pascal_reversed(uint x) {
+  x ^= x >> 16;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 2) & 0x33333333u;
+  return x ^ ((x >> 1) & 0x55555555u);
+}
+
+// Coordinates of point `index` of the first two Sobol dimensions under the Owen scrambling of a seed, 32 bits each.
+static inline uint owen_sobol_x(uint index, uint seed) { return reverse_bits(scramble_reversed(index, hash_mix(seed ^ 0x68bc21ebu))); }
+static inline uint owen_sobol_y(uint index, uint seed) {
+  return reverse_bits(scramble_reversed(pascal_reversed(index), hash_mix(seed ^ 0x02e5be93u)));
+}
+
+#endif

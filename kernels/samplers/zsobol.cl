@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// One Sobol sequence over the whole image, whose points are dealt to pixels in a shuffled Morton order: the samples of a square block of
+// pixels are a net together, so that the error of neighbouring pixels cancels. Ahmed and Wonka, "Screen-space blue-noise diffusion of
+// Monte Carlo sampling error via hierarchical ordering of pixels", 2020; the shuffling is Burley's.
+#ifndef CAPLET_SAMPLERS_ZSOBOL_CL
+#define CAPLET_SAMPLERS_ZSOBOL_CL
+
+#include "samplers/sampler_types.cl"
+
+// The low 16 bits at the even places of 32.
+static inline uint spread_bits(uint x) {
+  x &= 0xffffu;
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+
+// The number of a sample's point. What lies beyond its 32 bits, and samples beyond those that were asked for, become the seed of
+// another sequence.
+static inline uint zsobol_index(PathSample at, uint* seed) {
+  const uint bits = at.view->sampler_x;  // of a sample's number
+  const ulong pixel = (ulong)(spread_bits(at.x) | (spread_bits(at.y) << 1));
+  const ulong index = (pixel << bits) | (at.sample & ((1u << bits) - 1u));
+  *seed = hash_combine(hash_combine(*seed, (uint)(index >> 32)), at.sample >> bits);
+  return shuffled_index((uint)index, *seed);
+}
+
+static inline uint2 zsobol_pair(PathSample at, uint dimension) {
+  uint seed = hash_combine(hash_mix(at.view->seed), dimension);
+  const uint index = zsobol_index(at, &seed);
+  return (uint2)(owen_sobol_x(index, seed), owen_sobol_y(index, seed));
+}
+
+static inline uint zsobol_bits(PathSample at, uint dimension) {
+  uint seed = hash_combine(hash_mix(at.view->seed), dimension);
+  const uint index = zsobol_index(at, &seed);
+  return owen_sobol_x(index, seed);
+}
+
+#endif
