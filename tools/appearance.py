@@ -41,10 +41,9 @@ PRINCIPLED = {
     "coat": dict(base_color=(0.5, 0.2, 0.2), roughness=0.6, coat=1.0, coat_roughness=0.2),
 }
 DIFFERENT = {
-    "half-glass": "the diffuse part is seen from inside as well; Mitsuba's is black there",
-    "white": "Burley's diffuse lobe and the interface together reflect more than comes in (1.4 at grazing); here the lobe is held to the rest",
-    "coat": "Mitsuba's `clearcoat` is a quarter of a GTR1 lobe over a base that it does not dim; here it is GGX of the whole weight, "
-            "and the base loses what it reflects",
+    "half-glass": "the diffuse part reflects inside as well; Mitsuba's is black there",
+    "white": "Mitsuba's reflects more than comes in (1.4 at grazing)",
+    "coat": "Mitsuba's `clearcoat` is a quarter of a GTR1 lobe over an undimmed base; here it is GGX, which dims the base",
 }
 HAIR = {
     "hair-white": dict(sigma_a=0.0, beta_m=0.3, beta_n=0.3, alpha=2.0),
@@ -181,32 +180,19 @@ def materials(given):
     side_by_side("principled.png", *[rendered[name] for name in PRINCIPLED])
     side_by_side("hair.png", *[rendered[name] for name in HAIR])
     put_section("Materials beside Mitsuba 3", f"""
-Written by `tools/appearance.py materials`: `principled` on a ball and `hair` on straight round fibres, under a constant sky and a distant light,
-{SIZE} x {SIZE} pixels, {given.spp} samples a pixel on both sides, beside Mitsuba 3.9.1's plugins of these names (`scalar_rgb`). Blocks of 8 x 8
-pixels are within 2 % (root mean square) but where the models differ. Fibres are `bsplinecurve` there: with `linearcurve` the blocks of the hair scenes
-differ by 1.7 to 3.2 %, and a fibre with the light beside and behind it sends 2.6 to the eye in place of 47.2 (`bsplinecurve`: 47.17, ours: 47.21).
+`tools/appearance.py materials` renders `principled` on a ball and `hair` on straight round fibres,
+under a constant sky and a distant light, {SIZE} x {SIZE} pixels with {given.spp} samples on both sides, beside
+Mitsuba 3.9.1's plugins of these names (`scalar_rgb`). Blocks of 8 x 8 pixels are within 2 % (rms)
+except where the models differ. Mitsuba's fibres are `bsplinecurve`. With `linearcurve` the blocks
+of the hair scenes differ by 1.7 to 3.2 %, and a fibre with the light beside and behind it sends 2.6
+to the eye, not 47.2 (`bsplinecurve`: 47.17, Caplet: 47.21).
 
 | scene | image mean | blocks rms | what differs |
 |---|---:|---:|---|
 """ + "\n".join(rows) + """
 
-The terms that differ, each by itself in a white furnace (a ball of radius 1 under a sky of 1, 64 samples: the mean over the ball, its middle, and its edge at 0.9 to 0.97):
-
-| | ours | | | Mitsuba | | |
-|---|---:|---:|---:|---:|---:|---:|
-| white, roughness 0.1 | 0.974 | 0.965 | 0.989 | 1.042 | 1.031 | 1.109 |
-| white, roughness 0.5 | 0.959 | 0.959 | 0.941 | 1.060 | 1.044 | 1.113 |
-| white, roughness 1 | 0.927 | 0.927 | 0.925 | 1.065 | 1.046 | 1.151 |
-| grey 0.5, roughness 0.6, no coat | 0.553 | 0.540 | 0.591 | 0.553 | 0.537 | 0.593 |
-| the coat alone: over black | 0.109 | 0.071 | 0.226 | 0.064 | 0.062 | 0.085 |
-| the coat over that grey | 0.559 | 0.529 | 0.644 | 0.571 | 0.565 | 0.605 |
-| white glass, roughness 0.4 | 0.886 | 0.963 | 0.758 | 0.887 | 0.967 | 0.761 |
-| half of it glass | 0.888 | 0.899 | 0.854 | 0.742 | 0.755 | 0.722 |
-
-So `white` differs by what is more than 1 there; `coat` by the coat's own lobe (F(0) = 0.04 of an interface, and what both roughnesses reflect), and by the base,
-from which nothing is taken there (0.571 - 0.064 is 92 % of 0.553, the rest is the interface of the base); `half-glass` by light that is in the ball and meets the diffuse half.
-
-Above ours, below Mitsuba's:
+[A decision](decisions/0027-principled-takes-no-more-than-comes-in.md) has each term that differs by
+itself in a white furnace. The pictures have Caplet above and Mitsuba below:
 
 ![principled](images/validation/principled.png)
 
@@ -219,37 +205,39 @@ Above ours, below Mitsuba's:
 # Of scenes_pbrt: width, height, depth as their reference pictures have; the most that the mean may differ.
 SCENES = {"cornell-box": (256, 256, 65), "veach-mis": (320, 180, 1), "coffee": (200, 250, 65)}
 REMARKS = {
-    "cornell-box": "RGB there: rendered channel by channel it is +0.05 % (below)",
-    "veach-mis": "at depth 1, as its picture; highlights there have not the tails of the GGX that the text asks for, and blocks of the plates are black",
-    "coffee": "RGB, and a plastic without an absorbing layer, there (below)",
+    "cornell-box": "the reference is RGB: rendered channel by channel it is +0.05 %",
+    "veach-mis": "the reference, at depth 1, lacks GGX's tails and has black blocks",
+    "coffee": "the reference is RGB, and its plastic has no absorbing layer",
 }
 
 
-WHY = r"""**Why they differ**, shown by variants of the scenes (64 samples, depth 65):
+WHY = r"""Variants of the scenes show why they differ (64 samples, depth 65):
 
 | `cornell-box` | red | green | blue | all |
 |---|---:|---:|---:|---:|
 | as it is | -0.62 % | -0.56 % | -3.70 % | -0.91 % |
-| three renders in grey, one a channel: red, green and blue of each colour as numbers | +0.04 % | +0.06 % | +0.07 % | +0.05 % |
+| three grey renders, one a channel | +0.04 % | +0.06 % | +0.07 % | +0.05 % |
 
-An RGB renderer multiplies the channels of colours at every bounce; ours multiplies spectra, whose channels are not the products of channels. What is left of the
-blocks is the row with the light's edge (0.08 of a pixel elsewhere there): 1.7 % without it.
+An RGB renderer multiplies channels of colours at every bounce. Caplet multiplies spectra, whose
+channels are not the products of channels. What remains in the blocks is the row with the light's
+edge, which lies 0.08 of a pixel elsewhere in the reference; without that row it is 1.7 %.
 
 | `coffee` | all | red, orange body | floor |
 |---|---:|---:|---:|
 | as it is (depth 17) | -10.3 % | -26 % | -6 % |
 | `thickness` 1e-6 | -6.5 % | -21 % | -1 % |
 | and `maxdepth` 200 of the coats | -5.6 % | -18 % | -0 % |
-| and three renders in grey, one a channel, at depth 65 | +1.4 % | +0.9 % | -0.2 % |
+| and three grey renders, one a channel, at depth 65 | +1.4 % | +0.9 % | -0.2 % |
 
-- **The layer.** Tungsten's plastic is Lambert's law below a clear interface, all orders of reflection between them, and nothing in between:
-  (1 - F(i)) (1 - F(o)) r / (pi eta^2 (1 - r R)), R = 0.596 at index 1.5. That is `coateddiffuse` without its layer. pbrt's default layer absorbs exp(-0.01 / cos) on each way
-  through: 4 to 5 % of a grey of 0.58. Its walk of 10 events ends a series in (r R)^n after five: up to 8 % of a white.
-- **Colour.** The orange (1, 0.379, 0.013) is a spectrum here, and its powers in that series are darker in red than powers of 1.
-- **The carafe** is what is left. Its lower rim is light that took 9 events and more: at depth 9 it is at 0.8 of the reference, at 10 at 1.2, at 65 at 1.9 (0.6, 1.4 and 2.8 on the right). How many
-  events the reference counts is not known; normals of the triangles in place of the vertices' do not matter (1.9 and 2.7).
+- **The layer.** Tungsten's plastic has nothing between Lambert's law and a clear interface: it is
+  (1 - F(i)) (1 - F(o)) r / (pi eta^2 (1 - r R)), R = 0.596 at index 1.5. pbrt's default layer of
+  `coateddiffuse` absorbs exp(-0.01 / cos) on each way through, 4 to 5 % of a grey of 0.58, and its
+  walk of 10 events cuts that series, up to 8 % of a white.
+- **Colour.** Powers of the orange (1, 0.379, 0.013), a spectrum here, are darker in red than powers
+  of 1.
+- **The carafe** remains. Its lower rim is light of 9 events and more: 0.8 of the reference at depth
+  9, 1.2 at 10, 1.9 at 65. How many events the reference counts is not known.
 
-`veach-mis` was not taken apart: its reference has another microfacet distribution, which no statement of the scene asks for.
 """
 
 
@@ -270,12 +258,13 @@ def scenes(given):
             side_by_side(f"scene-{name}.png", ours, theirs)
             pictures += f"\n![{name}](images/validation/scene-{name}.png)\n"
     put_section("Real scenes", """
-Written by `tools/appearance.py scenes`: Bitterli's scenes in pbrt-v4 text as they are, beside `TungstenRender.exr`, Tungsten's pictures in RGB, each made
-as small as ours. Blocks: differences of channels over the mean of the three.
+`tools/appearance.py scenes` renders Bitterli's scenes in pbrt-v4 text, unchanged, beside
+`TungstenRender.exr`. These are Tungsten's RGB pictures, reduced to Caplet's size. Differences of
+blocks are those of the channels over the mean of all three.
 
 | scene | pixels | samples | seconds | image mean | blocks rms | remark |
 |---|---|---:|---:|---:|---:|---|
-""" + "\n".join(rows) + "\n" + WHY + "\nEach picture: ours, and Tungsten's.\n" + pictures)
+""" + "\n".join(rows) + "\n" + "\n" + WHY + "The pictures show Caplet's beside Tungsten's:\n" + pictures)
 
 
 def main():

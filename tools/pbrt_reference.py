@@ -78,9 +78,13 @@ def main():
         print(rows[-1], flush=True)
     section = "\n".join([
         f"\n## {TITLE}\n",
-        "Written by `tools/pbrt_reference.py`: scenes of 128 x 128 pixels in pbrt's text beside what pbrt-v4 (`volpath`) made of them with 1,024 to 3,072 samples a pixel, and the variance",
-        "of that. Within: image mean 0.5 %, means of blocks of 8 x 8 pixels 1 % root mean square (gobos and many-lights, whose references are noisy, 2.5 %), z with a mean within 0.3 and",
-        "3 % of the pixels beyond 3 (other seeds of pbrt-v4 against each other: -0.16 to -0.04, 0.9 to 2.7 %). Variance: the mean of ours over the mean of theirs, both as stated.\n",
+        "`tools/pbrt_reference.py` renders scenes of 128 x 128 pixels beside pictures that pbrt-v4",
+        "(`volpath`) made of the same text with 1,024 to 3,072 samples a pixel, and their variances. A scene",
+        'is "within" when the image mean differs by less than 0.5 %, the means of 8 x 8 blocks by less than 1',
+        "% (rms; gobos and many-lights, whose references are noisy, 2.5 %), the mean of z is within 0.3 and",
+        "less than 3 % of the pixels are beyond 3. Other seeds of pbrt-v4 against each other give z means of",
+        '-0.16 to -0.04 and 0.9 to 2.7 % beyond 3. "Variance" is the mean of Caplet\'s over the mean of',
+        "pbrt-v4's, both as stated.\n",
         "| scene | samples | image mean | blocks rms | z mean | z sd | beyond 3 | variance | seconds | within |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---:|---|",
         *rows, ""])

@@ -9,7 +9,7 @@ namespace caplet {
 namespace {
 
 // 2^18 paths: enough rays for sorting to find neighbours, and few launches of nearly empty rounds; 60 MB of state
-// (docs/performance.md). One work-item at a time suits PoCL's tracing; a processor adds up its bins one after the other.
+// (decision 26). One work-item at a time suits PoCL's tracing; a processor adds up its bins one after the other.
 constexpr Drive of_cpus{.batch_paths = std::size_t{1} << 18,
                         .local_size = 64,
                         .counts_on_device = false,

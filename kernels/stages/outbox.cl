@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Paths that a work-item appends to queues. One that does a share of the items takes a block of places at once: where every path took
-// its own, processors would pass the counter's cache line around (docs/performance.md).
+// its own, processors would pass the counter's cache line around (decision 26).
 #ifndef CAPLET_STAGES_OUTBOX_CL
 #define CAPLET_STAGES_OUTBOX_CL
 

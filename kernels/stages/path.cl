@@ -84,7 +84,7 @@ static inline RayRecord path_onward(float3 origin, float3 direction) {
 }
 
 // Russian roulette: whether a path goes on, and with what throughput. The square root keeps paths longer than their throughput alone would, and the
-// first three scatterings always go on: variance falls faster than time grows (docs/performance.md). eta_scale takes the squared indices of
+// first three scatterings always go on: variance falls faster than time grows (decision 3). eta_scale takes the squared indices of
 // refractions out of the throughput.
 static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
   const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));

@@ -54,8 +54,10 @@ std::string cornell_box_row(int samples, bool& within) {
   const double difference = mean(picture_of(ours.image)) / mean(picture_of(read_exr(folder / "TungstenRender.exr"))) - 1;
   within = std::abs(difference) < 0.015;
   return fmt::format(
-      "\n`scenes_pbrt/cornell-box` at depth 65, 256 x 256 pixels, {} samples: image mean {:+.2f} % of `TungstenRender.exr` (an "
-      "RGB render; within 1.5 %: {}).\n",
+      "\nThe standard deviation of z is below 1 because Caplet states the variance of independent samples,\n"
+      "which is an upper bound for low-discrepancy ones. The rows of environment images stand where Mitsuba\n"
+      "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` at depth 65, 256 x 256 pixels, {} samples differs by\n{:+.2f} % from "
+      "`TungstenRender.exr` (an RGB render; within 1.5 %: {}).\n",
       samples, 100 * difference, within ? "yes" : "NO");
 }
 
@@ -69,24 +71,37 @@ int main(int argc, char** argv) {
   if (data_folder().empty()) return std::cerr << "caplet_validate: needs the shared data folder\n", 2;
   std::filesystem::create_directories(images);
   const auto folder = data_folder() / "reference" / "mitsuba";
+  // The page's lines as they stand in it.
   std::string text = fmt::format(
-      "# Validation\n\nWritten by `./run validate [SAMPLES]`; last with {} samples a pixel or more on {} ({}).\n\n"
-      "Six scenes in pbrt-v4 text, 128 x 128 pixels, beside Mitsuba 3.9.1 (means of 16,384 samples a pixel, with their "
-      "variances). "
-      "A scene is within when:\n\n"
-      "- *grey*, where spectra play no part: the image mean differs by less than 0.3 %; the means of blocks of 8 x 8 pixels by "
-      "less than 1 % (root mean square; mis-grey 2 %); z = (ours - theirs) / sqrt(sum of both variances), one number a pixel, "
-      "has "
-      "a mean within 0.3 and leaves -3 to 3 in less than 3 % of the pixels;\n"
-      "- *spectral*: the image mean differs by less than 0.5 %, blocks by less than 1 %.\n\n"
-      "The standard deviation of z is below 1, since our variance is stated as that of independent samples, an upper bound for "
-      "low-discrepancy ones. The rows of an image stand where Mitsuba puts them (lights.md, \"Image light\").\n\n"
-      "| scene | samples | image mean | blocks rms | z mean | z sd | beyond 3 | seconds | within "
-      "|\n|---|---:|---:|---:|---:|---:|---:|---:|---|\n",
+      R"(# Validation
+
+This page compares Caplet's pictures with those of Mitsuba 3, Tungsten and pbrt-v4, and says why
+they differ where they do. These commands compare again (DATA is the shared data):
+
+```
+./run validate [SAMPLES]                           the next table and pictures (default 1024 samples a pixel)
+PYTHON tools/appearance.py --spp 128 materials     materials beside Mitsuba 3
+PYTHON tools/appearance.py --spp 64 scenes DATA    real scenes
+PYTHON tools/pbrt_reference.py DATA                scenes beside pbrt-v4
+```
+
+`./run validate` renders six scenes in pbrt-v4 text at 128 x 128 pixels and compares them with
+pictures of Mitsuba 3.9.1, which are means of 16,384 samples a pixel with their variances. It ran
+last with {} samples a pixel or more on {} ({}). A scene is "within" when all of these hold:
+
+| | grey (spectra play no part) | spectral |
+|---|---|---|
+| the image means differ by less than | 0.3 % | 0.5 % |
+| means of blocks of 8 x 8 pixels differ by less than (rms) | 1 %; mis-grey 2 % | 1 % |
+| z = (ours - theirs) / sqrt(sum of variances), of each pixel | mean within 0.3, less than 3 % beyond 3 | |
+
+| scene | samples | image mean | blocks rms | z mean | z sd | beyond 3 | seconds | within |
+|---|---:|---:|---:|---:|---:|---:|---:|---|
+)",
       samples, test_device().info().name, test_device().info().driver);
   std::string pictures =
-      "\nEach picture: ours, Mitsuba's, and the difference around grey (a fifth of full scale is a relative difference of a "
-      "quarter).\n";
+      "\nEach picture shows Caplet's, Mitsuba's, and their difference around grey. A fifth of full scale is a\nrelative "
+      "difference of a quarter.\n";
   bool all = true;
   for (const ReferenceScene& scene : reference_scenes()) {
     const int effort = samples * scene.effort;

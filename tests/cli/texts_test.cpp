@@ -167,10 +167,13 @@ TEST(Texts, ManPageHasAllOptions) {
     std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
     std::string of_command = between(page, ".SH \"CAPLET " + upper + "\"", "\n.SH ");
     EXPECT_FALSE(of_command.empty()) << command;
+    const std::string own = of_command;
     // The groups of several commands name them.
     for (std::size_t at = shared.find(".SS"); at != std::string::npos; at = shared.find(".SS", at + 1)) {
       const std::string group = between(shared.substr(at), ".SS", "\n.SS");
-      if (between(group, "Of ", "\n").find("\\fB" + command + "\\fR") != std::string::npos) of_command += group;
+      if (between(group, "Of ", "\n").find("\\fB" + command + "\\fR") == std::string::npos) continue;
+      of_command += group;
+      EXPECT_EQ(own.find(".SS" + group.substr(0, group.find('\n') + 1)), std::string::npos) << group << " in " << command;
     }
     for (const std::string& option : options)
       EXPECT_TRUE(of_command.find("\\fB" + in_roff(option) + "\\fR") != std::string::npos) << option << " of " << command;
@@ -182,6 +185,10 @@ TEST(Texts, CompletionsHaveAllOptions) {
   const std::string zsh = output_of({"describe", "zsh"}), fish = output_of({"describe", "fish"});
   for (const auto& [command, options] : options_by_command()) {
     EXPECT_THAT(bash.offers({command, "-"}), testing::UnorderedElementsAreArray(options)) << command;
+    // No value follows a flag.
+    if (std::ranges::find(options, "--quiet") != options.end()) {
+      EXPECT_THAT(bash.offers({command, "--quiet", "-"}), testing::UnorderedElementsAreArray(options)) << command;
+    }
     const std::string of_command = between(zsh, "\n    " + command + ")\n", ";;");
     for (const std::string& option : options) {
       EXPECT_TRUE(has(of_command, "[')*]" + option + "[=+]?\\[")) << option << " of " << command;

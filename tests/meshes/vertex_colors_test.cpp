@@ -144,6 +144,12 @@ TEST(VertexColors, OfOff) {
   EXPECT_EQ(color_at(one, one.shapes.at(0), 0, {1, 0, 0}), vec3(-1));
 }
 
+// Numbers above 1 are bytes, and those above 255 are 255.
+TEST(VertexColors, AreWithinTheirRange) {
+  EXPECT_EQ(decoded_color({300, 255, 0}, 300), glm::vec3(1, 1, 0));
+  EXPECT_EQ(decoded_color({1, -0.5f, 0}, 1), glm::vec3(1, 0, 0));
+}
+
 /// A triangle whose corners are red, half green and blue in linear bytes, as a base64 buffer by Python's base64 module.
 std::string gltf_text(const std::string& material) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":)"

@@ -149,7 +149,8 @@ TEST(MjcfLooks, TexturesLieAsMujocos) {
                        {"type='plane' size='0 0 1'", "texrepeat='2 3' texuniform='true'", 1, 0.5, -1.5, 0.5},
                        {"type='box' size='2 1 .5'", "texrepeat='2 3'", 0.5, 0, -1.5, 0.5},
                        {"type='box' size='2 1 .5'", "texrepeat='2 3' texuniform='true'", 1, 0, -1.5, 0.5},
-                       {"type='box' size='2.5 1.5 .5'", "texrepeat='1 1' texuniform='true'", 0.5, 0.25, -0.5, 0.75}};
+                       {"type='box' size='2.5 1.5 .5'", "texrepeat='1 1' texuniform='true'", 0.5, 0.25, -0.5, 0.75},
+                       {"type='box' size='2.5 .75 .5'", "texrepeat='1 1' texuniform='true'", 0.5, 0.25, -0.5, 0.375}};
   const auto mapping_of = [](const std::string& geom, const std::string& material) {
     const Scene scene = scene_of_text(
         "<asset><texture name='c' type='2d' builtin='checker' width='4' height='4'/><material name='c' texture='c' " + material +

@@ -181,6 +181,8 @@ TEST(Mjcf, KeyframesHaveTheNumbersOfAllJoints) {
   const Scene free =
       world("<body pos='1 2 3'><freejoint name='f'/><geom size='1' pos='1 0 0'/></body>", {{{"pose", "f=0 0 7 1 0 0 1"}}});
   expect_near(at(free.shapes[0]), {0, 1, 7});
+  // As the file has it where nobody says more.
+  expect_near(at(world("<body pos='1 2 3'><freejoint name='f'/><geom size='1' pos='1 0 0'/></body>").shapes[0]), {2, 2, 3});
 }
 
 // Mocap bodies stand where a keyframe's mpos and mquat put them, each by its own numbers in the order of the bodies; a quarter
