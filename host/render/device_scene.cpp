@@ -38,6 +38,16 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   }
 }
 
+void DeviceScene::prepare_for(const FlatView& view) {
+  StageOptions options = options_;
+  options.rows["samplers"] |= std::uint64_t{1} << view.view.sampler;
+  // Viewers change between these two, which cost next to nothing.
+  options.rows["cameras"] |= std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
+  if (options == options_) return;
+  kernels_ = Kernels(device_, options);
+  options_ = std::move(options);
+}
+
 Bindings DeviceScene::bindings() const {
   Bindings out;
   buffers_.bind(out);

@@ -22,6 +22,8 @@ class DeviceScene {
   /// are the kernels when the scene needs others. Renderers on this are to be reset; queries go on. Throws RunError when it does
   /// not fit, and then this scene is of no more use.
   void update(const FlatScene& scene, const SceneChanges& changes);
+  /// Makes the kernels anew where they do not know the view's sampler or camera yet.
+  void prepare_for(const FlatView& view);
   /// Bytes that updates have sent.
   std::uint64_t bytes_updated() const { return bytes_updated_; }
 

@@ -114,7 +114,9 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
            {"materials", scene.material_kinds()},
            {"textures", scene.texture_kinds()},
            {"lights", scene.light_kinds()},
-           {"media", scene.medium_kinds()}}};
+           {"media", scene.medium_kinds()},
+           {"samplers", 0},  // DeviceScene::prepare_for
+           {"cameras", 0}}};
 }
 
 StageOptions StageOptions::together_with(const StageOptions& others) const {

@@ -134,6 +134,7 @@ Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptio
 }
 
 void Renderer::reset(const FlatView& view) {
+  scene_.prepare_for(view);
   if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
     sort_bits_ = sort_bits;
     const Drive& drive = drive_of(scene_.device().profile());

@@ -12,13 +12,9 @@ typedef struct {
   uint x, y;  // pixel of the full image
   uint sample;
   uint seed;  // of the pixel
+  uint number, key;  // of the Sobol samplers: the point's number within the sequence that the key names
   __global const ViewRecord* view;
 } PathSample;
-
-static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y, uint sample) {
-  PathSample s = {x, y, sample, pixel_seed(x, y, view->seed), view};
-  return s;
-}
 
 static inline uint reverse_bits(uint x) {
   x = (x >> 16) | (x << 16);

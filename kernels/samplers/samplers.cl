@@ -11,11 +11,34 @@
 
 #include "samplers/sampler_types.cl"
 #include "samplers/{samplers}.cl"
+#include "samplers/zsobol.cl"
+
+// Programs that know one sampler alone do not ask which it is.
+enum {
+  sampler_rows = 0
+#define SAMPLER(name) + 1
+#include "rows/samplers.def"
+#undef SAMPLER
+};
+enum {
+  sampler_sum = 0
+#define SAMPLER(name) + sampler_##name
+#include "rows/samplers.def"
+#undef SAMPLER
+};
+static inline uint sampler_of(__global const ViewRecord* view) { return sampler_rows == 1 ? (uint)sampler_sum : view->sampler; }
+
+static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y, uint sample) {
+  const uint seed = pixel_seed(x, y, view->seed);
+  PathSample at = {x, y, sample, seed, sample, seed, view};
+  if (sampler_of(view) == sampler_zsobol) zsobol_address(&at);
+  return at;
+}
 
 // Values in [0, 1).
 static inline float2 sampler_2d(PathSample at, uint dimension) {
   uint2 pair = (uint2)(0u);
-  switch (at.view->sampler) {
+  switch (sampler_of(at.view)) {
 #define SAMPLER(name) \
   case sampler_##name: pair = name##_pair(at, dimension); break;
 #include "rows/samplers.def"
@@ -27,7 +50,7 @@ static inline float2 sampler_2d(PathSample at, uint dimension) {
 
 // Stratified over the samples of a pixel, where the sampler does that, with all of its bits.
 static inline uint sampler_bits(PathSample at, uint dimension) {
-  switch (at.view->sampler) {
+  switch (sampler_of(at.view)) {
 #define SAMPLER(name) \
   case sampler_##name: return name##_bits(at, dimension);
 #include "rows/samplers.def"

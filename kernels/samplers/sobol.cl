@@ -9,14 +9,14 @@
 #include "samplers/sampler_types.cl"
 
 static inline uint2 sobol_pair(PathSample at, uint dimension) {
-  const uint seed = hash_combine(at.seed, dimension);
-  const uint index = shuffled_index(at.sample, seed);
+  const uint seed = hash_combine(at.key, dimension);
+  const uint index = shuffled_index(at.number, seed);
   return (uint2)(owen_sobol_x(index, seed), owen_sobol_y(index, seed));
 }
 
 static inline uint sobol_bits(PathSample at, uint dimension) {
-  const uint seed = hash_combine(at.seed, dimension);
-  return owen_sobol_x(shuffled_index(at.sample, seed), seed);
+  const uint seed = hash_combine(at.key, dimension);
+  return owen_sobol_x(shuffled_index(at.number, seed), seed);
 }
 
 #endif

@@ -8,6 +8,7 @@
 #define CAPLET_SAMPLERS_ZSOBOL_CL
 
 #include "samplers/sampler_types.cl"
+#include "samplers/sobol.cl"
 
 // The low 16 bits at the even places of 32.
 static inline uint spread_bits(uint x) {
@@ -18,26 +19,17 @@ static inline uint spread_bits(uint x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-// The number of a sample's point. What lies beyond its 32 bits, and samples beyond those that were asked for, become the seed of
-// another sequence.
-static inline uint zsobol_index(PathSample at, uint* seed) {
-  const uint bits = at.view->sampler_x;  // of a sample's number
-  const ulong pixel = (ulong)(spread_bits(at.x) | (spread_bits(at.y) << 1));
-  const ulong index = (pixel << bits) | (at.sample & ((1u << bits) - 1u));
-  *seed = hash_combine(hash_combine(*seed, (uint)(index >> 32)), at.sample >> bits);
-  return shuffled_index((uint)index, *seed);
+// Sets the number and the key of a sample's point. What lies beyond the 32 bits of a number, and samples beyond those that were asked
+// for, name another sequence.
+static inline void zsobol_address(PathSample* at) {
+  const uint bits = at->view->sampler_x;  // of a sample's number
+  const ulong pixel = (ulong)(spread_bits(at->x) | (spread_bits(at->y) << 1));
+  const ulong index = (pixel << bits) | (at->sample & ((1u << bits) - 1u));
+  at->number = (uint)index;
+  at->key = hash_combine(hash_combine(hash_mix(at->view->seed), (uint)(index >> 32)), at->sample >> bits);
 }
 
-static inline uint2 zsobol_pair(PathSample at, uint dimension) {
-  uint seed = hash_combine(hash_mix(at.view->seed), dimension);
-  const uint index = zsobol_index(at, &seed);
-  return (uint2)(owen_sobol_x(index, seed), owen_sobol_y(index, seed));
-}
-
-static inline uint zsobol_bits(PathSample at, uint dimension) {
-  uint seed = hash_combine(hash_mix(at.view->seed), dimension);
-  const uint index = zsobol_index(at, &seed);
-  return owen_sobol_x(index, seed);
-}
+static inline uint2 zsobol_pair(PathSample at, uint dimension) { return sobol_pair(at, dimension); }
+static inline uint zsobol_bits(PathSample at, uint dimension) { return sobol_bits(at, dimension); }
 
 #endif

@@ -56,7 +56,8 @@ std::string cornell_box_row(int samples, bool& within) {
   return fmt::format(
       "\nThe standard deviation of z is below 1 because Caplet states the variance of independent samples,\n"
       "which is an upper bound for low-discrepancy ones. The rows of environment images stand where Mitsuba\n"
-      "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` at depth 65, 256 x 256 pixels, {} samples differs by\n{:+.2f} % from "
+      "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` at depth 65, 256 x 256 "
+      "pixels, {} samples differs by\n{:+.2f} % from "
       "`TungstenRender.exr` (an RGB render; within 1.5 %: {}).\n",
       samples, 100 * difference, within ? "yes" : "NO");
 }

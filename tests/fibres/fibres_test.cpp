@@ -345,7 +345,8 @@ TEST(Vtp, LinesAreThoseOfTheirOffsets) {
 
 // A piece without numbers of lines has none; one without numbers of points has no points.
 TEST(Vtp, PiecesWithoutNumbersAreEmpty) {
-  const std::string empty = "<Piece NumberOfPoints='1'><Points><DataArray type='Float32' format='ascii'>0 0 0</DataArray></Points></Piece>";
+  const std::string empty =
+      "<Piece NumberOfPoints='1'><Points><DataArray type='Float32' format='ascii'>0 0 0</DataArray></Points></Piece>";
   EXPECT_EQ(read_vtp(vtp(empty + vtp_lines("2 0 1", "3")), "a.vtp").ends, (std::vector<std::uint64_t>{3}));
   std::string one = vtp_lines("0", "1", "0 0 0");
   one.replace(one.find(" NumberOfPoints='3'"), 19, "");

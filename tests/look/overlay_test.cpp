@@ -32,7 +32,10 @@ Scene ball(double fov = 0) {
   scene.film.width = 400;
   scene.film.height = 200;
   scene.unit = "\u00b5m";
-  scene.camera.projection = PerspectiveProjection{fov};
+  if (fov > 0)
+    scene.camera.projection = PerspectiveProjection{fov};
+  else
+    scene.camera.projection = OrthographicProjection{};
   scene.camera.world_from_camera = glm::dmat4(1);
   scene.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
   if (fov == 0) scene.camera.screen_window = {-50, 50, -25, 25};
