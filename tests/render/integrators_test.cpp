@@ -48,6 +48,16 @@ TEST(AmbientOcclusion, EndsAtItsGreatestDistance) {
   expect_mean(mean_of_text(text + floor + ceiling, 1024), 0.25);
 }
 
+// Of what is seen from behind the rays leave on that side.
+TEST(AmbientOcclusion, IsOfTheSideThatIsSeen) {
+  const std::string upright = looking_at_floor("\"ambientocclusion\"");
+  const std::string below =
+      upright.substr(0, upright.find("LookAt")) + "LookAt 2 -5 -2  2 0 0  0 0 1\n" + upright.substr(upright.find("Camera"));
+  expect_mean(mean_of_text(below + floor + resting_ball, 64), 1);
+  expect_mean(mean_of_text(below + floor + "AttributeBegin Translate 0 0 -1 Shape \"sphere\" AttributeEnd\n", 1024),
+              1 - 1 / std::pow(5, 1.5));
+}
+
 // Lights, materials, bumps and media do not count, and there is nothing where no surface is.
 TEST(AmbientOcclusion, IsOfTheShapesAlone) {
   const double value = 1 - 1 / std::pow(5, 1.5);
@@ -56,6 +66,7 @@ TEST(AmbientOcclusion, IsOfTheShapesAlone) {
   const std::string looks =
       "LightSource \"infinite\" \"rgb L\" [3 3 3]\nLightSource \"point\" \"point3 from\" [2 -2 2]\n"
       "Texture \"f\" \"float\" \"fbm\"\nMaterial \"conductor\" \"texture displacement\" \"f\"\n";
+  expect_mean(mean_of_text(text + looks + "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" + floor + resting_ball, 1024), value);
   expect_mean(mean_of_text(text + looks + floor + "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" + resting_ball, 1024), value);
   const std::string fog = "Material \"diffuse\"\n" + smoke +
                           "AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\"\n" +
@@ -75,8 +86,9 @@ std::string room(const std::string& integrator) {
          " \"integer maxdepth\" 3\nLookAt 0 -4 2  0 0 0.6  0 0 1\nCamera \"perspective\" \"float fov\" 50\nPixelFilter \"box\"\n"
          "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nSampler \"independent\"\nWorldBegin\n"
          "LightSource \"infinite\" \"rgb L\" [0.2 0.2 0.2]\n"
-         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Translate 0 0 3 Shape \"sphere\" \"float radius\" 1 "
-         "AttributeEnd\n"
+         // So large that light samples and scattered rays find it about as well.
+         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [0.4 0.4 0.4] ReverseOrientation Translate 0 0 3\n"
+         "Shape \"disk\" \"float radius\" 6 AttributeEnd\n"
          "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"disk\" \"float radius\" 6\n"
          "AttributeBegin Material \"conductor\" \"float roughness\" 0.5 Translate -1 0 0.6 Shape \"sphere\" \"float radius\" 0.6 "
          "AttributeEnd\n"
