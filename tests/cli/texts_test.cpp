@@ -173,7 +173,7 @@ TEST(Texts, ManPageHasAllOptions) {
       const std::string group = between(shared.substr(at), ".SS", "\n.SS");
       if (between(group, "Of ", "\n").find("\\fB" + command + "\\fR") == std::string::npos) continue;
       of_command += group;
-      EXPECT_EQ(own.find(".SS" + group.substr(0, group.find('\n') + 1)), std::string::npos) << group << " in " << command;
+      EXPECT_EQ(own.find(group.substr(0, group.find('\n') + 1)), std::string::npos) << group << " in " << command;
     }
     for (const std::string& option : options)
       EXPECT_TRUE(of_command.find("\\fB" + in_roff(option) + "\\fR") != std::string::npos) << option << " of " << command;
