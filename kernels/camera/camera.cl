@@ -13,8 +13,8 @@
 #include "camera/camera_types.cl"
 #include "camera/{cameras}.cl"
 
-// The ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at u_lens in [0, 1)^2.
-// World space, unit direction, t in [0, INFINITY).
+// The ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at
+// u_lens in [0, 1)^2. World space, unit direction, t in [0, INFINITY).
 static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens) {
   float3 origin = (float3)(0.0f), direction = (float3)(0.0f, 0.0f, 1.0f);
   switch (camera->kind) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What cameras share: their kinds, the image plane and the lens.
+// This file holds what cameras share: the image plane and the lens.
 #ifndef CAPLET_CAMERA_CAMERA_TYPES_CL
 #define CAPLET_CAMERA_CAMERA_TYPES_CL
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All directions from one point by longitude and latitude, as pbrt-v4's spherical camera has them: rows run from +y to -y, columns begin
-// at +x and go by +z.
+// All directions from one point by longitude and latitude, as pbrt-v4's spherical camera has them: rows run from +y to
+// -y, columns begin at +x and go by +z.
 #ifndef CAPLET_CAMERA_EQUIRECTANGULAR_CL
 #define CAPLET_CAMERA_EQUIRECTANGULAR_CL
 
 #include "camera/camera_types.cl"
 
-static inline void equirectangular_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin, float3* direction) {
+static inline void equirectangular_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin,
+                                       float3* direction) {
   (void)u_lens, (void)origin;
   float sine;
   *direction = latlong_to_sphere((float2)(raster.x * camera->per_pixel_x, raster.y * camera->per_pixel_y), &sine).xzy;

@@ -7,11 +7,14 @@
 
 #include "camera/camera_types.cl"
 
-static inline void orthographic_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin, float3* direction) {
+static inline void orthographic_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin,
+                                    float3* direction) {
   *origin = (float3)(plane_place(camera, raster), 0.0f);
   through_lens(camera, u_lens, origin, direction);
 }
 
-static inline float2 orthographic_spread(__global const CameraRecord* camera, float2 raster) { return (float2)(plane_spread(camera), 0.0f); }
+static inline float2 orthographic_spread(__global const CameraRecord* camera, float2 raster) {
+  return (float2)(plane_spread(camera), 0.0f);
+}
 
 #endif

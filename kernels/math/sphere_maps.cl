@@ -7,8 +7,8 @@
 
 #include "math/vector.cl"
 
-// Equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008): the diamond
-// |u| + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square, the polar cap 1 - z <= r^2 the same share of the sphere.
+// Equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008): the diamond |u|
+// + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square, the polar cap 1 - z <= r^2 the same share of the sphere.
 static inline float3 square_to_sphere(float2 uv) {
   const float2 signed_uv = 2.0f * uv - 1.0f;
   const float2 a = fabs(signed_uv);

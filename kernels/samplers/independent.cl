@@ -12,7 +12,8 @@ static inline uint independent_bits(PathSample at, uint dimension) {
 }
 
 static inline uint2 independent_pair(PathSample at, uint dimension) {
-  return (uint2)(independent_bits(at, dimension), hash_combine(hash_combine(at.seed, dimension) ^ 0x02e5be93u, at.sample));
+  return (uint2)(independent_bits(at, dimension),
+                 hash_combine(hash_combine(at.seed, dimension) ^ 0x02e5be93u, at.sample));
 }
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What samplers share: the address of a path's random numbers.
+// This file holds what samplers share: the address of a path's random numbers, and scrambled Sobol points.
 #ifndef CAPLET_SAMPLERS_SAMPLER_TYPES_CL
 #define CAPLET_SAMPLERS_SAMPLER_TYPES_CL
 
@@ -24,8 +24,8 @@ static inline uint reverse_bits(uint x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-// Each bit is flipped by a hash of the bits below it: on reversed bits, an Owen scrambling (constants: Vegdahl, "Building a
-// better LK hash", 2021).
+// Each bit is flipped by a hash of the bits below it: on reversed bits, an Owen scrambling (constants: Vegdahl,
+// "Building a better LK hash", 2021).
 static inline uint scramble_reversed(uint x, uint seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -35,10 +35,12 @@ static inline uint scramble_reversed(uint x, uint seed) {
 }
 
 // The place of a number in the shuffled sequence; an aligned block of 2^m numbers stays an aligned block.
-static inline uint shuffled_index(uint number, uint seed) { return reverse_bits(scramble_reversed(reverse_bits(number), seed)); }
+static inline uint shuffled_index(uint number, uint seed) {
+  return reverse_bits(scramble_reversed(reverse_bits(number), seed));
+}
 
-// The second Sobol dimension, digits least significant first on both sides: digit j is the sum over k of C(k, j) times digit k,
-// modulo 2, and C(k, j) is odd exactly when j is a subset of k (Lucas).
+// The second Sobol dimension, digits least significant first on both sides: digit j is the sum over k of C(k, j) times
+// digit k, modulo 2, and C(k, j) is odd exactly when j is a subset of k (Lucas).
 static inline uint pascal_reversed(uint x) {
   x ^= x >> 16;
   x ^= (x >> 8) & 0x00ff00ffu;
@@ -48,7 +50,9 @@ static inline uint pascal_reversed(uint x) {
 }
 
 // Coordinates of point `index` of the first two Sobol dimensions under the Owen scrambling of a seed, 32 bits each.
-static inline uint owen_sobol_x(uint index, uint seed) { return reverse_bits(scramble_reversed(index, hash_mix(seed ^ 0x68bc21ebu))); }
+static inline uint owen_sobol_x(uint index, uint seed) {
+  return reverse_bits(scramble_reversed(index, hash_mix(seed ^ 0x68bc21ebu)));
+}
 static inline uint owen_sobol_y(uint index, uint seed) {
   return reverse_bits(scramble_reversed(pascal_reversed(index), hash_mix(seed ^ 0x02e5be93u)));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The random numbers of paths, by their addresses: pixel, sample and dimension (dimensions.def). The only switches over kinds of samplers.
+// The random numbers of paths, by their addresses: pixel, sample and dimension (dimensions.def). The only switches over
+// kinds of samplers.
 //
 // A sampler of samplers.def is a file of this folder by its name, with
 //   uint2 NAME_pair(at, dimension)   a point of the unit square, 32 bits a coordinate
@@ -26,7 +27,9 @@ enum {
 #include "rows/samplers.def"
 #undef SAMPLER
 };
-static inline uint sampler_of(__global const ViewRecord* view) { return sampler_rows == 1 ? (uint)sampler_sum : view->sampler; }
+static inline uint sampler_of(__global const ViewRecord* view) {
+  return sampler_rows == 1 ? (uint)sampler_sum : view->sampler;
+}
 
 static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y, uint sample) {
   const uint seed = pixel_seed(x, y, view->seed);

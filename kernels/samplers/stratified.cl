@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One sample in each of sampler_x times sampler_y equal parts of the unit square, in an order that differs by pixel and dimension.
-// Samples beyond that number begin a new round of all parts.
+// One sample in each of sampler_x times sampler_y equal parts of the unit square, in an order that differs by pixel and
+// dimension. Samples beyond that number begin a new round of all parts.
 #ifndef CAPLET_SAMPLERS_STRATIFIED_CL
 #define CAPLET_SAMPLERS_STRATIFIED_CL
 
 #include "samplers/sampler_types.cl"
 
-// A permutation of the numbers below `count`: rounds of bijections of the least power of 2 that holds them, repeated until the result
-// is below `count` (cycle walking; Black and Rogaway, "Ciphers with arbitrary finite domains", 2002).
+// A permutation of the numbers below `count`: rounds of bijections of the least power of 2 that holds them, repeated
+// until the result is below `count` (cycle walking; Black and Rogaway, "Ciphers with arbitrary finite domains", 2002).
 static inline uint permuted_number(uint number, uint count, uint seed) {
   const uint bits = 32u - clz(count - 1u);
   const uint mask = bits == 0u ? 0u : 0xffffffffu >> (32u - bits), shift = (bits + 1u) / 2u;
@@ -44,7 +44,8 @@ static inline uint2 stratified_pair(PathSample at, uint dimension) {
 
 static inline uint stratified_bits(PathSample at, uint dimension) {
   const uint seed = hash_combine(at.seed, dimension);
-  return within_part(at, stratified_part(at, seed), at.view->sampler_x * at.view->sampler_y, hash_combine(seed ^ 0x68bc21ebu, at.sample));
+  return within_part(at, stratified_part(at, seed), at.view->sampler_x * at.view->sampler_y,
+                     hash_combine(seed ^ 0x68bc21ebu, at.sample));
 }
 
 #endif

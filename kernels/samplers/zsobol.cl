@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One Sobol sequence over the whole image, whose points are dealt to pixels in a shuffled Morton order: the samples of a square block of
-// pixels are a net together, so that the error of neighbouring pixels cancels. Ahmed and Wonka, "Screen-space blue-noise diffusion of
-// Monte Carlo sampling error via hierarchical ordering of pixels", 2020; the shuffling is Burley's.
+// One Sobol sequence over the whole image, whose points are dealt to pixels in a shuffled Morton order: the samples of
+// a square block of pixels are a net together, so that the error of neighbouring pixels cancels. Ahmed and Wonka,
+// "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels", 2020; the
+// shuffling is Burley's.
 #ifndef CAPLET_SAMPLERS_ZSOBOL_CL
 #define CAPLET_SAMPLERS_ZSOBOL_CL
 
@@ -19,8 +20,8 @@ static inline uint spread_bits(uint x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-// Sets the number and the key of a sample's point. What lies beyond the 32 bits of a number, and samples beyond those that were asked
-// for, name another sequence.
+// Sets the number and the key of a sample's point. What lies beyond the 32 bits of a number, and samples beyond those
+// that were asked for, name another sequence.
 static inline void zsobol_address(PathSample* at) {
   const uint bits = at->view->sampler_x;  // of a sample's number
   const ulong pixel = (ulong)(spread_bits(at->x) | (spread_bits(at->y) << 1));

@@ -37,8 +37,8 @@ enum {
 #define CAMERA_SAMPLE(name) camera_dimension_##name
 #define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
 
-// The density of a scattered direction, as it is weighted against that of light samples. Without such weights it is so small that
-// scattered rays find only lights that samples cannot.
+// The density of a scattered direction, as it is weighted against that of light samples. Without such weights it is so
+// small that scattered rays find only lights that samples cannot.
 static inline float path_pdf(__global const ViewRecord* view, float pdf) {
   return (view->strategy & CAPLET_STRATEGY_NO_MIS) != 0u ? 0x1p-60f : pdf;
 }
@@ -72,7 +72,8 @@ static inline uint path_number(__global const BatchRecord* batch, uint pixel, ui
 // Of path number `path` of a batch.
 static inline PathSample path_sample(__global const BatchRecord* batch, __global const ViewRecord* view, uint path) {
   const uint2 pixel = batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
-  return sample_of_pixel(view, pixel.x, pixel.y, batch->sample_begin + (batch->by_sample ? path / batch->pixel_count : path % batch->sample_count));
+  return sample_of_pixel(view, pixel.x, pixel.y, batch->sample_begin + (batch->by_sample
+                             ? path / batch->pixel_count : path % batch->sample_count));
 }
 
 // The ray of a path that goes on from a point.
@@ -83,9 +84,9 @@ static inline RayRecord path_onward(float3 origin, float3 direction) {
   return ray;
 }
 
-// Russian roulette: whether a path goes on, and with what throughput. The square root keeps paths longer than their throughput alone would, and the
-// first three scatterings always go on: variance falls faster than time grows (decision 3). eta_scale takes the squared indices of
-// refractions out of the throughput.
+// Russian roulette: whether a path goes on, and with what throughput. The square root keeps paths longer than their
+// throughput alone would, and the first three scatterings always go on: variance falls faster than time grows (decision
+// 3). eta_scale takes the squared indices of refractions out of the throughput.
 static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
   const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));
   if (depth < 3 || survival >= 1.0f) return 1;

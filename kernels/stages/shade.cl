@@ -26,7 +26,8 @@ static inline float4 film_white(const Stage* g, float4 wavelengths) {
 
 // CIE XYZ under white, whatever lights there are: a white surface has albedo 1 1 1.
 static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
-  return xyz_from_spectrum(g->observer.observer, bsdf_albedo(bsdf, wo_local) * film_white(g, wavelengths), wavelengths, pdfs);
+  const float4 seen = bsdf_albedo(bsdf, wo_local) * film_white(g, wavelengths);
+  return xyz_from_spectrum(g->observer.observer, seen, wavelengths, pdfs);
 }
 
 // Number in the object-id layer: the shape's, or that of the instance which holds it.
@@ -109,8 +110,9 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   append_shadow(g, out, path);
 }
 
-// Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the integrator asks for it, in place of
-// bsdf_sample: the integrators "simplepath" and "randomwalk". Returns 0 where nothing is scattered there.
+// Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the integrator asks for
+// it, in place of bsdf_sample: the integrators "simplepath" and "randomwalk". Returns 0 where nothing is scattered
+// there.
 static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_local, float2 u, BsdfSample* s) {
   const int is_sphere = (strategy & CAPLET_STRATEGY_SPHERE) != 0u || !bsdf_is_opaque(bsdf);
   const float z = is_sphere ? 1.0f - 2.0f * u.x : copysign(u.x, wo_local.z), across = sqrt(fmax(0.0f, 1.0f - z * z));
@@ -125,9 +127,10 @@ static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_loca
   return max4(s->weight) > 0.0f;
 }
 
-// Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it does not meet within the greatest
-// distance is white.
-static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, const HitRecord* hit, const Surface* s, float3 wo) {
+// Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it does not meet within
+// the greatest distance is white.
+static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, const HitRecord* hit, const Surface* s,
+                                      float3 wo) {
   __global const ViewRecord* view = g->view.view;
   const float2 u = sampler_2d(path_sample(g->batch.batch, view, path), SCATTERING_SAMPLE(bsdf, 0));
   float3 wi_local = sample_cosine_hemisphere(u);
