@@ -5,8 +5,8 @@
 //
 // A camera of cameras.def is a file of this folder by its name, with
 //   void NAME_ray(camera, raster, u_lens, &origin, &direction)   camera space, the direction of any length
-//   float2 NAME_spread(camera, raster)                           how far apart the rays of neighbouring pixels are: at the camera,
-//                                                                and what comes to it at length 1
+//   float2 NAME_spread(camera, raster)   how far apart the rays of neighbouring pixels are: at the camera, and what
+//                                        comes to it at length 1
 #ifndef CAPLET_CAMERA_CAMERA_CL
 #define CAPLET_CAMERA_CAMERA_CL
 

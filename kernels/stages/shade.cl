@@ -207,7 +207,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #endif
     float4 sky = (float4)(0.0f);
     if (!is_occlusion)
-      sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x, specular);
+      sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x,
+                           specular);
     else if (depth > 0u)
       sky = film_white(g, wavelengths);
     g->radiance.path_radiance[path] += throughput * sky;
@@ -287,7 +288,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float2 choices = sampler_2d(at, SCATTERING_SAMPLE(choices, depth));
   const uint side = receiving_side(&frame, &bsdf, wo_local);
   const int by_shading = goes_by_shading_normal(&s, &bsdf, bumped);
-  if (g->lights.lighting->sampled_light_count > 0 && (strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u && !bsdf_is_specular(&bsdf))
+  if (g->lights.lighting->sampled_light_count > 0 && (strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u &&
+      !bsdf_is_specular(&bsdf))
     sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, by_shading, wo_local, wo, throughput, wavelengths,
                  sampler_bits(at, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
 

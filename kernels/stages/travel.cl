@@ -89,7 +89,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   if (g->lights.lighting->sampled_light_count > 0 && (g->view.view->strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u)
     sample_medium_light(g, out, &scene, path, p, d, asymmetry, here, settled, throughput, wavelengths,
-                        sampler_bits(at, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
+                        sampler_bits(at, SCATTERING_SAMPLE(choices, depth)),
+                        sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
 
   float4 scatter = g->carried.path_scatter[path];
   float pdf;
