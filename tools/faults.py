@@ -188,6 +188,12 @@ class Program:
     rooms: set
     exclude: str = ""
     limit: float = 0
+    reached: set = dataclasses.field(default_factory=set)  # numbers of the faults that it comes by
+
+    @property
+    def state(self):
+        """What it is made of; it changes when the program is built again."""
+        return [(f.stat().st_mtime_ns if f.exists() else 0) for f in (self.folder / self.name, BUILD / "bin/caplet")]
 
 
 def programs():
@@ -203,12 +209,14 @@ def programs():
     return out
 
 
-def run(command, folder, number, limit):
-    """Exit status, or None after the time limit, and the output."""
+def run(command, folder, number, limit, reached=None):
+    """Exit status, or None after the time limit, and the output. reached: a file for the faults that it comes by."""
     with tempfile.TemporaryDirectory(prefix="f-") as temporary:  # short: messages cut long paths
         env = mutants.environment(pathlib.Path(temporary), WORK / "pocl", BUILD / "bin/caplet")
         if number is not None:
             env["CAPLET_FAULT"] = str(number)
+        if reached:
+            env["CAPLET_REACHED"] = str(reached)
         if (data := ROOT.parent / "shared/data").is_dir():
             env.setdefault("CAPLET_DATA", str(data))
         with subprocess.Popen(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -221,12 +229,16 @@ def run(command, folder, number, limit):
                 return process.communicate()[0], None
 
 
-def tried(program, number, limit):
+def numbers_in(path):
+    return {int(line) for line in path.read_text().split()} if path.exists() else set()
+
+
+def tried(program, number, limit, reached=None):
     """Empty when all passed, or the tests that failed."""
     command = [str(program.folder / program.name)]
     if program.exclude:
         command.append(f"--gtest_filter=-{program.exclude}")
-    output, status = run(command + (["--gtest_fail_fast"] if number is not None else []), program.folder, number, limit)
+    output, status = run(command + (["--gtest_fail_fast"] if number is not None else []), program.folder, number, limit, reached)
     failed = sorted(set(re.findall(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", output, re.MULTILINE)))
     begun = re.findall(r"^\[ RUN      \] (\S+)", output, re.MULTILINE)
     if not failed and status != 0:
@@ -237,34 +249,46 @@ def tried(program, number, limit):
 
 class Tests:
     def __init__(self, all_programs, is_fast):
-        self.programs, self.is_fast, self.lock, self.others = all_programs, is_fast, threading.Lock(), None
+        self.programs, self.is_fast, self.lock, self.others, self.others_reach = all_programs, is_fast, threading.Lock(), None, set()
         self.seen = collections.Counter()
 
-    def ready(self, program):
-        """Runs it without faults, once: what fails then says nothing of a fault."""
-        with self.lock:
-            while not program.limit:
-                start = time.monotonic()
-                failed = tried(program, None, 1800)
-                if any("(" in f for f in failed):
-                    raise Impossible(f"{program.name} without faults: {failed[0]}")
-                if failed:
-                    print(f"{program.name}: not counted, for they fail without faults: {' '.join(failed)}", file=sys.stderr, flush=True)
-                program.exclude = ":".join(failed)
-                program.limit = 30 + 8 * (time.monotonic() - start)
+    def ready(self, jobs, signature):
+        """Runs each program without faults, once: what fails then says nothing of a fault. Kept while the program is the same."""
+        kept_path = WORK / "ready.json"
+        kept = json.loads(kept_path.read_text()) if kept_path.exists() else {}
+        kept = kept.get("programs", {}) if kept.get("faults") == signature else {}
+
+        def one(program):
+            known = kept.get(program.name)
+            if known and known["state"] == program.state:
+                program.exclude, program.limit, program.reached = known["exclude"], known["limit"], set(known["reached"])
+                return
+            reached = WORK / f"reached-{program.name}"
+            reached.unlink(missing_ok=True)
+            start = time.monotonic()
+            failed = tried(program, None, 3600, reached)
+            if any("(" in f for f in failed):
+                raise Impossible(f"{program.name} without faults: {failed[0]}")
+            if failed:
+                print(f"{program.name}: not counted, for they fail without faults: {' '.join(failed)}", file=sys.stderr, flush=True)
+            program.exclude, program.limit, program.reached = ":".join(failed), 30 + 8 * (time.monotonic() - start), numbers_in(reached)
+            with self.lock:
+                kept[program.name] = {"state": program.state, "exclude": program.exclude, "limit": program.limit,
+                                      "reached": sorted(program.reached)}
+                kept_path.write_text(json.dumps({"faults": signature, "programs": kept}))
+
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            # Those without a device first: their kernels are built by then, and most faults are seen by them.
+            list(pool.map(one, sorted(self.programs, key=lambda p: ("fast" not in p.labels, p.name))))
 
     def sees(self, number, place):
-        room, folder = place.file.split("/")[1], place.file.rsplit("/", 1)[0]
-        stages = [[p for p in self.programs if is_fast == ("fast" in p.labels) and links == (room in p.rooms) and (links or "*" in p.rooms)]
-                  for is_fast in (True, False) for links in (True, False)]
-        for stage in stages:
-            for program in stage:
-                self.ready(program)
-            # Those that have seen faults beside it, then those that are done sooner.
-            for program in sorted(stage, key=lambda p: (-self.seen[folder, p.name], p.limit)):
-                if failed := tried(program, number, program.limit):
-                    self.seen[folder, program.name] += 1
-                    return f"{program.name}.{failed[0]}"
+        folder = place.file.rsplit("/", 1)[0]
+        # Those without a device, then those that have seen faults beside it, then those that are done sooner.
+        for program in sorted((p for p in self.programs if number in p.reached),
+                              key=lambda p: ("fast" not in p.labels, -self.seen[folder, p.name], p.limit)):
+            if failed := tried(program, number, program.limit):
+                self.seen[folder, program.name] += 1
+                return f"{program.name}.{failed[0]}"
         return "" if self.is_fast else self.by_ctest(number)
 
     def by_ctest(self, number):
@@ -272,7 +296,12 @@ class Tests:
         command = ["ctest", "-R", r"^(python|badfiles)\."]
         with self.lock:
             if self.others is None:
-                self.others = set(re.findall(r"^\s+\d+ - (\S+) \(", run(command, BUILD, None, 3600)[0], re.MULTILINE))
+                reached = WORK / "reached-python"
+                reached.unlink(missing_ok=True)
+                self.others = set(re.findall(r"^\s+\d+ - (\S+) \(", run(command, BUILD, None, 3600, reached)[0], re.MULTILINE))
+                self.others_reach = numbers_in(reached)
+        if number not in self.others_reach:
+            return ""
         output, _ = run(command + ["--stop-on-failure"] + (["-E", "|".join(map(re.escape, self.others))] if self.others else []), BUILD, number, 3600)
         failed = re.findall(r"^\s+\d+ - (\S+) \(", output, re.MULTILINE)
         return failed[0] if failed else ""
@@ -303,6 +332,8 @@ def try_all(options):
     print(f"building {len(targets)} programs with {len(faults)} faults (minutes the first time)", file=sys.stderr, flush=True)
     Build().build(draw, faults, targets, options.jobs)
     tests, seen, write_lock = Tests(chosen, options.fast), {}, threading.Lock()
+    print(f"running {len(chosen)} programs without faults", file=sys.stderr, flush=True)
+    tests.ready(options.jobs, [p.row(n) for n, p in faults.items()])
     result = open(WORK / "result.md", "w")
 
     def say(line):
@@ -315,7 +346,8 @@ def try_all(options):
         by = tests.sees(number, faults[number])
         with write_lock:
             seen[number] = by
-            say(f"{faults[number].row(number)} {by or 'UNSEEN'} |")
+            reached = number in tests.others_reach or any(number in p.reached for p in chosen)
+            say(f"{faults[number].row(number)} {by or ('UNSEEN' if reached else 'UNSEEN, no test comes by')} |")
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         only = [n for n in faults if not options.only or str(n) in options.only.split(",")]
