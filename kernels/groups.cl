@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The groups of shared/groups.h as structs: functions take those that they need.
+// This file defines the groups of shared/groups.h as structs. Functions take those that they need.
 #ifndef CAPLET_GROUPS_CL
 #define CAPLET_GROUPS_CL
 
@@ -24,7 +24,8 @@ ALL_GROUPS
 #undef BUFFER
 #undef GROUP_END
 
-// What sampling a light needs: its shape, its surfaces, its spectrum, and what lets rays through it.
+// Scene holds what sampling a light needs: its shape, its surfaces, its spectrum, and the materials
+// that let rays through it.
 typedef struct {
   Tree tree;
   Surfaces surfaces;

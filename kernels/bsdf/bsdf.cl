@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The one door to all BSDFs. Local frame: n = (0, 0, 1) outward, wo and wi unit and away from the surface, z < 0: inside.
-// Dispersive materials (bsdf_is_dispersive) act at the hero wavelength, component 0, alone: components 1..3 of what they evaluate
-// and of their weights are 0. The caller makes up for them once a path, by 4 on component 0 (or by a quarter of its pdf).
-// Of stochastic materials (trait_stochastic) values are unbiased estimates and weights those of a path through them; their densities are
-// fit for weighing strategies against each other, integrate to 1 at most, and are the same at each call.
+// This file dispatches to all BSDFs. Local frame: n = (0, 0, 1) outward, wo and wi unit and away
+// from the surface, z < 0: inside. Dispersive materials (bsdf_is_dispersive) act at the hero
+// wavelength, component 0, alone: components 1..3 of their values and weights are 0. The caller
+// compensates once a path, by 4 on component 0 (or by a quarter of its pdf). Stochastic materials
+// (trait_stochastic) return unbiased estimates of their values, and weights of a random path
+// through them. Their densities are meant for multiple importance sampling: they integrate to 1 at
+// most and are the same at each call.
 //
-// A material of materials.def is a file of this folder by its name, with
-//   void NAME_make(m, b)                            its parameters (material_albedo and its like) at a point
-//   int NAME_is_specular(b)                         nothing but delta scattering
-//   float4 NAME_eval(b, inside, wo, wi, pdf)        f |cos wi| and its density; *pdf is 0 before. Not asked of what is specular
-//   int NAME_sample(b, inside, smooth, wo, u_component, u, s)   smooth: NAME_is_specular
+// A material of materials.def has a file in this folder with its name, which defines
+//   void NAME_make(m, b)  reads its parameters (material_albedo and the like) at a point
+//   int NAME_is_specular(b)  1: there is nothing but delta scattering
+//   float4 NAME_eval(b, inside, wo, wi, pdf)
+//       f |cos wi| and its density; *pdf is 0 before; is not called for specular materials
+//   int NAME_sample(b, inside, smooth, wo, u_component, u, s)  smooth: NAME_is_specular
 //   float4 NAME_directional_albedo(b, wo)
-// in a frame mirrored so that wo.z > 0; inside: it was not. That of a CHOICE has
-//   uint NAME_part(m, u)                            the material in its place; *u, in [0, 1) and used up, is in [0, 1) again
+// These see a frame that is mirrored so that wo.z > 0; inside: it was mirrored. A CHOICE defines
+// instead
+//   uint NAME_part(m, u)
+//       the material in its place; *u, in [0, 1), is used up and replaced by a new number in [0, 1)
 #ifndef CAPLET_BSDF_BSDF_CL
 #define CAPLET_BSDF_BSDF_CL
 
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/{materials}.cl"
 
-// Material number `material`, which bsdf_chosen gave, at a place of a surface, at four wavelengths (nm).
+// Returns the BSDF of material number `material`, which bsdf_chosen returned, at a place of a
+// surface, at four wavelengths (nm).
 static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda) {
   __global const MaterialRecord* record = materials->materials + material;
   const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
@@ -44,7 +50,8 @@ static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra,
   return b;
 }
 
-// The material that is chosen where a surface has `material`, which is that or a part of a mix. u in [0, 1).
+// Returns the material to use where a surface has `material`: that material, or a part of a mix. u
+// in [0, 1).
 static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda, float u) {
   for (;;) {
     __global const MaterialRecord* record = materials->materials + material;
@@ -62,13 +69,13 @@ static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectr
   }
 }
 
-// The tangent that the local frame's x follows: dpdu, but a tangent across the fibre for hair on a chain (along_u), since
-// hair lies along y.
+// Returns the tangent for the local frame's x. It is dpdu, except for hair on a chain (along_u):
+// hair lies along y, so there it is a tangent across the fibre.
 static inline float3 bsdf_tangent(const Materials* materials, uint material, float3 dpdu, float3 ns, int along_u) {
   return along_u && materials->materials[material].kind == material_hair ? cross(dpdu, ns) : dpdu;
 }
 
-// Nothing but delta scattering.
+// Returns 1 if there is nothing but delta scattering.
 static inline int bsdf_is_specular(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
@@ -80,7 +87,7 @@ static inline int bsdf_is_specular(const Bsdf* b) {
   }
 }
 
-// It scatters light on the side alone that it comes from.
+// Returns 1 if the BSDF scatters light only to the side that it comes from.
 static inline int bsdf_is_opaque(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
@@ -92,7 +99,8 @@ static inline int bsdf_is_opaque(const Bsdf* b) {
   }
 }
 
-// f |cos wi| and the solid-angle density with which bsdf_sample takes wi; 0 for delta scattering.
+// Returns f |cos wi|, and the solid-angle density with which bsdf_sample takes wi; 0 for delta
+// scattering.
 static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   *pdf = 0.0f;
   if (wo.z == 0.0f || bsdf_is_specular(b)) return (float4)(0.0f);
@@ -111,8 +119,8 @@ static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   }
 }
 
-// A direction wi for wo. u_component chooses between reflection and refraction; all u in [0, 1). 0: absorbed, and *s is not to be
-// used.
+// Samples a direction wi for wo. u_component chooses between reflection and refraction; all u in
+// [0, 1). Returns 0 if the light is absorbed; *s must not be used then.
 static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float2 u, BsdfSample* s) {
   if (wo.z == 0.0f) return 0;
   const int inside = wo.z < 0.0f, smooth = bsdf_is_specular(b);
@@ -134,8 +142,8 @@ static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float
   return 1;
 }
 
-// Directional reflectance for the albedo layer, all wavelengths: exact for diffuse, smooth metals and clear glass; the rough ones
-// by their smooth counterparts.
+// Returns the directional reflectance for the albedo layer, for all wavelengths. It is exact for
+// diffuse, smooth metals and clear glass; rough materials use their smooth counterparts.
 static inline float4 bsdf_albedo(const Bsdf* b, float3 wo) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shading normals by a material's normal map or displacement (Pharr, Jakob and Humphreys 2023, 10.5.3 and 10.5.4).
+// Computes shading normals from a material's normal map or displacement (Pharr, Jakob and Humphreys
+// 2023, 10.5.3 and 10.5.4).
 #ifndef CAPLET_BSDF_BUMP_CL
 #define CAPLET_BSDF_BUMP_CL
 
@@ -21,8 +22,9 @@ enum {
   any_bump = any_normalmap | any_displacement
 };
 
-// The shading normal of material number `material` at a place whose own is ns, of unit length, on the side of the geometric normal of
-// the place. dpdu, dpdv, dndu, dndv: derivatives of the point and of ns, the latter for displacements.
+// Returns the shading normal of material number `material` at a place whose own normal is ns, of
+// unit length, on the side of the geometric normal of the place. dpdu, dpdv, dndu, dndv:
+// derivatives of the point and of ns, the latter for displacements.
 static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float3 ns, float3 dpdu,
                                  float3 dpdv, float3 dndu, float3 dndv) {
   const uint bump = materials->materials[material].bump;
@@ -36,15 +38,16 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
     const float4 turned = texture_eval(bump, &at);
     n = to_world(&frame, turned.xyz);
   } else {
-    // Across the shading normal, so that even heights leave it as it is.
+    // The derivatives are made perpendicular to the shading normal, so that even heights leave it
+    // as it is.
     dpdu -= dot(dpdu, ns) * ns;
     dpdv -= dot(dpdv, ns) * ns;
     const float3 normal = cross(dpdu, dpdv);
     if (!(dot(normal, normal) > 0.0f)) return ns;
-    // Half of what is seen at once, or little where that is not known.
+    // The step is half of the footprint, or a small one where the footprint is not known.
     float2 step = 0.5f * (fabs(place->duvdx) + fabs(place->duvdy));
     step = (float2)(step.x > 0.0f ? step.x : 5e-4f, step.y > 0.0f ? step.y : 5e-4f);
-    // In close-ups no less than floats of places and heights tell apart.
+    // In close-ups the step is not smaller than floats of places and heights can resolve.
     step = fmax(step, 0x1p-18f * fmax(fabs(place->uv.x), fabs(place->uv.y)));
     float height[3];
 #pragma unroll 1
@@ -54,7 +57,7 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
       at.place.p = place->p + move.x * dpdu + move.y * dpdv;
       height[i] = texture_eval(bump, &at).x;
     }
-    // Of the point moved by the height along the normal, the derivatives.
+    // The slopes give the derivatives of the point that is moved by the height along the normal.
     const float2 slope = (float2)(height[1] - height[0], height[2] - height[0]) / step;
     n = cross(dpdu + slope.x * ns + height[0] * dndu, dpdv + slope.y * ns + height[0] * dndv);
   }

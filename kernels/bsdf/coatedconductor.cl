@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A metal under a coat (layered.cl). wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a metal under a coat (layered.cl). wo.z > 0 (bsdf.cl mirrors the frame).
 #ifndef CAPLET_BSDF_COATEDCONDUCTOR_CL
 #define CAPLET_BSDF_COATEDCONDUCTOR_CL
 
@@ -11,7 +11,7 @@ static inline void coatedconductor_make(const MaterialPoint* m, Bsdf* b) {
   coat_make(m, b, coatedconductor_at_interface_eta, coatedconductor_at_interface_alpha_u, coatedconductor_at_interface_alpha_v, coatedconductor_at_thickness,
             coatedconductor_at_albedo, coatedconductor_at_g, coatedconductor_at_maxdepth, coatedconductor_at_nsamples);
   bsdf_roughness(b, material_number(m, coatedconductor_at_conductor_alpha_u), material_number(m, coatedconductor_at_conductor_alpha_v));
-  // As of a metal (conductor.cl), seen from within the coat.
+  // The limits are those of a metal (conductor.cl), seen from within the coat.
   b->eta = clamp(material_spectrum(m, coatedconductor_at_conductor_eta) / b->coat.eta, 0.0f, 1e4f);
   b->k = clamp(material_spectrum(m, coatedconductor_at_conductor_k) / b->coat.eta, 0.0f, 1e4f);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lambert's law under a coat (layered.cl). wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is Lambert's law under a coat (layered.cl). wo.z > 0 (bsdf.cl mirrors the frame).
 #ifndef CAPLET_BSDF_COATEDDIFFUSE_CL
 #define CAPLET_BSDF_COATEDDIFFUSE_CL
 

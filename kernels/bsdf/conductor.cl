@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Metals: GGX microfacets with the complex Fresnel reflectance, or a perfect mirror. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a metal: GGX microfacets with the complex Fresnel reflectance, or a perfect mirror.
+// wo.z > 0 (bsdf.cl mirrors the frame).
 #ifndef CAPLET_BSDF_CONDUCTOR_CL
 #define CAPLET_BSDF_CONDUCTOR_CL
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Glass and its like: GGX reflection and refraction (Walter et al. 2007), or a clear interface. wo.z > 0 (bsdf.cl mirrors the
-// frame). Radiance is transported: refraction scales it by 1 / eta^2.
+// This BSDF is a dielectric such as glass: GGX reflection and refraction (Walter et al. 2007), or a
+// clear interface. wo.z > 0 (bsdf.cl mirrors the frame). Radiance is transported: refraction scales
+// it by 1 / eta^2.
 #ifndef CAPLET_BSDF_DIELECTRIC_CL
 #define CAPLET_BSDF_DIELECTRIC_CL
 
@@ -18,7 +19,7 @@ static inline void dielectric_make(const MaterialPoint* m, Bsdf* b) {
 
 static inline int dielectric_is_specular(const Bsdf* b) { return fabs(b->eta.x - 1.0f) < CAPLET_ETA_MATCHED || bsdf_is_smooth(b); }
 
-// The index beyond the interface over that of wo's side.
+// Returns the index beyond the interface over that of wo's side.
 static inline float dielectric_relative_eta(const Bsdf* b, int inside) { return inside ? 1.0f / b->eta.x : b->eta.x; }
 
 static inline float dielectric_facets(const Bsdf* b, float eta, float3 wo, float3 wi, float* pdf) {
@@ -55,7 +56,8 @@ static inline float4 dielectric_eval(const Bsdf* b, int inside, float3 wo, float
 }
 
 #ifdef CAPLET_MULTISCATTER
-// A direction of the lobe that facets lack (multiscatter.cl). u_component in [0, 1) chooses the side.
+// Samples a direction of the multiple-scattering lobe (multiscatter.cl). u_component in [0, 1)
+// chooses the side.
 static inline int dielectric_sample_multiscattered(const Bsdf* b, float eta, float3 wo, float u_component, float2 u, BsdfSample* s) {
   s->wi = sample_cosine_hemisphere(u);
   s->specular = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lambert's law on both sides; reflection only. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF reflects by Lambert's law on both sides and transmits nothing. wo.z > 0 (bsdf.cl
+// mirrors the frame).
 #ifndef CAPLET_BSDF_DIFFUSE_CL
 #define CAPLET_BSDF_DIFFUSE_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A sheet that reflects and lets through by Lambert's law, alike from both sides. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a sheet that reflects and transmits by Lambert's law, alike from both sides. wo.z >
+// 0 (bsdf.cl mirrors the frame).
 #ifndef CAPLET_BSDF_DIFFUSETRANSMISSION_CL
 #define CAPLET_BSDF_DIFFUSETRANSMISSION_CL
 
@@ -18,7 +19,7 @@ static inline int diffusetransmission_is_specular(const Bsdf* b) {
   return 0;
 }
 
-// The probability of reflection, by the greatest of the four wavelengths.
+// Returns the probability of reflection, by the greatest of the four wavelengths.
 static inline float diffusetransmission_reflected(const Bsdf* b) {
   const float r = max4(b->reflectance), t = max4(b->transmittance);
   return r + t > 0.0f ? r / (r + t) : 1.0f;

@@ -1,39 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Anisotropic GGX microfacets (Walter et al. 2007; Heitz 2014) with visible-normal sampling by spherical caps (Dupuy and Benyoub
-// 2023). All directions on the upper side: w.z >= 0, m.z > 0. alpha_u is the roughness along x, alpha_v along y.
+// Anisotropic GGX microfacets (Walter et al. 2007; Heitz 2014) are sampled by visible normals with
+// spherical caps (Dupuy and Benyoub 2023). All directions are on the upper side: w.z >= 0, m.z > 0.
+// alpha_u is the roughness along x, alpha_v along y.
 #ifndef CAPLET_BSDF_GGX_CL
 #define CAPLET_BSDF_GGX_CL
 
 #include "math/vector.cl"
 
-// Density of microfacet normals m per solid angle, so that the integral of D(m) m.z is 1.
+// Returns the density of microfacet normals m per solid angle; the integral of D(m) m.z is 1.
 static inline float ggx_d(float3 m, float alpha_u, float alpha_v) {
   const float s = sqr(m.x / alpha_u) + sqr(m.y / alpha_v) + sqr(m.z);
   return 1.0f / (CAPLET_PI * alpha_u * alpha_v * s * s);
 }
 
-// |w.z| (1 + 2 Lambda(w)): the projected area of the microsurface seen from w times two, less |w.z|. Positive at grazing too.
+// Returns |w.z| (1 + 2 Lambda(w)): twice the projected area of the microsurface seen from w, less
+// |w.z|. It is positive at grazing angles too.
 static inline float ggx_stretched(float3 w, float alpha_u, float alpha_v) {
   return sqrt(sqr(alpha_u * w.x) + sqr(alpha_v * w.y) + sqr(w.z));
 }
 
-// Density per solid angle of the normals m visible from wo (dot(wo, m) > 0) over dot(wo, m): G1(wo) D(m) / wo.z, finite at
-// grazing.
+// Returns the density per solid angle of the normals m visible from wo (dot(wo, m) > 0) over
+// dot(wo, m): G1(wo) D(m) / wo.z, finite at grazing.
 static inline float ggx_visible_over_cos(float3 wo, float3 m, float alpha_u, float alpha_v) {
   return 2.0f * ggx_d(m, alpha_u, alpha_v) / (wo.z + ggx_stretched(wo, alpha_u, alpha_v));
 }
 
-// G2(wo, wi) / G1(wo): what is left of a visible normal's light after masking towards wi. Height-correlated Smith
-// masking (Heitz 2014, 99): G2 = 1 / (1 + Lambda(wo) + Lambda(wi)).
+// Returns G2(wo, wi) / G1(wo): the share of a visible normal's light that is left after masking
+// towards wi. Masking is height-correlated Smith (Heitz 2014, 99): G2 = 1 / (1 + Lambda(wo) +
+// Lambda(wi)).
 static inline float ggx_masking(float3 wo, float3 wi, float alpha_u, float alpha_v) {
   const float zo = fabs(wo.z), zi = fabs(wi.z);
   const float so = ggx_stretched(wo, alpha_u, alpha_v), si = ggx_stretched(wi, alpha_u, alpha_v);
   return zi * (so + zo) / (zi * so + zo * si);
 }
 
-// A normal visible from wo (wo.z > 0). u in [0, 1)^2.
+// Samples a normal visible from wo (wo.z > 0). u in [0, 1)^2.
 static inline float3 ggx_sample_visible(float3 wo, float alpha_u, float alpha_v, float2 u) {
   const float3 w = normalize((float3)(alpha_u * wo.x, alpha_v * wo.y, wo.z));
   const float phi = 2.0f * CAPLET_PI * u.x;

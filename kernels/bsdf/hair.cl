@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A fibre by what a whole cross-section scatters (Chiang, Bitterli, Tappan and Burley 2016; Marschner et al. 2003; d'Eon et al. 2011): light
-// that is reflected, goes through, or leaves after one and more reflections within. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a fibre that scatters by its whole cross-section (Chiang, Bitterli, Tappan and
+// Burley 2016; Marschner et al. 2003; d'Eon et al. 2011): light is reflected, goes through, or
+// leaves after one or more internal reflections. wo.z > 0 (bsdf.cl mirrors the frame).
 //
-// The fibre lies along y of the local frame, where dp/dv of capsules, cylinders and cones points, and dp/du of chains
-// (bsdf_tangent). The offset of the ray from the axis, over the radius, is the sine of the angle between the normal and
-// wo across the fibre: no coordinate of the shape is asked.
+// The fibre lies along y of the local frame. dp/dv of capsules, cylinders and cones points along
+// it, and so does dp/du of chains (bsdf_tangent). The offset of the ray from the axis, over the
+// radius, is the sine of the angle between the normal and wo across the fibre, so no coordinate of
+// the shape is needed.
 #ifndef CAPLET_BSDF_HAIR_CL
 #define CAPLET_BSDF_HAIR_CL
 
@@ -22,7 +24,8 @@ static inline void hair_make(const MaterialPoint* m, Bsdf* b) {
   b->alpha_v = clamp(material_number(m, hair_at_beta_n), HAIR_ROUGHNESS_MIN, 1.0f);
   b->tilt = material_signed(m, hair_at_alpha) * (CAPLET_PI / 180.0f);
   if (hair_is_color(m->data) != 0.0f) {
-    // What absorption gives this colour after many fibres: the fit of Chiang et al. 2016, equation 9.
+    // The absorption gives this colour after many fibres: it is the fit of Chiang et al. 2016,
+    // equation 9.
     const float n = b->alpha_v, n2 = n * n;
     const float fit = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n * n2 + 5.574f * n2 * n2 + 0.245f * n * n2 * n2;
     const float4 root = log(clamp(material_albedo(m, hair_at_pigment), 1e-5f, 1.0f)) / fit;
@@ -37,7 +40,7 @@ static inline int hair_is_specular(const Bsdf* b) {
   return 0;
 }
 
-// Of a direction wo: what of each lobe is the same for all wi.
+// HairLobes holds, for a direction wo, the values of each lobe that are the same for all wi.
 typedef struct {
   float4 share[HAIR_LOBES];        // of the light
   float probability[HAIR_LOBES];
@@ -63,7 +66,8 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
   lobes.variance[2] = lobes.variance[3] = 4.0f * lobes.variance[0];
   lobes.width = 0.626657069f * (0.265f * n + 1.194f * n2 + 5.372f * pow(n, 22.0f));  // sqrt(pi / 8)
 
-  // The index of the cross-section (Bravais), and the way through it.
+  // `index` is that of the cross-section (Bravais); `through` is the transmittance of the path
+  // inside it.
   const float index = sqrt(fmax(eta * eta - sin_o * sin_o, 0.0f)) / fmax(cos_o, 1e-6f);
   const float gamma_o = asin(h), sin_t = clamp(h / index, -1.0f, 1.0f), gamma_t = asin(sin_t);
   const float inclined = sqrt(fmax(0.0f, 1.0f - sqr(sin_o / eta)));
@@ -87,7 +91,8 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
   return lobes;
 }
 
-// log of the modified Bessel function of order 0 (Abramowitz and Stegun 9.8.1, 9.8.2). x >= 0.
+// Returns the log of the modified Bessel function of order 0 (Abramowitz and Stegun 9.8.1, 9.8.2).
+// x >= 0.
 static inline float log_bessel(float x) {
   if (x < 3.75f) {
     const float t = sqr(x / 3.75f);
@@ -99,13 +104,14 @@ static inline float log_bessel(float x) {
   return x + log(p) - 0.5f * log(x);
 }
 
-// Along the fibre (d'Eon et al. 2011, equation 7): the density of wi's inclination, which peaks at minus that of wo.
+// Returns the longitudinal density (d'Eon et al. 2011, equation 7) of wi's inclination, which peaks
+// at minus the inclination of wo.
 static inline float hair_longitudinal(float sin_i, float cos_i, float sin_o, float cos_o, float variance) {
   const float inverse = 1.0f / variance;
   return exp(log_bessel(cos_i * cos_o * inverse) - (sin_i * sin_o + 1.0f) * inverse) / (variance * (1.0f - exp(-2.0f * inverse)));
 }
 
-// A logistic distribution over [-pi, pi].
+// The azimuthal density is a logistic distribution over [-pi, pi].
 static inline float hair_logistic_end(float width) { return 1.0f / (1.0f + exp(CAPLET_PI / width)); }
 static inline float hair_azimuthal(float angle, float width) {
   angle -= 2.0f * CAPLET_PI * floor(angle / (2.0f * CAPLET_PI) + 0.5f);
@@ -113,7 +119,7 @@ static inline float hair_azimuthal(float angle, float width) {
   return e / (width * sqr(1.0f + e) * (1.0f - 2.0f * hair_logistic_end(width)));
 }
 
-// f |cos wi| and its density.
+// Returns f |cos wi| and its density.
 static inline float4 hair_value(const HairLobes* lobes, float3 wo, float3 wi, float* pdf) {
   const float sin_i = clamp(wi.y, -1.0f, 1.0f), cos_i = sqrt(fmax(0.0f, 1.0f - sin_i * sin_i));
   const float azimuth = hair_azimuth(wi) - hair_azimuth(wo);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A surface that is not there: it parts media (kernels/media/immersion.cl), and paths go through it without a scattering. As a BSDF: straight on.
+// This BSDF is an invisible surface that separates media (kernels/media/immersion.cl): paths go
+// through it without a scattering. As a BSDF it sends light straight on.
 #ifndef CAPLET_BSDF_INTERFACE_CL
 #define CAPLET_BSDF_INTERFACE_CL
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A base under a coat: a rough or clear dielectric interface, and between both a layer that absorbs, or scatters by Henyey and Greenstein's
-// law. Light is followed from one to the other at random (Guo, Hasan and Zhao 2018; Pharr, Jakob and Humphreys 2023, 14.3). Coats are the
-// same from both sides. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a base under a coat: a rough or clear dielectric interface, and between both a layer
+// that absorbs, or scatters by Henyey and Greenstein's law. A random walk follows light between the
+// two (Guo, Hasan and Zhao 2018; Pharr, Jakob and Humphreys 2023, 14.3). Coats are the same from
+// both sides. wo.z > 0 (bsdf.cl mirrors the frame).
 //
-// Within the walk z is 0 at the base and coat.thickness at the interface, w the way light is followed. Weights of the interface leave the
-// 1 / eta^2 of radiance out, which entering brings and leaving takes away.
+// Within the walk z is 0 at the base and coat.thickness at the interface, and w is the direction of
+// the walk. Weights of the interface leave out the 1 / eta^2 of radiance: entering multiplies by it
+// and leaving divides by it.
 #ifndef CAPLET_BSDF_LAYERED_CL
 #define CAPLET_BSDF_LAYERED_CL
 
@@ -16,7 +18,7 @@
 #include "math/phase.cl"
 #include "math/rng.cl"
 
-// Independent numbers in [0, 1), by their count from a key.
+// WalkNumbers makes independent numbers in [0, 1) from a key and their count.
 typedef struct {
   uint key, next;
 } WalkNumbers;
@@ -29,7 +31,7 @@ static inline float2 walk_2d(WalkNumbers* numbers) {
 
 // --- The interface ---
 
-// Places of its parameters in the data.
+// The parameters at_... are places in the material's data.
 static inline void coat_make(const MaterialPoint* m, Bsdf* b, int at_eta, int at_alpha_u, int at_alpha_v, int at_thickness,
                              int at_albedo, int at_g, int at_max_depth, int at_samples) {
   bsdf_roughness(b, material_number(m, at_alpha_u), material_number(m, at_alpha_v));
@@ -50,14 +52,16 @@ static inline int coat_is_smooth(const BsdfCoat* coat) {
 #define COAT_REFLECTS 1
 #define COAT_TRANSMITS 2
 
-// pdf: solid angle; of the choice of a way where the interface is clear.
+// pdf: per solid angle, or the probability of reflection or transmission where the interface is
+// clear.
 typedef struct {
   float3 wi;
   float weight, pdf;
   int transmitted;
 } CoatSample;
 
-// A direction wi for wo, which is above or below, by the ways named; u_component chooses where both are.
+// Samples a direction wi for wo, which is above or below. `ways` names what is allowed; u_component
+// chooses where both reflection and transmission are.
 static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u_component, float2 u, CoatSample* s) {
   const int below = wo.z < 0.0f, smooth = coat_is_smooth(coat);
   const float eta = below ? 1.0f / coat->eta : coat->eta;
@@ -87,7 +91,7 @@ static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u
   return s->pdf > 0.0f && !isinf(s->pdf);
 }
 
-// What a rough interface reflects outside: f |cos wi|.
+// Returns the reflection of a rough interface on the outside: f |cos wi|.
 static inline float coat_reflected(const BsdfCoat* coat, float3 wo, float3 wi) {
   const float3 m = normalize(wo + wi);
   float cos_t;
@@ -95,8 +99,8 @@ static inline float coat_reflected(const BsdfCoat* coat, float3 wo, float3 wi) {
          ggx_masking(wo, wi, coat->alpha_u, coat->alpha_v);
 }
 
-// Through a rough interface from outside to inside: the weight of coat_sample there, and the density with which it takes `inner` by
-// transmission alone.
+// Transmits through a rough interface from outside to inside: returns the weight of coat_sample
+// there, and the density with which it takes `inner` by transmission alone.
 static inline float coat_transmitted(const BsdfCoat* coat, float3 outer, float3 inner, float* pdf) {
   *pdf = 0.0f;
   float3 m = outer + coat->eta * inner;
@@ -116,7 +120,7 @@ static inline float coat_transmitted(const BsdfCoat* coat, float3 outer, float3 
 static inline int base_is_metal(const Bsdf* b) { return any_metal_base && b->kind == material_coatedconductor; }
 static inline int base_is_specular(const Bsdf* b) { return base_is_metal(b) && bsdf_is_smooth(b); }
 
-// f |cos wi| and its density.
+// Returns f |cos wi| and its density.
 static inline float4 base_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   *pdf = 0.0f;
   if (!(wi.z > 0.0f)) return (float4)(0.0f);
@@ -130,7 +134,7 @@ static inline float4 base_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   return fresnel_conductor(dot(wo, m), b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
 }
 
-// *weight is multiplied by f |cos wi| / pdf.
+// Samples a direction; *weight is multiplied by f |cos wi| / pdf.
 static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, float4* weight, float* pdf) {
   if (!base_is_metal(b)) {
     *wi = sample_cosine_hemisphere(u);
@@ -155,10 +159,10 @@ static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, fl
 
 static inline int coat_scatters(const BsdfCoat* coat) { return max4(coat->albedo) > 0.0f; }
 
-// What is not extinguished over the height dz in direction w.
+// Returns the transmittance over the height dz in direction w.
 static inline float coat_passes(float dz, float3 w) { return exp(-fabs(dz / w.z)); }
 
-// Russian roulette of walks: 0 where one ends.
+// Applies Russian roulette to a walk: returns 0 where it ends.
 static inline int walk_goes_on(int depth, float4* weight, WalkNumbers* numbers) {
   const float most = max4(*weight);
   if (depth <= 3 || most >= 0.25f) return 1;
@@ -167,7 +171,8 @@ static inline int walk_goes_on(int depth, float4* weight, WalkNumbers* numbers) 
   return 1;
 }
 
-// How far a walk comes in the direction w from *z: 1: to a side, 0: to a scattering, -1: nowhere. *z is moved.
+// Moves *z by a free flight in the direction w. Returns 1 if the walk comes to a side, 0 if it
+// comes to a scattering, -1 if it does not move.
 static inline int walk_advance(const BsdfCoat* coat, float3 w, float* z, float4* weight, WalkNumbers* numbers) {
   if (!coat_scatters(coat)) {
     *z = w.z > 0.0f ? coat->thickness : 0.0f;
@@ -180,15 +185,16 @@ static inline int walk_advance(const BsdfCoat* coat, float3 w, float* z, float4*
   return !(to > 0.0f && to < coat->thickness);
 }
 
-// --- All of it ---
+// --- Both together ---
 
 static inline int layered_is_specular(const Bsdf* b) {
   return coat_is_smooth(&b->coat) && base_is_specular(b) && !coat_scatters(&b->coat);
 }
 
-// One walk from wo, with connections to wi: an estimate of f |cos wi| without what the interface reflects outside. wi is joined by two
-// strategies, weighted against each other as densities of the direction within: transmission into the coat from wi, and what a scattering
-// within takes (Veach 1997, 9).
+// Makes one walk from wo, with connections to wi. Returns an estimate of f |cos wi| without the
+// outside reflection of the interface. Two strategies connect to wi, weighted against each other as
+// densities of the direction within: transmission into the coat from wi, and sampling by a
+// scattering within (Veach 1997, 9).
 static inline float4 layered_walk(const Bsdf* b, float3 wo, float3 wi, WalkNumbers* numbers) {
   const BsdfCoat* coat = &b->coat;
   const int coat_specular = coat_is_smooth(coat), base_specular = base_is_specular(b);
@@ -236,8 +242,9 @@ static inline float4 layered_walk(const Bsdf* b, float3 wo, float3 wi, WalkNumbe
   return sum;
 }
 
-// The density that directions are weighed by: the interface's own reflection; the base as a clear interface would show it, its lobe
-// widened by the roughness of the coat (two refractions turn the half vector by (1 - 1 / eta) / sqrt(2) of the coat's slope); a cosine
+// Returns the density for multiple importance sampling. It sums the interface's own reflection; the
+// base as a clear interface would show it, its lobe widened by the roughness of the coat (two
+// refractions turn the half vector by (1 - 1 / eta) / sqrt(2) of the coat's slope); and a cosine
 // for the rest. Each integrates to 1 at most.
 static inline float layered_pdf(const Bsdf* b, float3 wo, float3 wi) {
   const BsdfCoat* coat = &b->coat;
@@ -312,8 +319,9 @@ static inline int layered_sample(const Bsdf* b, float3 wo, float u_component, fl
   return s->pdf > 0.0f && max4(weight) > 0.0f;
 }
 
-// Of a clear interface: its reflectance, and what the base sends through it in all orders. The internal reflectance of diffuse light is
-// that of Egan and Hilgeman (1973).
+// Returns the albedo of a clear interface over the base: its reflectance, and the light that the
+// base sends through it in all orders. The internal reflectance of diffuse light is that of Egan
+// and Hilgeman (1973).
 static inline float4 layered_albedo(const Bsdf* b, float3 wo) {
   const float eta = b->coat.eta;
   float cos_t;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Two materials, of which a path meets one or the other.
+// A mix has two materials, and a path meets one or the other.
 #ifndef CAPLET_BSDF_MIX_CL
 #define CAPLET_BSDF_MIX_CL
 

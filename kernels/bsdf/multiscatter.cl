@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Energy that one scattering at GGX facets loses, given back as a lobe of its own (Kulla and Conty, "Revisiting
-// physically based shading at Imageworks", SIGGRAPH 2017 course): the value is the product of what is lost of wo and of
-// wi, so that it is the same with both exchanged, and integrates to what is lost of wo. Losses by bilinear
-// interpolation (tools/energy_tables.py) are right to 0.005.
+// A lobe of its own returns the energy that single scattering at GGX facets loses (Kulla and Conty,
+// "Revisiting physically based shading at Imageworks", SIGGRAPH 2017 course). Its value is the
+// product of the losses of wo and of wi: it is reciprocal, and integrates to the loss of wo. Losses
+// by bilinear interpolation (tools/energy_tables.py) are right to 0.005.
 #ifndef CAPLET_BSDF_MULTISCATTER_CL
 #define CAPLET_BSDF_MULTISCATTER_CL
 
 #include "bsdf/bsdf_types.cl"
 #include "bsdf/fresnel.cl"
 
-// Returns 1 if the material's "multiscatter" is on. Kernels of scenes without such materials have no code of it.
+// Returns 1 if the material's "multiscatter" is on. Kernels of scenes without such materials have
+// no code of it.
 static inline int bsdf_multiscatters(const Bsdf* b) {
 #ifdef CAPLET_MULTISCATTER
   return (b->flags & CAPLET_MATERIAL_MULTISCATTER) != 0u;
@@ -24,15 +25,16 @@ static inline int bsdf_multiscatters(const Bsdf* b) {
 #ifdef CAPLET_MULTISCATTER
 #include "bsdf/multiscatter_tables.cl"
 
-// The roughness whose losses count for those of unequal roughnesses along u and v.
+// Returns the roughness whose losses stand for unequal roughnesses along u and v.
 static inline float loss_roughness(const Bsdf* b) { return clamp(0.5f * (b->alpha_u + b->alpha_v), CAPLET_ALPHA_MIN, 1.0f); }
 
-// Below this roughness little is lost but at grazing, where the lobe would be of few and heavy samples: losses there
-// are those of this roughness, as much smaller as the roughness is.
+// Below this roughness little is lost except at grazing angles, where the lobe would have few and
+// heavy samples. Losses there are those of this roughness, scaled down in proportion to the
+// roughness.
 #define LOSS_ALPHA_LEAST 0.08f
 
-// Where x, from 0 to 1, is among `count` values: the number of the lower one of its neighbours, and how far it is from
-// there.
+// Finds x, from 0 to 1, among `count` values: returns the number of its lower neighbour, and in
+// *far its distance from there.
 static inline int between(float x, int count, float* far) {
   const float at = x * (float)(count - 1);
   const int low = clamp((int)at, 0, count - 2);
@@ -61,15 +63,16 @@ static inline float mean_loss_of_row(__constant const float* row, int roughnesse
 
 static inline float metal_loss(float cosine, float alpha) { return loss_of_rows(metal_losses, METAL_LOSS_ROUGHNESSES, cosine, alpha); }
 
-// Mean reflectance of a smooth metal for light from everywhere, by Gauss' quadrature of three points for the cosine's
-// weight: to 1e-3.
+// Returns the mean reflectance of a smooth metal for light from everywhere, by Gauss' quadrature of
+// three points for the cosine's weight: to 1e-3.
 static inline float4 metal_mean_reflectance(float4 eta, float4 k) {
   return 0.1396540f * fresnel_conductor(0.2123405f, eta, k) + 0.4584822f * fresnel_conductor(0.5905331f, eta, k) +
          0.4018638f * fresnel_conductor(0.9114120f, eta, k);
 }
 
-// f |cos wi| of what is scattered more than once, each time with the mean reflectance. *pdf becomes that of facets and
-// this lobe together, which is chosen with the probability metal_loss of wo.
+// Returns f |cos wi| of light that is scattered more than once, each time with the mean
+// reflectance. *pdf becomes the density of facets and this lobe together; the lobe is chosen with
+// the probability metal_loss of wo.
 static inline float4 metal_multiscattered(const Bsdf* b, float3 wo, float3 wi, float* pdf) {
   const float alpha = loss_roughness(b), lost = metal_loss(wo.z, alpha), cosine = wi.z * CAPLET_INV_PI;
   const float mean_loss = mean_loss_of_row(metal_mean_losses, METAL_LOSS_ROUGHNESSES, alpha);
@@ -100,17 +103,17 @@ static inline float interface_mean_loss(float alpha, float eta) {
              far);
 }
 
-// The part of a lost direction's light that goes on beyond the interface. With T the mean transmittance for light from
-// everywhere (Kulla and Conty's fit), which is eta^2 times as much from here as from there, and m the smaller mean loss
-// of both sides, it is T m over the mean loss here: the same with both directions exchanged, but for the squared index
-// that radiance has.
+// Returns the share of a direction's lost light that is transmitted. T is the mean transmittance
+// for light from everywhere (Kulla and Conty's fit), which is eta^2 times as much from here as from
+// there; m is the smaller mean loss of both sides. The share is T m over the mean loss here. It is
+// reciprocal except for the squared index of radiance.
 static inline float interface_lost_beyond(float alpha, float eta) {
   const float here = interface_mean_loss(alpha, eta), there = interface_mean_loss(alpha, 1.0f / eta), index = fmax(eta, 1.0f / eta);
   const float from_outside = 1.0f - (index - 1.0f) / (4.08567f + 1.00071f * index);
   return (eta < 1.0f ? from_outside * eta * eta : from_outside) * fmin(here, there) / here;
 }
 
-// As metal_multiscattered, of what goes to either side.
+// Does what metal_multiscattered does, for both sides of an interface.
 static inline float interface_multiscattered(const Bsdf* b, float eta, float3 wo, float3 wi, float* pdf) {
   const float alpha = loss_roughness(b), lost = interface_loss(wo.z, alpha, eta), beyond = interface_lost_beyond(alpha, eta);
   const float cosine = fabs(wi.z) * CAPLET_INV_PI;

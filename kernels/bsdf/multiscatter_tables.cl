@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What one scattering at GGX facets loses, and its means over a hemisphere. Written by tools/energy_tables.py, which says of what.
+// These tables hold the loss of single scattering at GGX facets, and its means over a hemisphere.
+// tools/energy_tables.py writes them and documents them.
 #ifndef CAPLET_BSDF_MULTISCATTER_TABLES_CL
 #define CAPLET_BSDF_MULTISCATTER_TABLES_CL
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Metal, glass and a diffuse base under a dielectric interface, mixed, below a clear coat (Burley 2012 and 2015, in the terms of
-// Mitsuba 3's plugin of this name; docs/materials.md says where it differs). wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF mixes metal, glass and a diffuse base under a dielectric interface, below a clear coat
+// (Burley 2012 and 2015, in the terms of Mitsuba 3's plugin of this name; docs/materials.md says
+// where it differs). wo.z > 0 (bsdf.cl mirrors the frame).
 //
-// Energy: what lies below an interface is scaled by the smaller of two factors, one of each direction, such that neither direction sends
-// back more than all: the value is the same with both exchanged, and integrates to 1 at most.
+// Energy: light from below an interface is scaled by the smaller of two factors, one of each
+// direction, such that neither direction reflects more than all. The value is reciprocal, and
+// integrates to 1 at most.
 #ifndef CAPLET_BSDF_PRINCIPLED_CL
 #define CAPLET_BSDF_PRINCIPLED_CL
 
@@ -13,7 +15,8 @@
 #include "bsdf/fresnel.cl"
 #include "bsdf/ggx.cl"
 
-// Luminance of a colour under D65, by Gauss' quadrature of four points for that weight (nm).
+// Returns the luminance of a colour under D65, by Gauss' quadrature of four points for that weight
+// (nm).
 static inline float principled_luminance(const MaterialPoint* m, int at) {
   MaterialPoint seen = *m;
   seen.point.lambda = (float4)(462.599f, 529.741f, 591.536f, 658.857f);
@@ -33,11 +36,11 @@ static inline void principled_make(const MaterialPoint* m, Bsdf* b) {
   p->transmission = (1.0f - p->metallic) * fmin(material_number(m, principled_at_spec_trans), 1.0f);
   b->transmittance = (float4)(p->transmission);
   p->roughness = fmin(material_number(m, principled_at_roughness), 1.0f);
-  // Burley 2012: the square, stretched by the aspect.
+  // Burley 2012 squares the roughness and stretches it by the aspect.
   const float aspect = sqrt(1.0f - 0.9f * fmin(material_number(m, principled_at_anisotropic), 1.0f));
   b->alpha_u = fmax(sqr(p->roughness) / aspect, CAPLET_ALPHA_SMOOTH);
   b->alpha_v = fmax(sqr(p->roughness) * aspect, CAPLET_ALPHA_SMOOTH);
-  // An interface of index 1 bends nothing, and has no half vector.
+  // An interface of index 1 does not bend light and has no half vector.
   const float eta = clamp(material_number(m, principled_at_eta), 1.001f, 100.0f);
   b->eta = (float4)(eta);
 
@@ -63,9 +66,10 @@ static inline int principled_is_specular(const Bsdf* b) {
   return 0;
 }
 
-// --- What comes back in all ---
+// --- Albedos ---
 
-// The cosine at which a smooth interface reflects no less than facets of roughness alpha do in all: fitted for indices of 1.05 to 3, to 1e-3.
+// Returns the cosine at which a smooth interface reflects no less than the total reflection of
+// facets of roughness alpha: a fit for indices of 1.05 to 3, to 1e-3.
 static inline float principled_seen_cosine(float cosine, float alpha) {
   return sqrt(cosine * cosine + fmax(alpha * (0.227f - 0.062f * alpha) - 0.006f, 0.0f) * sqr(1.0f - cosine));
 }
@@ -75,8 +79,8 @@ static inline float principled_interface_albedo(float cosine, float eta, float a
   return fresnel_dielectric(principled_seen_cosine(cosine, alpha), eta, &cos_t);
 }
 
-// Of Burley's diffuse lobe of reflectance 1, in closed form: 2 cos^2 of the angle to the half vector is 1 + dot(wo, wi), and the rest
-// are powers of cosines.
+// Returns the albedo of Burley's diffuse lobe of reflectance 1, in closed form: 2 cos^2 of the
+// angle to the half vector is 1 + dot(wo, wi), and the rest are powers of cosines.
 static inline float principled_diffuse_albedo(float c, float roughness) {
   const float f = principled_schlick(c), r = roughness, r2 = r * r;
   const float m0 = 1.0f / 21.0f, m1 = 1.0f / 84.0f, m2 = 1.0f / 252.0f;  // 2 mu^(1 + k) (1 - mu)^5, integrated
@@ -86,10 +90,12 @@ static inline float principled_diffuse_albedo(float c, float roughness) {
   return diffuse + back + f * both;
 }
 
-// Of (1 - cos)^5 of the angle to the half vector: a fit to 2.5e-5.
+// Returns the albedo of the sheen, (1 - cos)^5 of the angle to the half vector: a fit to 2.5e-5.
 static inline float principled_sheen_albedo(float c) { return 0.088479f + c * (-0.250838f + c * (0.271506f + c * (-0.137031f + c * 0.028142f))); }
 
-// What the interface over the diffuse base reflects, of light at that cosine to a facet. (The index that the tint is of is Schlick's.)
+// Returns the reflectance of the interface over the diffuse base, for light at that cosine to a
+// facet. (The tinted part is Schlick's approximation, from the index's reflectance at normal
+// incidence.)
 static inline float4 principled_interface(const Bsdf* b, float cosine) {
   float cos_t;
   const BsdfPrincipled* p = &b->principled;
@@ -97,30 +103,31 @@ static inline float4 principled_interface(const Bsdf* b, float cosine) {
   return (1.0f - p->tint) * fresnel_dielectric(cosine, b->eta.x, &cos_t) + p->tint * tinted;
 }
 
-// Soft light, of the diffuse lobe and the sheen.
+// Returns the albedo of the diffuse lobe and the sheen.
 static inline float4 principled_soft_albedo(const Bsdf* b, float cosine) {
   return b->reflectance * principled_diffuse_albedo(cosine, b->principled.roughness) + b->k * principled_sheen_albedo(cosine);
 }
 
-// The part of it that finds room beside what the interface reflects.
+// Returns the factor on it that leaves room for what the interface reflects.
 static inline float4 principled_soft_room(const Bsdf* b, float cosine) {
   const float seen = principled_seen_cosine(cosine, fmin(b->alpha_u, b->alpha_v));
   return fmin((1.0f - principled_interface(b, seen)) / fmax(principled_soft_albedo(b, cosine), 1e-6f), 1.0f);
 }
 
-// What passes the coat at a cosine.
+// Returns the transmittance of the coat at a cosine.
 static inline float principled_through_coat(const Bsdf* b, float cosine) {
   return 1.0f - b->principled.coat * principled_interface_albedo(cosine, b->coat.eta, b->coat.alpha_u);
 }
 
 // --- Values ---
 
-// How much of all samples each part has. interface: facets of metal and over the diffuse base.
+// PrincipledShares holds the probability of each lobe. interface: facets of metal and over the
+// diffuse base.
 typedef struct {
   float coat, glass, interface, soft;
 } PrincipledShares;
 
-// Of the scene's light that a facet reflects, of metal and over the diffuse base.
+// Returns the share of light that a facet reflects, of metal and over the diffuse base.
 static inline float4 principled_facet(const Bsdf* b, float cosine) {
   const BsdfPrincipled* p = &b->principled;
   const float4 metal = b->reflectance + (1.0f - b->reflectance) * principled_schlick(cosine);
@@ -146,7 +153,8 @@ static inline PrincipledShares principled_shares(const Bsdf* b, int inside, floa
   return s;
 }
 
-// f |cos wi| and its density. From inside glass there is no coat, and what is not glass is as from outside.
+// Returns f |cos wi| and its density. From inside glass there is no coat, and what is not glass is
+// as from outside.
 static inline float4 principled_value(const Bsdf* b, int inside, const PrincipledShares* shares, float3 wo, float3 wi, float* pdf) {
   const BsdfPrincipled* p = &b->principled;
   const int reflected = wi.z > 0.0f;
@@ -182,7 +190,7 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
   }
   const float soft = 1.0f - p->metallic - p->transmission;
   if (soft > 0.0f) {
-    // Burley 2012: 5.3 and 5.4.
+    // The diffuse lobe and the sheen are those of Burley 2012, 5.3 and 5.4.
     const float fo = principled_schlick(wo.z), fi = principled_schlick(wi.z), back = p->roughness * (1.0f + dot(wo, wi));
     const float diffuse = (1.0f - 0.5f * fo) * (1.0f - 0.5f * fi) + back * (fo + fi + fo * fi * (back - 1.0f));
     const float4 room = fmin(principled_soft_room(b, wo.z), principled_soft_room(b, wi.z));
@@ -219,7 +227,7 @@ static inline int principled_sample(const Bsdf* b, int inside, int smooth, float
     float cos_t;
     s->transmitted = shares.glass > 0.0f && of_glass >= shares.glass * fresnel_dielectric(cos_o, eta, &cos_t);
     if (s->transmitted) {
-      // Rounding may end up here where nothing is refracted.
+      // Rounding may lead here where nothing is refracted.
       if (!(fresnel_dielectric(cos_o, eta, &cos_t) < 1.0f)) return 0;
       s->wi = normalize((cos_o / eta - cos_t) * m - wo / eta);
       s->eta_scale = eta * eta;

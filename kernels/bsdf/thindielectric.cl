@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A thin pane of glass: what its two faces reflect and let through in all orders, straight on or mirrored (Pharr, Jakob and Humphreys
-// 2023, 9.5.1). The same from both sides. wo.z > 0 (bsdf.cl mirrors the frame).
+// This BSDF is a thin pane of glass. Its two faces reflect and transmit in all orders, straight on
+// or mirrored (Pharr, Jakob and Humphreys 2023, 9.5.1). It is the same from both sides. wo.z > 0
+// (bsdf.cl mirrors the frame).
 #ifndef CAPLET_BSDF_THINDIELECTRIC_CL
 #define CAPLET_BSDF_THINDIELECTRIC_CL
 
@@ -18,7 +19,7 @@ static inline int thindielectric_is_specular(const Bsdf* b) {
   return 1;
 }
 
-// R + T R T + T R R R T + ...
+// Returns R + T R T + T R R R T + ...
 static inline float thin_reflectance(float cos_o, float eta) {
   float cos_t;
   const float r = fresnel_dielectric(cos_o, eta, &cos_t), t = 1.0f - r;
@@ -35,7 +36,7 @@ static inline float4 thindielectric_eval(const Bsdf* b, int inside, float3 wo, f
   return (float4)(0.0f);
 }
 
-// Directions are the same at all wavelengths: one choice, by the mean reflectance, serves the four.
+// Directions are the same at all wavelengths: one choice, by the mean reflectance, serves all four.
 static inline int thindielectric_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
   (void)inside, (void)smooth, (void)u;
   const float4 reflectance = thin_reflectances(b, wo.z);

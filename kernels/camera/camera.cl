@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Camera rays. The only switches over kinds of cameras.
+// This file makes camera rays. It holds the only switches over kinds of cameras.
 //
-// A camera of cameras.def is a file of this folder by its name, with
-//   void NAME_ray(camera, raster, u_lens, &origin, &direction)   camera space, the direction of any length
-//   float2 NAME_spread(camera, raster)   how far apart the rays of neighbouring pixels are: at the camera, and what
-//                                        comes to it at length 1
+// A camera of cameras.def has a file in this folder with its name, which defines
+//   void NAME_ray(camera, raster, u_lens, &origin, &direction)
+//       camera space, the direction of any length
+//   float2 NAME_spread(camera, raster)
+//       how far apart the rays of neighbouring pixels are: at the camera, and what is added to it
+//       at length 1
 #ifndef CAPLET_CAMERA_CAMERA_CL
 #define CAPLET_CAMERA_CAMERA_CL
 
 #include "camera/camera_types.cl"
 #include "camera/{cameras}.cl"
 
-// The ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left corner) from the lens point at
-// u_lens in [0, 1)^2. World space, unit direction, t in [0, INFINITY).
+// Returns the ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left
+// corner) from the lens point at u_lens in [0, 1)^2. World space, unit direction, t in [0,
+// INFINITY).
 static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens) {
   float3 origin = (float3)(0.0f), direction = (float3)(0.0f, 0.0f, 1.0f);
   switch (camera->kind) {

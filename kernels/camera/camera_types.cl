@@ -9,17 +9,18 @@
 #include "math/vector.cl"
 #include "shared/records.h"
 
-// The place of `raster` on the image plane, camera units.
+// Returns the place of `raster` on the image plane, in camera units.
 static inline float2 plane_place(__global const CameraRecord* camera, float2 raster) {
   return (float2)(camera->plane_x + raster.x * camera->per_pixel_x, camera->plane_y + raster.y * camera->per_pixel_y);
 }
 
-// The mean width and height of a pixel on the image plane.
+// Returns the mean width and height of a pixel on the image plane.
 static inline float plane_spread(__global const CameraRecord* camera) {
   return 0.5f * (fabs(camera->per_pixel_x) + fabs(camera->per_pixel_y));
 }
 
-// Moves a ray, whose direction has z = 1, to a point of the lens: what lies at the focal distance stays where it is.
+// Moves a ray, whose direction has z = 1, to a point of the lens: what lies at the focal distance
+// stays where it is.
 static inline void through_lens(__global const CameraRecord* camera, float2 u_lens, float3* origin, float3* direction) {
   if (!(camera->lens_radius > 0.0f)) return;
   const float2 lens = camera->lens_radius * sample_disk(u_lens);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All directions from one point by the equal-area octahedral map, as pbrt-v4's spherical camera has them: the middle of
-// the image looks along +y.
+// This camera sees all directions from one point by the equal-area octahedral map, as pbrt-v4's
+// spherical camera does: the middle of the image looks along +y.
 #ifndef CAPLET_CAMERA_EQUAL_AREA_CL
 #define CAPLET_CAMERA_EQUAL_AREA_CL
 
@@ -12,7 +12,8 @@ static inline void equal_area_ray(__global const CameraRecord* camera, float2 ra
                                   float3* direction) {
   (void)u_lens, (void)origin;
   float2 uv = (float2)(raster.x * camera->per_pixel_x, raster.y * camera->per_pixel_y);
-  // The pixel filter reaches beyond the image: over an edge of the square lies the other half of that edge.
+  // The pixel filter reaches beyond the image: over an edge of the square lies the other half of
+  // that edge.
   if (uv.x < 0.0f || uv.x > 1.0f) uv = (float2)(uv.x < 0.0f ? -uv.x : 2.0f - uv.x, 1.0f - uv.y);
   if (uv.y < 0.0f || uv.y > 1.0f) uv = (float2)(1.0f - uv.x, uv.y < 0.0f ? -uv.y : 2.0f - uv.y);
   *direction = square_to_sphere(uv).xzy;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All directions from one point by longitude and latitude, as pbrt-v4's spherical camera has them: rows run from +y to
-// -y, columns begin at +x and go by +z.
+// This camera sees all directions from one point by longitude and latitude, as pbrt-v4's spherical
+// camera does: rows run from +y to -y, columns begin at +x and go by +z.
 #ifndef CAPLET_CAMERA_EQUIRECTANGULAR_CL
 #define CAPLET_CAMERA_EQUIRECTANGULAR_CL
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parallel rays from the plane z = 0, through a lens at each of its points.
+// This camera sends parallel rays from the plane z = 0, through a lens at each of its points.
 #ifndef CAPLET_CAMERA_ORTHOGRAPHIC_CL
 #define CAPLET_CAMERA_ORTHOGRAPHIC_CL
 

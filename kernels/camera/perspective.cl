@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A thin-lens camera whose image plane is z = 1.
+// This is a thin-lens camera whose image plane is z = 1.
 #ifndef CAPLET_CAMERA_PERSPECTIVE_CL
 #define CAPLET_CAMERA_PERSPECTIVE_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Area lights: one emissive primitive each, sampled on its own geometry. Strategies and densities: docs/lights.md.
+// An area light is one emissive primitive, sampled on its own geometry. Strategies and densities:
+// docs/lights.md.
 #ifndef CAPLET_LIGHTS_AREA_CL
 #define CAPLET_LIGHTS_AREA_CL
 
@@ -16,10 +17,10 @@
 #include "math/vector.cl"
 #include "shapes/surface.cl"
 
-// Densities above this count as this, so that squares of them stay finite.
+// Densities are limited to this, so that their squares stay finite.
 #define CAPLET_MAX_DENSITY 1e18f
 
-// A point of the light, world space.
+// AreaSample is a point of the light in world space.
 typedef struct {
   float3 p, n;  // n: unit, on the emitting side of a one-sided light
   float error;  // how far p and what a ray meets may lie apart, along n
@@ -27,19 +28,20 @@ typedef struct {
   uint surface; // HitRecord.surface
 } AreaSample;
 
-// The ball by which the light is sampled, or 0.
+// Returns the ball by which the light is sampled, or 0.
 static inline __global const float* area_ball(const Lights* lights, __global const LightRecord* light) {
   if (!any_ball_light || light->data == CAPLET_NONE) return 0;
   __global const float* data = lights->light_data + light->data;
   return area_ball_radius(data) > 0.0f ? data : 0;
 }
 
-// The primitive's data (shapes/fields.cl).
+// Returns the primitive's data (shapes/fields.cl).
 static inline __global const float* area_data(const Tree* tree, __global const LightRecord* light) {
   return lane_data(tree->leaves, light->slot);
 }
 
-// Object space to world of the light's instance: by how much areas with normal n (object space, unit) grow.
+// Returns the factor by which areas with normal n (object space, unit) grow from object space to
+// the world.
 static inline float area_scale(__global const InstanceRecord* instance, float3 n) {
   __global const float* m = instance->world_from_object;
   const float3 r0 = (float3)(m[0], m[1], m[2]), r1 = (float3)(m[4], m[5], m[6]), r2 = (float3)(m[8], m[9], m[10]);
@@ -55,7 +57,7 @@ static inline RoundCone area_round_cone(uint shape, __global const LightRecord* 
   return k;
 }
 
-// World-space corners of a triangle light, as seen from p.
+// Returns the world-space corners of a triangle light, as seen from p.
 static inline TriangleView area_triangle(const Tree* tree, __global const LightRecord* light, __global const float* data,
                                          float3 p) {
   float3 v0 = triangle_v0(data), v1 = triangle_v1(data), v2 = triangle_v2(data);
@@ -68,14 +70,16 @@ static inline TriangleView area_triangle(const Tree* tree, __global const LightR
   return triangle_view(v0, v1, v2, p);
 }
 
-// A sphere that is not within an instance and not around (or touching) p is sampled by solid angle.
+// A sphere is sampled by solid angle if it is not within an instance and not around (or touching)
+// p.
 static inline float area_sphere_cone(__global const LightRecord* light, uint shape, __global const float* data, float3 p) {
   if (shape != shape_sphere || light->instance != CAPLET_NONE) return 0.0f;
   const float3 axis = sphere_c(data) - p;
   return sphere_cone(dot(axis, axis), sphere_r(data));
 }
 
-// Largest magnitude of the numbers that a point of the primitive was made from, in its own space.
+// Returns the largest magnitude of the numbers that a point of the primitive was made from, in its
+// own space.
 static inline float area_magnitude(uint shape, __global const float* data) {
   if (shape == shape_sphere) return norm1(sphere_c(data)) + sphere_r(data);
   if (shape == shape_disk) return norm1(disk_c(data)) + disk_r(data);
@@ -87,8 +91,9 @@ static inline float area_magnitude(uint shape, __global const float* data) {
          fmax(tapered_capsule_r0(data), tapered_capsule_r1(data));
 }
 
-// Bound on the distance along the normal between a sampled point and the surface as a shadow ray from p meets it: some eight
-// roundings each of the sampling and of the traversal, of the numbers they go through.
+// Returns a bound on the distance along the normal between a sampled point and the surface as a
+// shadow ray from p meets it: some eight roundings each of the sampling and of the traversal, of
+// the numbers they use.
 static inline float area_error(const Tree* tree, __global const LightRecord* light, float magnitude, float3 x, float3 p) {
   float world = magnitude;
   if (light->instance != CAPLET_NONE) {
@@ -101,7 +106,8 @@ static inline float area_error(const Tree* tree, __global const LightRecord* lig
   return 16.0f * CAPLET_EPS * (world + norm1(x - p));
 }
 
-// Samples primitive light `light` as seen from p: 0 when nothing of it that emits and that rays see ("onesided") faces p.
+// Samples primitive light `light` as seen from p. Returns 0 when no part of it that emits and that
+// rays see ("onesided") faces p.
 static inline int area_sample(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
   __global const GeometryRecord* geometry = scene->surfaces.geometries + light->geometry;
   __global const float* data = area_data(&scene->tree, light);
@@ -118,7 +124,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
     const float3 wi = ball_sample(ball, p, u);
     HitRecord hit;
     if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &hit)) return 0;
-    // Rays do not stop at an unseen light, so its far side shines through its near one.
+    // Rays do not stop at an unseen light, so light from its far side passes through its near side.
     const uint crossings =
         light->flags & CAPLET_LIGHT_UNSEEN ? choose_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit) : 1u;
     const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
@@ -192,7 +198,7 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   if (!(distance_squared > 0.0f)) return 0;
   const float facing = -dot(s->n, away) / sqrt(distance_squared);
   if (both ? facing == 0.0f : !(facing > 0.0f)) return 0;
-  // Before ReverseOrientation a ray enters against the normal.
+  // This is before ReverseOrientation, when a ray enters against the normal.
   if ((facing > 0.0f) == flip) s->surface |= CAPLET_LEAVING;
   if (placed) {
     const uint unseen = (facing > 0.0f) != flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
@@ -204,7 +210,8 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   return s->pdf > 0.0f;
 }
 
-// Solid-angle density that area_sample has from p for the direction wi, which meets the light at x with world normal n.
+// Returns the solid-angle density of area_sample from p for the direction wi, which meets the light
+// at x with world normal n.
 static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
   const uint shape = scene->surfaces.geometries[light->geometry].shape;
   __global const float* data = area_data(&scene->tree, light);
@@ -243,7 +250,7 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
   return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
 }
 
-// All of a light sample but its radiance, and the point.
+// Fills all of a light sample but its radiance, and the point.
 static inline int area_sample_towards(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* point, LightSample* s) {
   if (!area_sample(scene, light, p, u, point)) return 0;
   const float3 away = point->p - p;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lights of any shape: a direction uniform in the cone that the shape's bounding ball fills (from within the ball: any direction), and the
-// first crossing of that one primitive along it. The density does not depend on the shape, so every shape is sampled exactly; what misses
-// it is black.
+// A light of any shape can be sampled by its bounding ball: a direction is uniform in the cone that
+// the ball fills (from within the ball: any direction), and the point is the first crossing of that
+// one primitive along it. The density does not depend on the shape, so every shape is sampled
+// exactly; directions that miss it are black.
 #ifndef CAPLET_LIGHTS_BALL_CL
 #define CAPLET_LIGHTS_BALL_CL
 
@@ -30,7 +31,8 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
   return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) + frame.n * (1.0f - t));
 }
 
-// The first crossing beyond t_min that a ray sees of the primitive at `slot`, from p along wi; 0 when there is none.
+// Finds the first crossing beyond t_min of the primitive at `slot` that a ray from p along wi sees.
+// Returns 0 when there is none.
 static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, float t_min,
                                      HitRecord* hit) {
   const GeometryRecord geometry = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
@@ -41,7 +43,7 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
   }
   ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
   if (instance != CAPLET_NONE) {
-    // Every shape that is sampled here looks for the first crossing of a side that is seen.
+    // Every shape that is sampled here tests for the first crossing of a side that is seen.
     if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
     if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_LEAVING) ray.sees_leaving = 0;
   }
@@ -61,7 +63,8 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
   return (mask_bits(found) >> at) & 1u;
 }
 
-// Replaces the first crossing `hit` by one of all crossings along the ray, each with the same chance. Returns how many there are.
+// Replaces the first crossing `hit` by one of all crossings along the ray, each with the same
+// chance. Returns the number of crossings.
 static inline uint choose_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
   const uint seed = hash_combine(hash_combine(as_uint(wi.x), as_uint(wi.y)), as_uint(wi.z));
   uint count = 1u;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// An infinite light of one radiance, found by BSDF sampling alone.
+// This is an infinite light of one radiance, which only BSDF sampling finds.
 #ifndef CAPLET_LIGHTS_CONSTANT_CL
 #define CAPLET_LIGHTS_CONSTANT_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Points on a cylinder with flat or open ends, uniform over the area of what of it emits: tubes are far from filling the ball around them.
+// Samples points on a cylinder with flat or open ends, uniformly over the area that emits. A long
+// tube fills little of the ball around it, so it is not sampled by that ball.
 #ifndef CAPLET_LIGHTS_CYLINDER_CL
 #define CAPLET_LIGHTS_CYLINDER_CL
 
@@ -9,7 +10,7 @@
 #include "math/vector.cl"
 #include "shapes/surface_local.cl"
 
-// Areas of the side and of the ends that emit.
+// Returns the areas of the side and of the ends that emit.
 static inline float3 cylinder_areas(const Surfaces* surfaces, __global const GeometryRecord* geometry, __global const float* data) {
   const float r = cylinder_r(data);
   float3 area = (float3)(2.0f * CAPLET_PI * r * length(cylinder_p1(data) - cylinder_p0(data)),
@@ -23,13 +24,14 @@ static inline float3 cylinder_areas(const Surfaces* surfaces, __global const Geo
   return area;
 }
 
-// Density per area of every point that emits.
+// Returns the density per area of every point that emits.
 static inline float cylinder_density(float3 areas) {
   const float total = areas.x + areas.y + areas.z;
   return total > 0.0f ? 1.0f / total : 0.0f;
 }
 
-// x on the surface, n outward (object space), and which surface: the side, an end; returns the density per area, 0 when nothing emits.
+// Samples x on the surface, n outward (object space), and which surface: the side or an end.
+// Returns the density per area, 0 when nothing emits.
 static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x, float3* n, uint* surface) {
   const float density = cylinder_density(areas);
   if (!(density > 0.0f)) return 0.0f;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Distant light: one direction, the same irradiance (square to it) everywhere.
+// A distant light has one direction and the same irradiance (square to it) everywhere.
 #ifndef CAPLET_LIGHTS_DISTANT_CL
 #define CAPLET_LIGHTS_DISTANT_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The image light: layout of the image on the sphere, radiance between texels, and the distribution over texels.
+// This file holds what the image light needs: the layout of the image on the sphere, the radiance
+// between texels, and the distribution over texels.
 #ifndef CAPLET_LIGHTS_ENVIRONMENT_CL
 #define CAPLET_LIGHTS_ENVIRONMENT_CL
 
@@ -11,8 +12,8 @@
 #include "math/vector.cl"
 #include "shared/octahedron.h"
 
-// The texel at (x, y), each at most one beyond the image: around in longitude, the pole's row again in latitude; over the folded
-// edges of the octahedron.
+// Returns the texel at (x, y), each at most one beyond the image. Longitude wraps around, latitude
+// repeats the pole's row, and the octahedron continues over its folded edges.
 static inline float4 environment_texel(const Picture* picture, int x, int y) {
   const int width = (int)picture->width, height = (int)picture->height;
   if (picture->square) {
@@ -24,8 +25,9 @@ static inline float4 environment_texel(const Picture* picture, int x, int y) {
   return vload4((size_t)y * (size_t)width + (size_t)x, picture->texels);
 }
 
-// Radiance (before the light's scale) at uv of the image, whose colours are under `illuminant` (a table): bilinear between the
-// radiances of texels, which stand at their centres.
+// Returns the radiance (before the light's scale) at uv of the image, whose colours are under
+// `illuminant` (a table). It is bilinear between the radiances of texels, which stand at their
+// centres.
 static inline float4 environment_radiance(const Picture* picture, __global const float* illuminant, float2 uv, float4 lambda) {
   const float2 at = uv * (float2)((float)picture->width, (float)picture->height) - 0.5f;
   const float2 low = floor(at), t = at - low;
@@ -37,7 +39,8 @@ static inline float4 environment_radiance(const Picture* picture, __global const
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
 }
 
-// Cell of `cells` that u falls in, by their running sum cdf (cells + 1 entries, 0 to 1); never one without width.
+// Returns the cell of `cells` that u falls in, by their running sum cdf (cells + 1 entries, 0 to
+// 1); never one without width.
 static inline uint cdf_cell(__global const float* cdf, uint cells, float u) {
   uint low = 0, high = cells;  // cdf[low] <= u < cdf[high]
   while (high - low > 1) {
@@ -54,7 +57,7 @@ static inline __global const float* environment_row(const Picture* picture, uint
   return picture->cdf + (picture->height + 1u) + (size_t)row * (picture->width + 1u);
 }
 
-// Density over the unit square of the image at cell (column, row).
+// Returns the density over the unit square of the image at cell (column, row).
 static inline float environment_density(const Picture* picture, uint column, uint row) {
   __global const float* conditional = environment_row(picture, row);
   return (picture->cdf[row + 1] - picture->cdf[row]) * (conditional[column + 1] - conditional[column]) *
@@ -66,7 +69,8 @@ static inline float environment_solid_angle_density(const Picture* picture, floa
   return sine > 0.0f ? per_square * (0.5f * CAPLET_INV_PI * CAPLET_INV_PI) / sine : 0.0f;
 }
 
-// Direction in the light's space, its place in the image and its solid-angle density (0: nothing).
+// Samples a direction in the light's space, its place in the image, and returns its solid-angle
+// density (0: nothing).
 static inline float environment_sample(const Picture* picture, float2 u, float3* direction, float2* uv) {
   const uint width = picture->width, height = picture->height;
   const uint row = cdf_cell(picture->cdf, height, u.y);
@@ -82,7 +86,8 @@ static inline float environment_sample(const Picture* picture, float2 u, float3*
   return environment_solid_angle_density(picture, environment_density(picture, column, row), sine);
 }
 
-// Place of a direction (light's space) in the image, and the density that environment_sample has for it.
+// Returns the place of a direction (light's space) in the image, and in *pdf the density of
+// environment_sample for it.
 static inline float2 environment_locate(const Picture* picture, float3 direction, float* pdf) {
   const uint width = picture->width, height = picture->height;
   float sine = 1.0f;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A point whose intensity in each direction is that of an image's nearest texel, by the equal-area octahedral map (Pharr, Jakob and
-// Humphreys 2023, section 12.2.3).
+// This is a point light whose intensity in each direction is that of an image's nearest texel, by
+// the equal-area octahedral map (Pharr, Jakob and Humphreys 2023, section 12.2.3).
 #ifndef CAPLET_LIGHTS_GONIOMETRIC_CL
 #define CAPLET_LIGHTS_GONIOMETRIC_CL
 

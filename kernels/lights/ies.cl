@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A luminaire as it was measured (ANSI/IES LM-63, type C): a point whose intensity is linear between polar angles, from straight down (the
-// light's -z) on, and between azimuths, from its +x towards its +y.
+// This is a luminaire as it was measured (ANSI/IES LM-63, type C): a point light whose intensity is
+// linear between polar angles, from straight down (the light's -z) on, and between azimuths, from
+// its +x towards its +y.
 #ifndef CAPLET_LIGHTS_IES_CL
 #define CAPLET_LIGHTS_IES_CL
 
 #include "lights/environment.cl"
 #include "lights/point.cl"
 
-// Between the values at the ends of the cell of `angles` (at least two, ascending) that holds `angle`: which cell, and how far into it.
+// Returns the cell of `angles` (at least two, ascending) that holds `angle`, and in *part how far
+// into the cell it is.
 static inline uint ies_cell(__global const float* angles, uint count, float angle, float* part) {
   const uint cell = cdf_cell(angles, count - 1u, angle);
   *part = clamp((angle - angles[cell]) / fmax(angles[cell + 1u] - angles[cell], 1e-9f), 0.0f, 1.0f);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// An infinite light of an image: sampled, and weighted against BSDF sampling.
+// This is an infinite light of an image: it is sampled, and weighted against BSDF sampling.
 #ifndef CAPLET_LIGHTS_IMAGE_CL
 #define CAPLET_LIGHTS_IMAGE_CL
 

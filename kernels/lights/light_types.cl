@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the lights share.
+// This file holds what the lights share.
 #ifndef CAPLET_LIGHTS_LIGHT_TYPES_CL
 #define CAPLET_LIGHTS_LIGHT_TYPES_CL
 
@@ -11,10 +11,12 @@
 #include "shapes/surface.cl"
 #include "shared/families.h"
 
-// wi: unit, to the light. target: the sampled point of a finite light. slack: a shadow ray meets the light's surface within this
-// length of target, along the ray; 0: the light is no surface. slot, instance: the primitive that the shadow ray must meet first;
-// CAPLET_NONE: none, the ray ends before target. radiance: that arrives along wi unoccluded (delta lights: irradiance over cos).
-// pdf: of wi by solid angle times the chance of the light; for delta lights that chance alone. index: of the light.
+// wi: unit, to the light. target: the sampled point of a finite light. slack: a shadow ray meets
+// the light's surface within this length of target, along the ray; 0: the light is no surface.
+// slot, instance: the primitive that the shadow ray must meet first; CAPLET_NONE: none, the ray
+// ends before target. radiance: that arrives along wi unoccluded (delta lights: irradiance over
+// cos). pdf: of wi by solid angle times the chance of the light; for delta lights that chance
+// alone. index: of the light.
 typedef struct {
   float3 wi, target;
   float slack;
@@ -25,8 +27,8 @@ typedef struct {
   float pdf;
 } LightSample;
 
-// The ray from `origin` to the sampled point. It ends where it has met the light's surface or, where there is none to meet, before
-// the point.
+// Returns the ray from `origin` to the sampled point. It ends where it has met the light's surface
+// or, where there is none to meet, before the point.
 static inline RayRecord shadow_ray(const LightSample* s, float3 origin, ShadowTarget* target) {
   float3 d = s->wi;
   float distance = INFINITY;
@@ -50,7 +52,7 @@ static inline __global const float* light_data_of(const Lights* lights, __global
   return lights->light_data + light->data;
 }
 
-// An image of a light (lights.def).
+// Picture is an image of a light (lights.def).
 typedef struct {
   __global const float *texels, *cdf;
   uint width, height, square;
@@ -61,23 +63,23 @@ static inline Picture picture_of(const Lights* lights, __global const float* fie
   return picture;
 }
 
-// Number of the texel that holds uv, which are within 0 and 1.
+// Returns the number of the texel that holds uv, which are within 0 and 1.
 static inline size_t picture_nearest(const Picture* picture, float2 uv) {
   const uint x = min((uint)(uv.x * (float)picture->width), picture->width - 1u), y = min((uint)(uv.y * (float)picture->height), picture->height - 1u);
   return (size_t)y * picture->width + x;
 }
 
-// The table of the illuminant that the colours of a light's picture are under.
+// Returns the table of the illuminant for the colours of a light's picture.
 static inline __global const float* picture_illuminant(const Spectra* spectra, __global const LightRecord* light) {
   return spectra->spectrum_tables + spectra->spectra[light->spectrum].table;
 }
 
-// v under a turn (lights.def).
+// Returns v under a turn (lights.def).
 static inline float3 light_turned(__global const float* turn, float3 v) {
   return (float3)(dot(load3(turn), v), dot(load3(turn + 3), v), dot(load3(turn + 6), v));
 }
 
-// The light's own spectrum.
+// Returns the light's own spectrum.
 static inline float4 light_spectrum(const Spectra* spectra, __global const LightRecord* light, float4 lambda, float weight) {
   return spectrum_eval(spectra, light->spectrum, lambda) * (light->scale * weight);
 }

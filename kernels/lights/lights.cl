@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All lights: choice of one by the alias table (Walker 1977, Vose 1991) or, where there are many, by the light tree (tree.cl), sampling of it,
-// and the densities that multiple importance sampling needs. The only switches over kinds of light.
+// This file chooses a light, by the alias table (Walker 1977, Vose 1991) or, where there are many
+// lights, by the light tree (tree.cl); it samples that light, and computes the densities for
+// multiple importance sampling. It holds the only switches over kinds of light.
 //
-// A light of lights.def is a file of this folder by its name, with
-//   int NAME_light_sample(scene, light, p, lambda, u, s)      as light_sample: fills wi, target, radiance and pdf (of wi alone; delta
-//                                                             lights: 1). Not asked of what glows
-//   float NAME_light_pdf(scene, light, p, hit, wi)            surface: density that it has for wi, which meets the light at `hit`
-//   float4 NAME_light_emitted(spectra, lights, light, uv, lambda)   surface: radiance at uv of it, on a side that emits
-//   float4 NAME_light_radiance(spectra, lights, light, p, wi, lambda, pdf)   sky, glow: that comes to p from direction wi, and the density for it (sky)
+// A light of lights.def has a file in this folder with its name, which defines
+//   int NAME_light_sample(scene, light, p, lambda, u, s)
+//       as light_sample: fills wi, target, radiance and pdf (of wi alone; delta lights: 1). Is not
+//       called for a glow
+//   float NAME_light_pdf(scene, light, p, hit, wi)
+//       surface: its density for wi, which meets the light at `hit`
+//   float4 NAME_light_emitted(spectra, lights, light, uv, lambda)
+//       surface: its radiance at uv, on a side that emits
+//   float4 NAME_light_radiance(spectra, lights, light, p, wi, lambda, pdf)
+//       sky, glow: the radiance that comes to p from direction wi, and the density for it (sky)
 #ifndef CAPLET_LIGHTS_LIGHTS_CL
 #define CAPLET_LIGHTS_LIGHTS_CL
 
@@ -18,7 +23,7 @@
 #include "lights/{lights}.cl"
 
 enum {
-  // Whether some light of the program's may be a surface.
+  // This constant says whether some light of the program may be a surface.
   any_surface_light = 0
 #define LIGHT_MAY_BE_surface || 1
 #define LIGHT_MAY_BE_delta
@@ -30,7 +35,7 @@ enum {
 #undef LIGHT
 };
 
-// The first light that the table has. With a tree, emissive primitives are not in it.
+// Returns the first light of the table. With a tree, emissive primitives are not in the table.
 static inline uint light_table_begin(const Lights* lights) {
 #ifdef CAPLET_LIGHT_TREE
   return lights->lighting->table_begin;
@@ -40,8 +45,9 @@ static inline uint light_table_begin(const Lights* lights) {
 #endif
 }
 
-// A light with its chance of being chosen by the random number u. In whole numbers: row u n >> 32 of n, and the rest of u n
-// within it, so that the chance is exactly the share of the 2^32 numbers that choose the light (host/lower/detail/light_table.h).
+// Returns a light that the random number u chooses, and its probability. The choice is in whole
+// numbers: row u n >> 32 of n, and the rest of u n within it, so that the probability is exactly
+// the share of the 2^32 numbers that choose the light (host/lower/detail/light_table.h).
 static inline uint light_select(const Lights* lights, uint u, float* probability) {
   const uint begin = light_table_begin(lights), count = lights->lighting->light_count - begin;
   const uint i = mul_hi(u, count);
@@ -51,7 +57,8 @@ static inline uint light_select(const Lights* lights, uint u, float* probability
   return begin + chosen;
 }
 
-// One of all lights for what `at` takes, and the chance of that; CAPLET_NONE: none. u: 32 random bits.
+// Chooses one of all lights for the receiver `at`, and its probability; CAPLET_NONE: none. u: 32
+// random bits.
 static inline uint light_choose(const Lights* lights, const LightReceiver* at, uint u, float* chance) {
 #ifdef CAPLET_LIGHT_TREE
   const uint share = lights->lighting->tree_share;
@@ -70,7 +77,7 @@ static inline uint light_choose(const Lights* lights, const LightReceiver* at, u
 #endif
 }
 
-// The chance that light_choose has for `light`.
+// Returns the probability of `light` in light_choose.
 static inline float light_chance(const Lights* lights, uint light, const LightReceiver* at) {
 #ifdef CAPLET_LIGHT_TREE
   const uint share = lights->lighting->tree_share;
@@ -96,7 +103,8 @@ static inline float light_chance(const Lights* lights, uint light, const LightRe
 #define SAMPLE_LIGHT_sky(name) SAMPLE_LIGHT_OF(name, 1, 0)
 #define SAMPLE_LIGHT_glow(name)
 
-// One light sample as seen from at.p. u_select: 32 random bits; u in [0, 1). Returns 0 when there is nothing (the sample counts as black).
+// Takes one light sample as seen from at.p. u_select: 32 random bits; u in [0, 1). Returns 0 when
+// there is nothing (the sample counts as black).
 static inline int light_sample(const Scene* scene, LightReceiver at, float4 lambda, uint u_select, float2 u, LightSample* s) {
   const Lights* lights = &scene->lights;
   if (lights->lighting->sampled_light_count == 0u) return 0;
@@ -117,7 +125,8 @@ static inline int light_sample(const Scene* scene, LightReceiver at, float4 lamb
   return s->pdf > 0.0f;
 }
 
-// Radiance of area light `light` at a point with normal ng (Surface.ng) and uv, towards wo; 0 from the dark side.
+// Returns the radiance of area light `light` at a point with normal ng (Surface.ng) and uv, towards
+// wo; 0 from the dark side.
 static inline float4 light_emitted(const Spectra* spectra, const Lights* lights, uint light, float3 ng, float2 uv, float3 wo, float4 lambda) {
   __global const LightRecord* record = lights->lights + light;
   if (!(record->flags & CAPLET_LIGHT_BOTH_SIDES) && !(dot(ng, wo) > 0.0f)) return (float4)(0.0f);
@@ -135,7 +144,8 @@ static inline float4 light_emitted(const Spectra* spectra, const Lights* lights,
   }
 }
 
-// Density (solid angle times chance of the light) that light_sample has at `at` for the unit direction wi, which meets light `light` at `hit`.
+// Returns the density (solid angle times probability of the light) of light_sample at `at` for the
+// unit direction wi, which meets light `light` at `hit`.
 static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver at, const Surface* hit, float3 wi) {
   if (scene->lights.lighting->sampled_light_count == 0u) return 0.0f;
   __global const LightRecord* record = scene->lights.lights + light;
@@ -155,8 +165,9 @@ static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver
   }
 }
 
-// Sum over infinite lights of radiance times MIS weight, for a ray from p in direction wi (unit) that left the scene. bsdf_pdf:
-// solid-angle density that the ray was made with; `specular`: no light sample could have made it (also camera rays).
+// Returns the sum over infinite lights of radiance times MIS weight, for a ray from p in direction
+// wi (unit) that left the scene. bsdf_pdf: solid-angle density that the ray was made with;
+// `specular`: no light sample could have made it (also camera rays).
 static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 p, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
   float4 sum = (float4)(0.0f);
   const LightReceiver anywhere = {(float3)(0.0f), CAPLET_NONE};  // no infinite light is in the tree

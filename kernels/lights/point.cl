@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Point light: the same intensity in every direction.
+// A point light has the same intensity in every direction.
 #ifndef CAPLET_LIGHTS_POINT_CL
 #define CAPLET_LIGHTS_POINT_CL
 
 #include "lights/light_types.cl"
 
-// Direction to a point; returns what the intensity there is multiplied with (1 / distance squared), 0 at the point itself, and so
-// near to it that the square of the distance is no normal number.
+// Computes the direction to a point. Returns the factor on the intensity there (1 / distance
+// squared). It is 0 at the point itself, and so near to it that the square of the distance is no
+// normal number.
 static inline float point_weight(float3 position, float3 p, float3* wi) {
   const float3 away = position - p;
   const float distance_squared = dot(away, away);
@@ -17,8 +18,9 @@ static inline float point_weight(float3 position, float3 p, float3* wi) {
   return 1.0f / distance_squared;
 }
 
-// What lamps share that send each way another light: fills where they are and wi, and in *w the direction of the light that goes to p in the lamp's
-// own space. Returns point_weight.
+// Point lights whose intensity depends on the direction share this: it fills where they are and wi,
+// and in *w the direction of the light that goes to p, in the light's own space. Returns
+// point_weight.
 static inline float lamp_weight(__global const float* position, __global const float* light_from_world, float3 p, float3* w, LightSample* s) {
   s->target = load3(position);
   s->pdf = 1.0f;
@@ -27,7 +29,8 @@ static inline float lamp_weight(__global const float* position, __global const f
   *w = light_turned(light_from_world, -s->wi);
   return weight;
 }
-// The lamp's spectrum by that weight, with what it sends along w. 0: nothing.
+// Multiplies the light's spectrum, by that weight, with its intensity along w. Returns 0 if there
+// is none.
 static inline int lamp_shines(const Scene* scene, __global const LightRecord* light, float4 lambda, float weight, LightSample* s) {
   if (!(weight > 0.0f)) return 0;
   s->radiance = light_spectrum(&scene->spectra, light, lambda, weight);

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What comes of an infinite light through a rectangle: nothing from elsewhere, and only to points in front of it. The image is rectified (Bitterli, Novak
-// and Jarosz, "Portal-masked environment map sampling", 2015): u and v run evenly in the angles in which a direction is seen along either side, so
-// that what a point sees of the rectangle is a rectangle of the image. Of that a point is sampled in proportion to the image, by sums over rectangles
-// of its texels' weights. These are whole numbers, so that differences of large sums are exact.
+// This is an infinite light seen through a rectangle: no light comes from elsewhere, and only
+// points in front of it receive light. The image is rectified (Bitterli, Novak and Jarosz,
+// "Portal-masked environment map sampling", 2015): u and v are linear in the angles at which a
+// direction is seen along either side, so a point sees a rectangle of the image through the portal.
+// A point of that rectangle is sampled in proportion to the image, by sums over rectangles of its
+// texels' weights. These sums are whole numbers, so that differences of large sums are exact.
 #ifndef CAPLET_LIGHTS_PORTAL_CL
 #define CAPLET_LIGHTS_PORTAL_CL
 
 #include "lights/light_types.cl"
 
-// What of the image a point sees, in texels, and the texels that hold the ends.
+// PortalWindow is the part of the image that a point sees, in texels, and the texels that hold its
+// ends.
 typedef struct {
   float2 low, high;
   uint x0, x1, y0, y1;
@@ -21,13 +24,13 @@ static inline ulong portal_sum_to(const Picture* picture, uint x, uint y) {
   return ((ulong)as_uint(at[1]) << 32) | as_uint(at[0]);
 }
 
-// Weight of the texels of columns [x0, x1) and rows [y0, y1).
+// Returns the weight of the texels of columns [x0, x1) and rows [y0, y1).
 static inline float portal_block(const Picture* picture, uint x0, uint x1, uint y0, uint y1) {
   if (x0 >= x1 || y0 >= y1) return 0.0f;
   return (float)((portal_sum_to(picture, x1, y1) - portal_sum_to(picture, x0, y1)) - (portal_sum_to(picture, x1, y0) - portal_sum_to(picture, x0, y0)));
 }
 
-// Of columns [x0, x1) what lies between the window's ends.
+// Returns the weight of columns [x0, x1) between the window's lower and upper end.
 static inline float portal_columns(const Picture* picture, const PortalWindow* window, uint x0, uint x1) {
   const uint top = window->y0, bottom = window->y1;
   if (top == bottom) return (window->high.y - window->low.y) * portal_block(picture, x0, x1, top, top + 1u);
@@ -35,14 +38,15 @@ static inline float portal_columns(const Picture* picture, const PortalWindow* w
          (window->high.y - (float)bottom) * portal_block(picture, x0, x1, bottom, bottom + 1u);
 }
 
-// Of the window what lies before column x, which begins within it.
+// Returns the weight of the window's part before column x, which begins within the window.
 static inline float portal_before_column(const Picture* picture, const PortalWindow* window, uint x) {
   if (x <= window->x0) return 0.0f;
   return ((float)(window->x0 + 1u) - window->low.x) * portal_columns(picture, window, window->x0, window->x0 + 1u) +
          portal_columns(picture, window, window->x0 + 1u, x);
 }
 
-// Of the window's part of column x what lies before row y, which begins within it; for one unit of x.
+// Returns the weight of the window's part of column x before row y, which begins within the window;
+// for one unit of x.
 static inline float portal_before_row(const Picture* picture, const PortalWindow* window, uint x, uint y) {
   if (y <= window->y0) return 0.0f;
   return ((float)(window->y0 + 1u) - window->low.y) * portal_block(picture, x, x + 1u, window->y0, window->y0 + 1u) +
@@ -54,17 +58,17 @@ static inline float portal_total(const Picture* picture, const PortalWindow* win
   return portal_before_column(picture, window, window->x1) + (window->high.x - (float)window->x1) * portal_columns(picture, window, window->x1, window->x1 + 1u);
 }
 
-// Of a direction in the portal's space, which goes out (z > 0).
+// Returns the place in the image of a direction in the portal's space that goes out (z > 0).
 static inline float2 portal_uv(float3 d) {
   return (float2)(atan2(d.x, d.z), atan2(d.y, d.z)) * CAPLET_INV_PI + 0.5f;
 }
 
-// Solid angle by area of the unit square.
+// Returns solid angle over area of the unit square.
 static inline float portal_stretch(float3 w) {
   return CAPLET_PI * CAPLET_PI * (w.y * w.y + w.z * w.z) * (w.x * w.x + w.z * w.z) / w.z;
 }
 
-// 0: p is not in front of the portal.
+// Computes the window of a point. Returns 0 if p is not in front of the portal.
 static inline int portal_window(__global const float* data, const Picture* picture, float3 p, PortalWindow* window) {
   const float3 low = light_turned(portal_portal_from_world(data), load3(portal_corner(data)) - p);
   if (!(low.z > 0.0f)) return 0;
@@ -84,7 +88,8 @@ static inline float4 portal_texel(const Spectra* spectra, const Picture* picture
   return sigmoid_illuminant(picture_illuminant(spectra, light), vload4((size_t)y * picture->width + x, picture->texels), lambda) * light->scale;
 }
 
-// Density (solid angle) of direction w of the portal's space, in texel (x, y) of a window whose weight is `total`.
+// Returns the density (solid angle) of direction w of the portal's space, in texel (x, y) of a
+// window whose weight is `total`.
 static inline float portal_density(const Picture* picture, uint x, uint y, float total, float3 w) {
   const float density = portal_block(picture, x, x + 1u, y, y + 1u) / total * ((float)picture->width * (float)picture->height) / portal_stretch(w);
   return density < INFINITY ? density : 0.0f;
@@ -126,7 +131,7 @@ static inline int portal_light_sample(const Scene* scene, __global const LightRe
   const float at_y = clamp(top + (to_y - portal_before_row(&picture, &window, x, y)) / cell, top, bottom);
 
   const float2 angle = ((float2)(at_x / (float)picture.width, at_y / (float)picture.height) - 0.5f) * CAPLET_PI;
-  // (tan, tan, 1), scaled so that nothing overflows near the horizon.
+  // The direction is (tan, tan, 1), scaled so that nothing overflows near the horizon.
   const float2 cosine = cos(angle), sine = sin(angle);
   const float3 w = unit_or((float3)(sine.x * cosine.y, sine.y * cosine.x, cosine.x * cosine.y), (float3)(0.0f));
   if (!(w.z > 0.0f)) return 0;

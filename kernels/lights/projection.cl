@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A slide projector without a lens: a point whose intensity is the colour of an image's nearest texel, which stands upright around the z axis
-// (Pharr, Jakob and Humphreys 2023, section 12.2.2).
+// This is a slide projector without a lens: a point light whose intensity is the colour of an
+// image's nearest texel. The image stands upright around the z axis (Pharr, Jakob and Humphreys
+// 2023, section 12.2.2).
 #ifndef CAPLET_LIGHTS_PROJECTION_CL
 #define CAPLET_LIGHTS_PROJECTION_CL
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Spot light: a point light within a cone, with a smooth edge (pbrt-v4's).
+// A spot light is a point light within a cone, with a smooth edge (pbrt-v4's).
 #ifndef CAPLET_LIGHTS_SPOT_CL
 #define CAPLET_LIGHTS_SPOT_CL
 
 #include "lights/point.cl"
 
-// 3 t^2 - 2 t^3 of the cosine's place between the cone's edge and where the falloff starts; an edge without width is a step.
+// Returns 3 t^2 - 2 t^3, where t is the cosine's place between the cone's edge and where the
+// falloff starts; an edge without width is a step.
 static inline float spot_falloff(float cosine, float cos_total, float cos_falloff_start) {
   if (cosine <= cos_total) return 0.0f;
   if (cosine >= cos_falloff_start) return 1.0f;

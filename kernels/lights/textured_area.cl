@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Area lights whose radiance varies by an image over uv, and those of shapes that let rays through: where a ray is stopped with a chance (alpha),
-// light comes with that chance. Sampled as `area` is.
+// These are area lights whose radiance varies by an image over uv, and those of shapes that let
+// rays through: where a ray is stopped with a probability (alpha), light arrives with that
+// probability. They are sampled as `area` is.
 #ifndef CAPLET_LIGHTS_TEXTURED_AREA_CL
 #define CAPLET_LIGHTS_TEXTURED_AREA_CL
 
 #include "lights/area.cl"
 #include "textures/textures.cl"
 
-// The image's bottom row is at v = 0; beyond its edges it goes on as it is there.
+// The image's bottom row is at v = 0; beyond its edges the edge texels continue.
 static inline float4 textured_area_light_emitted(const Spectra* spectra, const Lights* lights, __global const LightRecord* light, float2 uv, float4 lambda) {
   const Picture picture = picture_of(lights, textured_area_picture(light_data_of(lights, light)));
   if (picture.width == 0u) return light_spectrum(spectra, light, lambda, 1.0f);
@@ -36,7 +37,7 @@ static inline int textured_area_light_sample(const Scene* scene, __global const 
   const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
   const uint alpha = scene->surfaces.geometries[light->geometry].alpha;
   float stopped = 1.0f;
-  // pbrt-v4: a light that no ray stops at shines as if it were there.
+  // In pbrt-v4 a light that no ray stops at shines as if it were there.
   if (light->flags & CAPLET_LIGHT_UNSEEN) {
     s->delta = 1;
     s->slot = CAPLET_NONE;
@@ -52,7 +53,7 @@ static inline float textured_area_light_pdf(const Scene* scene, __global const L
   const int is_ball = area_ball(&scene->lights, light) != 0;
   const int by_area = geometry->shape == shape_triangle || geometry->shape == shape_disk || geometry->shape == shape_cylinder;
   if (geometry->alpha != CAPLET_NONE && (is_ball || !by_area)) {
-    // What lies behind a hole of the primitive's own is not sampled.
+    // Light from behind a hole of the primitive's own is not sampled.
     HitRecord first;
     const float3 away = hit->p - p;
     const float distance = sqrt(dot(away, away));

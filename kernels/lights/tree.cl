@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The light tree: many lights of which few matter at a point. A node has eight children, and one is taken with a chance that goes by how much light
-// can come from it: the least cosines at the light and at the receiver, over the squared distance (Conty Estevez and Kulla, "Importance sampling
-// of many lights with adaptive tree splitting", 2018). Bounds are kept, so that light that can come has a chance. host/lower/light_tree.cpp
-// makes it.
+// The light tree serves scenes with many lights of which few matter at a point. A node has eight
+// children, and one is chosen with a probability in proportion to a bound on its light: the least
+// cosines at the light and at the receiver, over the squared distance (Conty Estevez and Kulla,
+// "Importance sampling of many lights with adaptive tree splitting", 2018). Bounds are
+// conservative, so that every light that can arrive has a probability above 0.
+// host/lower/light_tree.cpp makes it.
 //
-// A node is seven rows of eight numbers, a child each: of x, of y and of z both ends on the grid (low in bits 0..15, high 16..31); the axis of a
-// cone (normal_bits); in 65535ths of [-1, 1] the cosine of the cone that holds the normals (bits 0..15) and of how far from these light goes
+// A node is seven rows of eight numbers, a child each: of x, of y and of z both ends on the grid
+// (low in bits 0..15, high 16..31); the axis of a cone (normal_bits); in 65535ths of [-1, 1] the
+// cosine of the cone that holds the normals (bits 0..15) and of how far from these light goes
 // (16..31); intensity, a float; the child: a node, a light | CAPLET_LIGHT_LEAF, or CAPLET_NONE.
 #ifndef CAPLET_LIGHTS_TREE_CL
 #define CAPLET_LIGHTS_TREE_CL
@@ -16,8 +19,8 @@
 #include "math/rng.cl"
 #include "shapes/real.cl"
 
-// A direction in 32 bits by the octahedral map (Cigolle et al., "A survey of efficient representations for independent unit vectors", 2014).
-// Never CAPLET_NONE.
+// Returns a direction in 32 bits by the octahedral map (Cigolle et al., "A survey of efficient
+// representations for independent unit vectors", 2014). It is never CAPLET_NONE.
 static inline uint normal_bits(float3 n) {
   const float scale = 1.0f / (fabs(n.x) + fabs(n.y) + fabs(n.z));
   float x = n.x * scale, y = n.y * scale;
@@ -36,7 +39,8 @@ static inline float3 normal_of_bits(uint bits) {
   return normalize((float3)(x + (x < 0.0f ? back : -back), y + (y < 0.0f ? back : -back), z));
 }
 
-// Where light comes to: a point of the world, and the normal_bits of the side that takes it, or CAPLET_NONE for all sides.
+// LightReceiver is where light arrives: a point of the world, and the normal_bits of the side that
+// takes it, or CAPLET_NONE for all sides.
 typedef struct {
   float3 p;
   uint normal;
@@ -59,7 +63,8 @@ static inline real real_of_uint(real_uint x) { return (float)x; }
 static inline real real_of_bits(real_uint x) { return as_float(x); }
 #endif
 
-// The cosine of the angle a - b, or 1 where a is the smaller one, of angles by their cosines and sines; in *sine its sine.
+// Returns the cosine of the angle a - b, or 1 where a is the smaller one, of angles by their
+// cosines and sines; in *sine its sine.
 static inline real cosine_beyond(real cos_a, real sin_a, real cos_b, real sin_b, real* sine) {
   const real_mask beyond = cos_a < cos_b;
   *sine = beyond ? sin_a * cos_b - cos_a * sin_b : real_of(0.0f);
@@ -67,7 +72,7 @@ static inline real cosine_beyond(real cos_a, real sin_a, real cos_b, real sin_b,
 }
 static inline real sine_of(real cosine) { return sqrt(real_max(1.0f - cosine * cosine, real_of(0.0f))); }
 
-// How much light the lanes' children may send; 0: none.
+// Returns how much light the lanes' children may send; 0: none.
 static inline real light_importance(const Lights* lights, __global const uint* node, uint lane, const LightReceiver* at) {
   const real zero = real_of(0.0f), one = real_of(1.0f);
   __global const LightingRecord* grid = lights->lighting;
@@ -75,14 +80,14 @@ static inline real light_importance(const Lights* lights, __global const uint* n
   const float half_x = 0.5f * grid->tree_cell[0], half_y = 0.5f * grid->tree_cell[1], half_z = 0.5f * grid->tree_cell[2];
   const real low_x = real_of_uint(x & 0xffffu), low_y = real_of_uint(y & 0xffffu), low_z = real_of_uint(z & 0xffffu);
   const real high_x = real_of_uint(x >> 16u), high_y = real_of_uint(y >> 16u), high_z = real_of_uint(z >> 16u);
-  // From the receiver to the middle of the box, and half its sides.
+  // d goes from the receiver to the middle of the box; r is half its sides.
   const real dx = grid->tree_min[0] - at->p.x + half_x * (low_x + high_x), dy = grid->tree_min[1] - at->p.y + half_y * (low_y + high_y),
              dz = grid->tree_min[2] - at->p.z + half_z * (low_z + high_z);
   const real rx = half_x * (high_x - low_x), ry = half_y * (high_y - low_y), rz = half_z * (high_z - low_z);
   const real dd = real_max(real_dot(dx, dy, dz, dx, dy, dz), real_of(FLT_MIN)), rr = real_dot(rx, ry, rz, rx, ry, rz);
   const real inv = 1.0f / sqrt(dd);
   const real wx = dx * inv, wy = dy * inv, wz = dz * inv;
-  // The angle that the ball around the box fills.
+  // cos_box and sin_box are of the angle that the ball around the box fills.
   const real_mask within = dd <= rr;
   const real share = real_min(rr / dd, one);
   const real cos_box = within ? -one : sqrt(1.0f - share), sin_box = within ? zero : sqrt(share);
@@ -99,7 +104,8 @@ static inline real light_importance(const Lights* lights, __global const uint* n
   const real cos_normal = cosine_beyond(cos_axis, sine_of(cos_axis), cos_cone, sine_of(cos_cone), &sine);
   const real cos_light = cosine_beyond(cos_normal, sine, cos_box, sin_box, &sine);
 
-  // Near and within the box, as from a third of rr: what points of a box have in the mean.
+  // Near and within the box the importance is that at a squared distance of a third of rr, which
+  // points of a box have in the mean.
   real importance = real_of_bits(uint_load(node + 40, lane)) * real_max(cos_light, zero) / real_max(dd, rr * (1.0f / 3.0f));
   if (at->normal != CAPLET_NONE) {
     const float3 n = normal_of_bits(at->normal);
@@ -109,8 +115,9 @@ static inline real light_importance(const Lights* lights, __global const uint* n
   return cos_light > cos_reach ? real_min(importance, real_of(0x1p100f)) : zero;
 }
 
-// The chances of a node's children, whose sum is 1. 0: none of them can be seen. The root gives a sixteenth of all to those that it has evenly,
-// so that what hides behind a wall does not starve the rest.
+// Computes the probabilities of a node's children, whose sum is 1. Returns 0 if none of them can be
+// seen. The root distributes a sixteenth evenly over the children it has, so that lights behind a
+// wall do not take nearly all samples.
 static inline int light_chances(const Lights* lights, uint number, const LightReceiver* at, float* chances) {
   __global const uint* node = lights->light_nodes + (size_t)number * CAPLET_LIGHT_NODE;
   for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) real_store(light_importance(lights, node, lane, at), chances + lane);
@@ -125,8 +132,9 @@ static inline int light_chances(const Lights* lights, uint number, const LightRe
   return 1;
 }
 
-// A light of the tree by the random number u in [0, 1), and its chance. CAPLET_NONE: none can be seen. `bits`: more random bits, for u has not
-// enough to name each of a million lights.
+// Returns a light of the tree by the random number u in [0, 1), and its probability. CAPLET_NONE:
+// none can be seen. `bits`: more random bits, because u has too few to select each of a million
+// lights.
 static inline uint light_of_tree(const Lights* lights, const LightReceiver* at, float u, uint bits, float* chance) {
   float chances[CAPLET_WIDTH];
   *chance = 1.0f;
@@ -150,7 +158,7 @@ static inline uint light_of_tree(const Lights* lights, const LightReceiver* at, 
   }
 }
 
-// The chance that light_of_tree has for a light of the tree.
+// Returns the probability of a light of the tree in light_of_tree.
 static inline float light_tree_chance(const Lights* lights, uint light, const LightReceiver* at) {
   float chances[CAPLET_WIDTH], chance = 1.0f;
   for (uint place = lights->light_places[light]; place != CAPLET_NONE;) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Asks processors for what is read soon. GPUs have other work while they wait, and compilers that do not know how are not asked.
+// Prefetches on CPUs what is read soon. GPUs have other work while they wait, and compilers without
+// the builtin are not asked.
 #ifndef CAPLET_MATH_AHEAD_CL
 #define CAPLET_MATH_AHEAD_CL
 
@@ -11,14 +12,14 @@
 #endif
 #endif
 
-// One line of the cache, 64 bytes.
+// AHEAD prefetches one cache line, 64 bytes.
 #ifdef CAPLET_PREFETCH
 #define AHEAD(at) __builtin_prefetch((const void*)(size_t)(at), 0, 3)
 #else
 #define AHEAD(at) (void)(at)
 #endif
 
-// Four of them.
+// Prefetches four cache lines.
 static inline void fetch_ahead(__global const float* at) {
   AHEAD(at);
   AHEAD(at + 16);

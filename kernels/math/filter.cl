@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Importance sampling of the pixel filter (Ernst, Stamminger and Greiner, "Filter importance sampling", 2006). Every filter is a
-// product of one function an axis, each piecewise linear over the cells of a table (host/lower/filter.cpp).
+// Importance sampling of the pixel filter (Ernst, Stamminger and Greiner, "Filter importance
+// sampling", 2006). Every filter is a product of one function an axis, each piecewise linear over
+// the cells of a table (host/lower/filter.cpp).
 #ifndef CAPLET_MATH_FILTER_CL
 #define CAPLET_MATH_FILTER_CL
 
 #include "math/vector.cl"
 
-// t in [0, 1] with density proportional to the line from a at 0 to b at 1 (a, b >= 0, not both 0).
+// Returns t in [0, 1] with density proportional to the line from a at 0 to b at 1 (a, b >= 0, not
+// both 0).
 static inline float sample_linear(float u, float a, float b) {
   const float root = sqrt(a * a + u * (b * b - a * a));
   return u > 0.0f ? fmin(u * (a + b) / (a + root), 1.0f) : 0.0f;
 }
 
-// One axis: `table` holds cells + 1 positions, cells + 1 values of the running integral of |f| (0 to 1), cells + 1 signed values
-// of f, and the integral of |f| over the integral of f.
+// Samples one axis: `table` holds cells + 1 positions, cells + 1 values of the running integral of
+// |f| (0 to 1), cells + 1 signed values of f, and the integral of |f| over the integral of f.
 static inline float filter_axis(__global const float* table, uint cells, float u, float* weight) {
   __global const float* positions = table;
   __global const float* integral = table + cells + 1;
@@ -35,7 +37,8 @@ static inline float filter_axis(__global const float* table, uint cells, float u
   return mix(positions[low], positions[low + 1], sample_linear(within, fabs(a), fabs(b)));
 }
 
-// Offset from the pixel's centre, in pixels, for u in [0, 1)^2, by a table of width and height cells an axis; *weight is what the sample counts: 1 for filters that are nowhere
+// Returns the offset from the pixel's centre, in pixels, for u in [0, 1)^2, by a table of width and
+// height cells an axis. *weight is the weight of the sample: 1 for filters that are nowhere
 // negative, otherwise plus or minus a constant, 1 on average.
 static inline float2 filter_sample(__global const float* table, uint width, uint height, float2 u, float* weight) {
   *weight = 1.0f;

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How particles scatter light: Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941. g: mean cosine of the turn, -1 < g < 1.
+// Particles scatter light by the phase function of Henyey and Greenstein, "Diffuse radiation in the
+// galaxy", 1941. g: mean cosine of the scattering angle, -1 < g < 1.
 #ifndef CAPLET_MATH_PHASE_CL
 #define CAPLET_MATH_PHASE_CL
 
 #include "math/vector.cl"
 
-// The density of a turn by that cosine.
+// Returns the density of the phase function at the cosine of a scattering angle.
 static inline float phase_density(float cosine, float g) {
   const float d = fmax(1.0f + g * g - 2.0f * g * cosine, 1e-12f);
   return 0.25f * CAPLET_INV_PI * (1.0f - g * g) / (d * sqrt(d));
 }
 
-// Where a ray of direction w (unit) goes on.
+// Samples the new direction of a ray of direction w (unit).
 static inline float3 phase_sample(float3 w, float g, float2 u, float* pdf) {
   const float t = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
   const float cosine = clamp(fabs(g) < 1e-3f ? 1.0f - 2.0f * u.x : (1.0f + g * g - t * t) / (2.0f * g), -1.0f, 1.0f);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Maps between directions and the unit square.
+// This file maps between directions and the unit square.
 #ifndef CAPLET_MATH_SPHERE_MAPS_CL
 #define CAPLET_MATH_SPHERE_MAPS_CL
 
 #include "math/vector.cl"
 
-// Equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008): the diamond |u|
-// + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square, the polar cap 1 - z <= r^2 the same share of the sphere.
+// This is the equal-area octahedral map (Clarberg, "Fast equal-area mapping of the (hemi)sphere
+// using SIMD", 2008): the diamond |u| + |v| <= r of [-1, 1]^2 has the share r^2 / 2 of the square,
+// the polar cap 1 - z <= r^2 the same share of the sphere.
 static inline float3 square_to_sphere(float2 uv) {
   const float2 signed_uv = 2.0f * uv - 1.0f;
   const float2 a = fabs(signed_uv);
@@ -21,7 +22,7 @@ static inline float3 square_to_sphere(float2 uv) {
 }
 
 static inline float2 sphere_to_square(float3 d) {
-  // 1 - |z| by the other two coordinates, which does not cancel near the poles.
+  // The other two coordinates give 1 - |z| without cancellation near the poles.
   const float r = sqrt(fmax(0.0f, (d.x * d.x + d.y * d.y) / (1.0f + fabs(d.z))));
   const float v = r * atan2(fabs(d.y), fabs(d.x)) * (2.0f * CAPLET_INV_PI);
   float2 uv = (float2)(r - v, v);
@@ -29,7 +30,7 @@ static inline float2 sphere_to_square(float3 d) {
   return clamp(0.5f * ((float2)(copysign(uv.x, d.x), copysign(uv.y, d.y)) + 1.0f), 0.0f, 1.0f);
 }
 
-// Latitude-longitude: u = phi / 2 pi, v = theta / pi, z up.
+// In latitude-longitude u = phi / 2 pi, v = theta / pi, z up.
 static inline float3 latlong_to_sphere(float2 uv, float* sine) {
   const float phi = 2.0f * CAPLET_PI * uv.x, theta = CAPLET_PI * uv.y;
   *sine = sin(theta);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Colours to spectra: sigmoid polynomials (Jakob and Hanika 2019) by a table over which channel is the largest, its value, and the two
-// others as parts of it (limits.h; host/lower/spectrum_uplift.cpp makes it).
+// Converts colours to spectra: sigmoid polynomials (Jakob and Hanika 2019) by a table over which
+// channel is the largest, its value, and the two others as parts of it (limits.h;
+// host/lower/spectrum_uplift.cpp makes it).
 #ifndef CAPLET_MATH_UPLIFT_CL
 #define CAPLET_MATH_UPLIFT_CL
 
 #include "math/spectrum.cl"
 
-// The two nodes of an axis about x in [0, 1] and the fraction to the second.
+// Returns the first of the two nodes of an axis about x in [0, 1], and the fraction to the second.
 static inline uint uplift_node(float x, uint nodes, float* fraction) {
   const float at = clamp(x, 0.0f, 1.0f) * (float)(nodes - 1u);
   const uint node = min((uint)at, nodes - 2u);
@@ -21,8 +22,8 @@ static inline float3 uplift_between(__global const float* cell, uint stride, flo
   return low + fraction * (load3(cell + stride) - low);
 }
 
-// The coefficients of a colour whose channels are in [0, 1] and not all the same. They grow as its value falls, as one over the root: the
-// table holds what is left of them.
+// Returns the coefficients of a colour whose channels are in [0, 1] and not all the same. They grow
+// as its value falls, as one over the root, so the table holds them without that factor.
 static inline float3 uplift_coefficients(__global const float* table, float3 rgb) {
   const uint top = rgb.x >= rgb.y ? (rgb.x >= rgb.z ? 0u : 2u) : (rgb.y >= rgb.z ? 1u : 2u);
   const float3 turned = top == 0u ? rgb : top == 1u ? rgb.yzx : rgb.zxy;
@@ -39,7 +40,8 @@ static inline float3 uplift_coefficients(__global const float* table, float3 rgb
   return (near + z * (far - near)) / sqrt(value);
 }
 
-// A reflectance of the colour, whose channels are clamped to [0, 1], at four wavelengths (nm).
+// Returns a reflectance of the colour, whose channels are clamped to [0, 1], at four wavelengths
+// (nm).
 static inline float4 uplift_albedo(__global const float* table, float3 rgb, float4 lambda) {
   rgb = clamp(rgb, 0.0f, 1.0f);
   if (rgb.x == rgb.y && rgb.y == rgb.z) return (float4)(rgb.x);
@@ -47,7 +49,8 @@ static inline float4 uplift_albedo(__global const float* table, float3 rgb, floa
   return sigmoid_polynomial(c.x, c.y, c.z, lambda);
 }
 
-// A spectrum from 0 up: twice the largest channel times that of the colour with a largest channel of 1/2.
+// Returns a spectrum from 0 up: twice the largest channel times that of the colour with a largest
+// channel of 1/2.
 static inline float4 uplift_unbounded(__global const float* table, float3 rgb, float4 lambda) {
   rgb = fmax(rgb, 0.0f);
   const float scale = 2.0f * max3(rgb);

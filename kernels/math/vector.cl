@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Small vector helpers over float3. Matrices are 3x4 row-major, 12 floats.
+// This file holds small vector helpers over float3. Matrices are 3x4 row-major, 12 floats.
 #ifndef CAPLET_MATH_VECTOR_CL
 #define CAPLET_MATH_VECTOR_CL
 
 #define CAPLET_PI 3.14159265358979f
 #define CAPLET_INV_PI 0.318309886183791f
-// Unit roundoff of binary32.
+// CAPLET_EPS is the unit roundoff of binary32.
 #define CAPLET_EPS 5.9604644775390625e-8f
 
 typedef struct {
@@ -28,14 +28,15 @@ static inline float3 transform_vector(__global const float* m, float3 v) {
   return (float3)(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
                   m[8] * v.x + m[9] * v.y + m[10] * v.z);
 }
-// The transpose of m applied to v: a normal goes to the space m comes from.
+// Applies the transpose of m to v: it takes a normal to the space that m comes from.
 static inline float3 transform_transposed(__global const float* m, float3 v) {
   return (float3)(m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z,
                   m[2] * v.x + m[6] * v.y + m[10] * v.z);
 }
 
-// Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit length. sign: 1 or -1, and sign + n.z is not near 0.
-// s is where the rotation that takes +z (-z) to n by the least angle takes +x.
+// Builds the frame of Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit
+// length. sign: 1 or -1, and sign + n.z is not near 0. The rotation that takes +z (-z) to n by the
+// least angle takes +x to s.
 static inline Frame frame_from_pole(float3 n, float sign) {
   Frame f;
   const float a = -1.0f / (sign + n.z);
@@ -46,7 +47,7 @@ static inline Frame frame_from_pole(float3 n, float sign) {
   return f;
 }
 static inline Frame frame_from_normal(float3 n) { return frame_from_pole(n, n.z >= 0.0f ? 1.0f : -1.0f); }
-// The frame with normal n whose s lies along dpdu as far as it can.
+// Returns the frame with normal n whose s lies along dpdu as far as possible.
 static inline Frame frame_from_tangent(float3 n, float3 dpdu) {
   const float3 s = dpdu - n * dot(n, dpdu);
   const float length_squared = dot(s, s);
@@ -66,8 +67,8 @@ static inline float power_heuristic(float a, float b) {
   return a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
 }
 
-// sin and cos of x in [-pi/4, pi/4] by their Taylor series, to 2 units in the last place: the built-in ones spend most of their time on
-// reducing arguments that are far away.
+// Returns sin and cos of x in [-pi/4, pi/4] by their Taylor series, to 2 units in the last place.
+// The built-in functions spend most of their time on reducing large arguments.
 static inline float sin_small(float x) {
   const float z = x * x;
   return x + x * z * (-1.66666667e-1f + z * (8.33333333e-3f + z * (-1.98412698e-4f + z * 2.75573192e-6f)));
@@ -77,7 +78,7 @@ static inline float cos_small(float x) {
   return 1.0f + z * (-0.5f + z * (4.16666667e-2f + z * (-1.38888889e-3f + z * 2.48015873e-5f)));
 }
 
-// Shirley and Chiu 1997: the unit square onto the unit disk, keeping areas.
+// Maps the unit square to the unit disk and keeps areas (Shirley and Chiu 1997).
 static inline float2 sample_disk(float2 u) {
   const float2 p = 2.0f * u - 1.0f;
   if (p.x == 0.0f && p.y == 0.0f) return (float2)(0.0f);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A cloud of noise, thinner upwards along y of its space (Pharr, Jakob and Humphreys 2023, 11.4.4, as pbrt-v4 has it).
+// This medium is a cloud of noise, thinner upwards along y of its space (Pharr, Jakob and Humphreys
+// 2023, 11.4.4, as pbrt-v4 has it).
 #ifndef CAPLET_MEDIA_CLOUD_CL
 #define CAPLET_MEDIA_CLOUD_CL
 
@@ -18,13 +19,13 @@ static inline MediumBox cloud_medium_box(const MediumView* m) {
   return box;
 }
 
-// The slope of the noise, by differences.
+// Returns the gradient of the noise, by differences.
 static inline float3 cloud_slope(float3 p) {
   const float step = 0.01f, here = noise_at(p);
   return ((float3)(noise_at(p + (float3)(step, 0.0f, 0.0f)), noise_at(p + (float3)(0.0f, step, 0.0f)), noise_at(p + (float3)(0.0f, 0.0f, step))) - here) / step;
 }
 
-// From 0 to 1, at a point of the medium's space.
+// Returns the density, from 0 to 1, at a point of the medium's space.
 static inline float cloud_density(__global const float* data, float3 p) {
   const float wispiness = cloud_medium_wispiness(data);
   float3 at = cloud_medium_frequency(data) * p;

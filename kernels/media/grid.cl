@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Values at the centres of the cells of the unit cube, linear between them and 0 outside (Pharr, Jakob and Humphreys 2023, 11.4.3).
+// Grids hold values at the centres of the cells of the unit cube; they are linear between them and
+// 0 outside (Pharr, Jakob and Humphreys 2023, 11.4.3).
 #ifndef CAPLET_MEDIA_GRID_CL
 #define CAPLET_MEDIA_GRID_CL
 
 #include "math/vector.cl"
 
-// The eight cells around a point, from the least in all coordinates on, x fastest: their numbers and weights; 0 of those outside.
+// GridCells are the eight cells around a point, from the least in all coordinates on, x fastest:
+// their numbers and weights; weights are 0 outside.
 typedef struct {
   size_t cell[8];
   float weight[8];

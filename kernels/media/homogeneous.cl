@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The same everywhere.
+// This medium is the same everywhere.
 #ifndef CAPLET_MEDIA_HOMOGENEOUS_CL
 #define CAPLET_MEDIA_HOMOGENEOUS_CL
 

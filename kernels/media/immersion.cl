@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which medium a point of a ray is in: that within the boundary of the highest number of those whose solids hold the point, as often as there are
-// such solids (docs/media.md). A ray carries the boundaries that it is within, at most CAPLET_HELD_BY of them; of more, the lowest numbers are forgotten.
+// This file finds the medium at a point of a ray: that within the boundary of the highest number of
+// those whose solids hold the point. A boundary counts once for each such solid (docs/media.md). A
+// ray carries the boundaries that it is within, at most CAPLET_HELD_BY of them; of more, the lowest
+// numbers are forgotten.
 #ifndef CAPLET_MEDIA_IMMERSION_CL
 #define CAPLET_MEDIA_IMMERSION_CL
 
 #include "groups.cl"
 #include "shared/kinds.h"
 
-// inside: of each boundary its number + 1 above a count in bits 0..7, 0 where there is none. around: the medium where no solid is.
+// Held is the state of a ray. inside: for each boundary its number + 1 above a count in bits 0..7,
+// 0 where there is none. around: the medium where no solid is.
 typedef struct {
   uint4 inside;
   uint around;
@@ -57,12 +60,12 @@ static inline void held_leave(const Media* media, Held* held, uint boundary) {
   if (held_highest(held) == 0u) held->around = media->boundaries[boundary].outside;
 }
 
-// The boundary of a hit, or CAPLET_NONE.
+// Returns the boundary of a hit, or CAPLET_NONE.
 static inline uint boundary_of(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit) {
   return media->geometry_boundary[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]];
 }
 
-// Whether a ray that goes through the surface of a hit comes out of what the boundary holds.
+// Returns 1 if a ray that goes through the surface of a hit leaves the boundary.
 static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, const Media* media, uint boundary, const HitRecord* hit) {
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   if (!(media->boundaries[boundary].flags & CAPLET_BOUNDARY_SHEET)) return leaving;
@@ -70,7 +73,7 @@ static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, c
   return leaving != ((flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0);
 }
 
-// What holds a ray that went through the surface of a hit.
+// Updates the boundaries of a ray that went through the surface of a hit.
 static inline void held_cross(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, Held* held) {
   const uint boundary = boundary_of(tree, surfaces, media, hit);
   if (boundary == CAPLET_NONE) return;
@@ -80,12 +83,14 @@ static inline void held_cross(const Tree* tree, const Surfaces* surfaces, const 
     held_enter(held, boundary);
 }
 
-// What holds a ray on its way to a hit. Solids that touch are crossed in one point, of which a ray meets one alone: that it is within the other
-// shows as it leaves that. endless: of a ray that goes on for ever where it hits nothing.
+// Returns the boundaries of a ray on its way to a hit. A ray meets only one of the solids that
+// touch at a point; when it leaves the other one, that shows that it was inside. endless: the ray
+// goes on for ever where it hits nothing.
 static inline Held held_before(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, int endless, Held held) {
   if (hit->slot == CAPLET_NONE && !endless) return held;
   if (hit->slot == CAPLET_NONE) {
-    // Nothing closed holds what goes on for ever: the surfaces by which the ray left it were met together with others.
+    // No closed solid contains a ray that goes on for ever: the surfaces by which it left were met
+    // together with others.
     uint all[CAPLET_HELD_BY];
     vstore4(held.inside, 0, all);
     for (int i = 0; i < CAPLET_HELD_BY; ++i)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A ray among the cells of a medium that varies (Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing", 1987): one stretch of the ray
-// after the other, with a majorant of the extinction along it.
+// Walks a ray through the cells of a medium that varies (Amanatides and Woo, "A fast voxel
+// traversal algorithm for ray tracing", 1987): one stretch of the ray after the other, with a
+// majorant of the extinction along it.
 #ifndef CAPLET_MEDIA_MAJORANTS_CL
 #define CAPLET_MEDIA_MAJORANTS_CL
 
@@ -18,7 +19,8 @@ typedef struct {
 
 static inline float walk_least(float3 v) { return fmin(v.x, fmin(v.y, v.z)); }
 
-// What of the ray o + t d, t0 <= t <= t1 (t1 may be infinite), is in the box. 0: nothing.
+// Finds the part of the ray o + t d, t0 <= t <= t1 (t1 may be infinite), that is in the box.
+// Returns 0 if there is none.
 static inline int majorants_begin(const MediumBox* box, float3 world_o, float3 world_d, float t0, float t1, MajorantWalk* w) {
   const float3 o = transform_point(box->place, world_o), d = transform_vector(box->place, world_d);
   const float largest = max3(fabs(d));
@@ -44,12 +46,13 @@ static inline int majorants_begin(const MediumBox* box, float3 world_o, float3 w
   return 1;
 }
 
-// The next stretch: from *t0 to *t1, with the cell's number. 0: there is none.
+// Returns the next stretch, from *t0 to *t1, with the cell's number. Returns 0 if there is none.
 static inline int majorants_next(MajorantWalk* w, float* t0, float* t1, float* majorant) {
   if (!(w->t < w->end)) return 0;
   const int size = w->size;
   if (w->cell.x < 0 || w->cell.x >= size || w->cell.y < 0 || w->cell.y >= size || w->cell.z < 0 || w->cell.z >= size) {
-    // Rounded out of the box just before its end: as its last cell.
+    // Rounding took the point out of the box just before its end: the stretch counts as in its last
+    // cell.
     w->cell = clamp(w->cell, 0, size - 1);
     w->next = (float3)(INFINITY);
   }

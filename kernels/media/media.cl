@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// All media. The only switches over kinds of media.
+// This file holds all media and the only switches over kinds of media.
 //
-// A medium of media.def is a file of this folder by its name, with
-//   MediumPoint NAME_medium_at(view)             uniform: what it is everywhere
-//   MediumBox NAME_medium_box(view)              varying: its cells, beyond which there is nothing of it
-//   MediumPoint NAME_medium_at(view, p, q)       varying: what it is at the point p of the world, which is q in [0, 1]^3 of its box
+// A medium of media.def has a file in this folder with its name, which defines
+//   MediumPoint NAME_medium_at(view)  uniform: its values everywhere
+//   MediumBox NAME_medium_box(view)  varying: its cells, outside which it has no density
+//   MediumPoint NAME_medium_at(view, p, q)
+//       varying: its values at the point p of the world, which is q in [0, 1]^3 of its box
 #ifndef CAPLET_MEDIA_MEDIA_CL
 #define CAPLET_MEDIA_MEDIA_CL
 
@@ -50,7 +51,7 @@ static inline int medium_is_uniform(uint kind) {
   }
 }
 
-// Mean cosine of a scattering.
+// Returns the mean cosine of a scattering.
 static inline float medium_g(uint kind, __global const float* data) {
   switch (kind) {
 #define MEDIUM(name, way) \
@@ -61,7 +62,7 @@ static inline float medium_g(uint kind, __global const float* data) {
   }
 }
 
-// Of uniform ones.
+// Returns the values of a uniform medium.
 static inline MediumPoint medium_everywhere(uint kind, const MediumView* view) {
   switch (kind) {
 #define MEDIUM_EVERYWHERE_uniform(name) \
@@ -77,7 +78,7 @@ static inline MediumPoint medium_everywhere(uint kind, const MediumView* view) {
   }
 }
 
-// Of those that vary.
+// Returns the box of a medium that varies.
 static inline MediumBox medium_box(uint kind, const MediumView* view) {
   switch (kind) {
 #define MEDIUM_BOX_uniform(name)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the media share.
+// This file holds what the media share.
 #ifndef CAPLET_MEDIA_TYPES_CL
 #define CAPLET_MEDIA_TYPES_CL
 
@@ -10,7 +10,8 @@
 #include "math/vector.cl"
 #include "shared/families.h"
 
-// A medium as it is looked at: its data (media.def), and where it finds the rest. lambda: nm.
+// MediumView is a medium as it is evaluated: its data (media.def), and the arrays that they refer
+// to. lambda: nm.
 typedef struct {
   const Spectra* spectra;
   __global const float* data;
@@ -18,13 +19,15 @@ typedef struct {
   float4 lambda;
 } MediumView;
 
-// A medium at a point: absorption, scattering (1 over length), and radiance per absorption, at the four wavelengths.
+// MediumPoint is a medium at a point: absorption, scattering (1 over length), and radiance per
+// absorption, at the four wavelengths.
 typedef struct {
   float4 sigma_a, sigma_s, le;
 } MediumPoint;
 
-// Where a medium that varies is, and its majorants: of the cells of a box, size^3 of them, x fastest; extinction is at most the cell's times
-// `extinction`. place: 3x4 row-major, the unit cube from the world.
+// MediumBox is where a medium that varies is, and its majorants for size^3 cells of the box, x
+// fastest; extinction is at most the cell's times `extinction`. place: 3x4 row-major, the unit cube
+// from the world.
 typedef struct {
   __global const float* place;
   __global const float* majorants;

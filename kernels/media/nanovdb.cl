@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Densities of a NanoVDB file, and its temperatures.
+// This medium has the densities of a NanoVDB file, and its temperatures.
 #ifndef CAPLET_MEDIA_NANOVDB_CL
 #define CAPLET_MEDIA_NANOVDB_CL
 
@@ -18,8 +18,10 @@ static inline MediumBox nanovdb_medium_box(const MediumView* m) {
   return box;
 }
 
-// A voxel of a grid of bricks of 8 x 8 x 8 voxels, x fastest (host/lower/sparse_grid.cpp): 12 floats of the matrix from the world to voxels; then as bits the
-// first brick's coordinates, how many there are along each side, the float where their voxels begin, 0; and of each its number or CAPLET_NONE.
+// Returns a voxel of a grid of bricks of 8 x 8 x 8 voxels, x fastest (host/lower/sparse_grid.cpp).
+// The grid is 12 floats of the matrix from the world to voxels; then as bits the first brick's
+// coordinates, how many there are along each side, the float where their voxels begin, 0; and for
+// each brick its number or CAPLET_NONE.
 static inline float sparse_voxel(__global const float* grid, int3 at) {
   const int3 low = (int3)(as_int(grid[12]), as_int(grid[13]), as_int(grid[14])), count = (int3)(as_int(grid[15]), as_int(grid[16]), as_int(grid[17]));
   const int3 brick = (int3)(at.x >> 3, at.y >> 3, at.z >> 3) - low;

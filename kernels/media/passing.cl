@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Surfaces that light goes through as if they were not there.
+// This file finds surfaces that light passes through unchanged.
 #ifndef CAPLET_MEDIA_PASSING_CL
 #define CAPLET_MEDIA_PASSING_CL
 
@@ -19,7 +19,7 @@ static inline int material_passes(const Materials* materials, uint material) {
   }
 }
 
-// That of a hit.
+// Returns whether the surface of a hit lets light pass.
 static inline int surface_passes(const Tree* tree, const Surfaces* surfaces, const Materials* materials, const HitRecord* hit) {
   const uint primitive = as_uint(tree->leaves[hit->slot]);
   __global const GeometryRecord* geometry = surfaces->geometries + surfaces->primitive_geometry[primitive];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Coefficients of any colour, cell by cell: spectra are interpolated, not colours.
+// This medium has coefficients of any colour, cell by cell: spectra are interpolated, not colours.
 #ifndef CAPLET_MEDIA_RGBGRID_CL
 #define CAPLET_MEDIA_RGBGRID_CL
 

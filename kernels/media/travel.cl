@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The way of a ray through a medium: how far it comes, and what it loses. Distances are sampled for the hero wavelength, component 0, and the
-// others are weighed with it by the balance heuristic (Wilkie et al., "Hero wavelength spectral sampling", 2014). Where a medium varies, collisions are made
-// up to a majorant, and null collisions change nothing (Miller, Georgiev and Jarosz, "A null-scattering path integral formulation of light transport",
-// 2019; Pharr, Jakob and Humphreys 2023, 14.2). Unlike there, absorption ends no path where the medium scatters or lets pass as well: it lowers weights.
+// Samples the distance of a ray through a medium, and its transmittance. Distances are sampled for
+// the hero wavelength, component 0, and the others are weighed with it by the balance heuristic
+// (Wilkie et al., "Hero wavelength spectral sampling", 2014). Where a medium varies, collisions are
+// made up to a majorant, and null collisions change nothing (Miller, Georgiev and Jarosz, "A
+// null-scattering path integral formulation of light transport", 2019; Pharr, Jakob and Humphreys
+// 2023, 14.2). Unlike there, absorption does not end a path where the medium scatters or has null
+// collisions as well: it lowers weights.
 //
-// A path keeps its throughput over the mean of the densities with which each of the four wavelengths as the hero would have made it: `scattering` are these,
-// with mean 1. `light`: the densities, in the same measure, of the same path with its last ray made as a shadow ray.
+// A path keeps its throughput over the mean of the densities with which each of the four
+// wavelengths as the hero would have made it: `scattering` are these, with mean 1. `light` are the
+// densities, in the same measure, of the same path with its last ray made as a shadow ray.
 #ifndef CAPLET_MEDIA_TRAVEL_CL
 #define CAPLET_MEDIA_TRAVEL_CL
 
 #include "math/rng.cl"
 #include "media/media.cl"
 
-// A path's number of which random numbers are made.
+// MediumNumbers makes random numbers from a key and a count.
 typedef struct {
   uint key, count;
 } MediumNumbers;
@@ -25,7 +29,7 @@ typedef struct {
   float most;  // of shadow rays: what all of them had in the beginning
 } MediumWeights;
 
-// 0: nothing is left.
+// Scales the weights so that `scattering` has mean 1. Returns 0 if nothing is left.
 static inline int weights_normalised(MediumWeights* w) {
   const float mean = mean4(w->scattering);
   if (!(mean > 0.0f && mean < INFINITY)) return 0;
@@ -38,13 +42,13 @@ static inline int weights_normalised(MediumWeights* w) {
 
 enum { medium_passed, medium_scattered, medium_ended };
 
-// Optical lengths are kept below what has no finite product.
+// Optical lengths are limited to this, so that products stay finite.
 #define CAPLET_FARTHEST 1e30f
 
-// Radiance from the stretch of length d of a uniform medium.
+// Returns the radiance from the stretch of length d of a uniform medium.
 static inline float4 uniform_emission(MediumPoint at, float d) {
   const float4 sigma_t = at.sigma_a + at.sigma_s, depth = sigma_t * d;
-  // (1 - exp(-x)) / x, by its series near 0
+  // This is (1 - exp(-x)) / x, by its series near 0.
   const float4 series = 1.0f - depth * (0.5f - depth * (1.0f / 6.0f));
   const float4 exact = (1.0f - exp(-depth)) / fmax(depth, 1e-30f);
   return at.sigma_a * at.le * d * select(exact, series, depth < 1e-2f);
@@ -75,14 +79,15 @@ static inline int travel_uniform(MediumPoint at, float d, int scatters, float u,
   return weights_normalised(w) ? medium_scattered : medium_ended;
 }
 
-// The chance of a scattering among collisions that do not absorb.
+// Returns the probability of a scattering among collisions that do not absorb.
 static inline float4 scattering_share(float4 sigma_s, float4 null) {
   const float4 both = sigma_s + null;
   return select((float4)(0.0f), sigma_s / fmax(both, 1e-30f), both > 0.0f);
 }
 
-// A step by the random number u where no more than `most` is left of a cell. 0: it goes through, and the weights are of what it has passed. Else it
-// comes to a collision at *way, with *ratio to what the hero's density there is.
+// Samples a step by the random number u where no more than `most` is left of a cell. Returns 0 if
+// the ray goes through, and multiplies the weights by the transmittance. Else there is a collision
+// at *way, and *ratio is the transmittance over the hero's density there.
 static inline int collides(float4 majorant, float most, float u, MediumWeights* w, float* way, float4* ratio) {
   const float hero = majorant.x, gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
   const int stays = gone < most;
@@ -112,7 +117,7 @@ static inline int travel_varying(uint kind, const MediumView* view, float3 o, fl
       float way;
       float4 ratio;
       if (!collides(majorant, (end - t) * unit, u, w, &way, &ratio)) {
-        // What is left of the random number: the next stretch's.
+        // The rest of the random number serves the next stretch.
         u = hero > 0.0f ? clamp(1.0f - (1.0f - u) * exp(hero * way), 0.0f, 0x1.fffffep-1f) : u;
         break;
       }
@@ -145,8 +150,9 @@ static inline int travel_varying(uint kind, const MediumView* view, float3 o, fl
   return medium_passed;
 }
 
-// From t0 to t1 (which may be infinite) along o + t d. scatters: what scatters it goes on, and what is emitted counts. u: for the first length. Adds
-// what the medium emits to *emitted; *t_scattered: where a ray is scattered.
+// Travels from t0 to t1 (which may be infinite) along o + t d. scatters: scattered paths go on, and
+// emission counts. u: for the first length. Adds the medium's emission to *emitted; *t_scattered:
+// where a ray is scattered.
 static inline int medium_travel(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1, int scatters,
                                 float u, MediumNumbers* numbers, MediumWeights* w, float4* emitted, float* t_scattered) {
   const uint kind = media->mediums[medium].kind;
@@ -160,8 +166,10 @@ static inline int medium_travel(const Media* media, const Spectra* spectra, uint
   return end;
 }
 
-// The same of a shadow ray, whose `throughput` is what is left of its light: nothing scatters it. Where it varies, by ratio tracking (Novak, Selle and
-// Jarosz, "Residual ratio tracking for estimating attenuation in participating media", 2014). 0: nothing is left.
+// Computes the transmittance of a shadow ray, whose `throughput` is its remaining light; nothing
+// scatters it. Where the medium varies, this is ratio tracking (Novak, Selle and Jarosz, "Residual
+// ratio tracking for estimating attenuation in participating media", 2014). Returns 0 if nothing is
+// left.
 static inline int medium_dims(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1,
                               MediumNumbers* numbers, MediumWeights* w) {
   const uint kind = media->mediums[medium].kind;
@@ -193,7 +201,7 @@ static inline int medium_dims(const Media* media, const Spectra* spectra, uint m
       w->light *= ratio * majorant;
       const float left = max4(fabs(w->throughput));
       if (!(left > 0.0f)) return 0;
-      // What is nearly lost is lost three times of four.
+      // Russian roulette ends a nearly extinct ray three times of four.
       const float share = left / fmax(mean4(w->light) * w->most, 1e-37f);
       if (share < 0.05f) {
         if (medium_number(numbers) < 0.75f) return 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One stuff of different densities, which may be hot.
+// This medium has one spectrum of coefficients and a density that varies; it may emit by
+// temperature.
 #ifndef CAPLET_MEDIA_UNIFORMGRID_CL
 #define CAPLET_MEDIA_UNIFORMGRID_CL
 

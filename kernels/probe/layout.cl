@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Writes the layout of every record as this device has it (host/device/layout.cpp reads it). For each record its size, then for each
-// field the offset of its address, the offset its value was loaded from, and its size. out[0] counts the values.
+// Writes the layout of every record as this device has it (host/device/layout.cpp reads it). For
+// each record its size, then for each field the offset of its address, the offset its value was
+// loaded from, and its size. out[0] counts the values.
 #include "shared/records.h"
 
 // Word i of `words` holds 0x40000000 + 4 i: an ordinary float that tells its offset in bytes.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What Caplet's kernels rely on, computed for host/device/self_test.cpp to check.
+// These kernels compute what Caplet's kernels rely on; host/device/self_test.cpp checks it.
 
-// Twelve values for each pair of numbers.
+// Computes twelve values for each pair of numbers.
 __kernel void arithmetic(__global const float* pairs, __global float* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -23,7 +23,7 @@ __kernel void arithmetic(__global const float* pairs, __global float* out, uint 
   row[11] = as_float(as_uint(a) ^ 0x80000000u);
 }
 
-// One word of answers for each pair of numbers.
+// Computes one word of answers for each pair of numbers.
 __kernel void comparisons(__global const float* pairs, __global uint* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -38,7 +38,7 @@ __kernel void comparisons(__global const float* pairs, __global uint* out, uint 
   answers |= (isnan(a) ? 1u : 0u) << 6;
   answers |= (isinf(a) ? 1u : 0u) << 7;
   answers |= (signbit(a) ? 1u : 0u) << 8;
-  // Lane 5 of the vector forms, where true is -1.
+  // This tests lane 5 of the vector forms, where true is -1.
   const float8 wide_a = (float8)(1.0f, 2.0f, 3.0f, 4.0f, 5.0f, a, 7.0f, 8.0f);
   const float8 wide_b = (float8)(2.0f, 2.0f, 2.0f, 2.0f, 2.0f, b, 2.0f, 2.0f);
   const int8 less = wide_a < wide_b;
@@ -48,7 +48,7 @@ __kernel void comparisons(__global const float* pairs, __global uint* out, uint 
   out[i] = answers;
 }
 
-// Eight words for each pair of integers.
+// Computes eight words for each pair of integers.
 __kernel void integers(__global const uint* pairs, __global uint* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -64,7 +64,8 @@ __kernel void integers(__global const uint* pairs, __global uint* out, uint coun
   row[7] = a * b;
 }
 
-// Eight floats from an address that is aligned for a float alone, chosen lane by lane, to another such address.
+// Copies eight floats, chosen lane by lane, from an address that is aligned only for a float to
+// another such address.
 __kernel void lanes(__global const float* in, __global float* out, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -73,7 +74,8 @@ __kernel void lanes(__global const float* in, __global float* out, uint count) {
   vstore8(select(x, y, x < 0.0f), i, out + 1);
 }
 
-// atomic: 0 counter of all work-items, 1 sum of their ids, 2 largest id, 3 bits set by each. ids: what each item was told.
+// Tests atomics on `totals`: 0 counter of all work-items, 1 sum of their ids, 2 largest id, 3 bits
+// set by each. ids: the local size, local id, group id and global size that each item reads.
 __kernel void groups(__global uint* totals, __global uint* tickets, __global uint* ids) {
   const uint i = (uint)get_global_id(0);
   tickets[i] = atomic_inc(totals);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Independent uniform numbers: hashes of their addresses.
+// This sampler makes independent uniform numbers: hashes of their addresses.
 #ifndef CAPLET_SAMPLERS_INDEPENDENT_CL
 #define CAPLET_SAMPLERS_INDEPENDENT_CL
 

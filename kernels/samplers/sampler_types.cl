@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// This file holds what samplers share: the address of a path's random numbers, and scrambled Sobol points.
+// This file holds what samplers share: the address of a path's random numbers, and scrambled Sobol
+// points.
 #ifndef CAPLET_SAMPLERS_SAMPLER_TYPES_CL
 #define CAPLET_SAMPLERS_SAMPLER_TYPES_CL
 
@@ -24,8 +25,8 @@ static inline uint reverse_bits(uint x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-// Each bit is flipped by a hash of the bits below it: on reversed bits, an Owen scrambling (constants: Vegdahl,
-// "Building a better LK hash", 2021).
+// Each bit is flipped by a hash of the bits below it: on reversed bits, an Owen scrambling
+// (constants: Vegdahl, "Building a better LK hash", 2021).
 static inline uint scramble_reversed(uint x, uint seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -34,13 +35,15 @@ static inline uint scramble_reversed(uint x, uint seed) {
   return x ^ (x * 0x53a22864u);
 }
 
-// The place of a number in the shuffled sequence; an aligned block of 2^m numbers stays an aligned block.
+// Returns the place of a number in the shuffled sequence; an aligned block of 2^m numbers stays an
+// aligned block.
 static inline uint shuffled_index(uint number, uint seed) {
   return reverse_bits(scramble_reversed(reverse_bits(number), seed));
 }
 
-// The second Sobol dimension, digits least significant first on both sides: digit j is the sum over k of C(k, j) times
-// digit k, modulo 2, and C(k, j) is odd exactly when j is a subset of k (Lucas).
+// Computes the second Sobol dimension, digits least significant first on both sides: digit j is the
+// sum over k of C(k, j) times digit k, modulo 2, and C(k, j) is odd exactly when j is a subset of k
+// (Lucas).
 static inline uint pascal_reversed(uint x) {
   x ^= x >> 16;
   x ^= (x >> 8) & 0x00ff00ffu;
@@ -49,7 +52,8 @@ static inline uint pascal_reversed(uint x) {
   return x ^ ((x >> 1) & 0x55555555u);
 }
 
-// Coordinates of point `index` of the first two Sobol dimensions under the Owen scrambling of a seed, 32 bits each.
+// These return the coordinates of point `index` of the first two Sobol dimensions under the Owen
+// scrambling of a seed, 32 bits each.
 static inline uint owen_sobol_x(uint index, uint seed) {
   return reverse_bits(scramble_reversed(index, hash_mix(seed ^ 0x68bc21ebu)));
 }

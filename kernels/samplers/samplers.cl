@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The random numbers of paths, by their addresses: pixel, sample and dimension (dimensions.def). The only switches over
-// kinds of samplers.
+// This file makes the random numbers of paths by their addresses: pixel, sample and dimension
+// (dimensions.def). It holds the only switches over kinds of samplers.
 //
-// A sampler of samplers.def is a file of this folder by its name, with
+// A sampler of samplers.def has a file in this folder with its name, which defines
 //   uint2 NAME_pair(at, dimension)   a point of the unit square, 32 bits a coordinate
 //   uint NAME_bits(at, dimension)    a number that is as even by itself as the sampler can make it
 #ifndef CAPLET_SAMPLERS_SAMPLERS_CL
@@ -14,7 +14,7 @@
 #include "samplers/{samplers}.cl"
 #include "samplers/zsobol.cl"
 
-// Programs that know one sampler alone do not ask which it is.
+// Programs with only one sampler do not test which it is.
 enum {
   sampler_rows = 0
 #define SAMPLER(name) + 1
@@ -38,7 +38,7 @@ static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x
   return at;
 }
 
-// Values in [0, 1).
+// Returns values in [0, 1).
 static inline float2 sampler_2d(PathSample at, uint dimension) {
   uint2 pair = (uint2)(0u);
   switch (sampler_of(at.view)) {
@@ -51,7 +51,8 @@ static inline float2 sampler_2d(PathSample at, uint dimension) {
   return (float2)(unit_float(pair.x), unit_float(pair.y));
 }
 
-// Stratified over the samples of a pixel, where the sampler does that, with all of its bits.
+// Returns a number with all of its bits, stratified over the samples of a pixel if the sampler
+// stratifies.
 static inline uint sampler_bits(PathSample at, uint dimension) {
   switch (sampler_of(at.view)) {
 #define SAMPLER(name) \
@@ -62,7 +63,7 @@ static inline uint sampler_bits(PathSample at, uint dimension) {
   }
 }
 
-// The same in [0, 1).
+// Returns sampler_bits as a number in [0, 1).
 static inline float sampler_1d(PathSample at, uint dimension) { return unit_float(sampler_bits(at, dimension)); }
 
 #endif

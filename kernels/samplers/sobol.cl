@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Padded two-dimensional Sobol points with hash-based Owen scrambling and shuffling. Burley, "Practical Hash-based Owen
-// Scrambling", JCGT 2020; Laine and Karras, "Stratified sampling for stochastic transparency", 2011. Any aligned block
-// of 2^m samples is a (0, m, 2)-net.
+// This sampler makes padded two-dimensional Sobol points with hash-based Owen scrambling and
+// shuffling: Burley, "Practical Hash-based Owen Scrambling", JCGT 2020; Laine and Karras,
+// "Stratified sampling for stochastic transparency", 2011. Any aligned block of 2^m samples is a
+// (0, m, 2)-net.
 #ifndef CAPLET_SAMPLERS_SOBOL_CL
 #define CAPLET_SAMPLERS_SOBOL_CL
 

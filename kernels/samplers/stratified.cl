@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One sample in each of sampler_x times sampler_y equal parts of the unit square, in an order that differs by pixel and
-// dimension. Samples beyond that number begin a new round of all parts.
+// This sampler puts one sample in each of sampler_x times sampler_y equal parts of the unit square,
+// in an order that differs by pixel and dimension. Samples beyond that number begin a new round of
+// all parts.
 #ifndef CAPLET_SAMPLERS_STRATIFIED_CL
 #define CAPLET_SAMPLERS_STRATIFIED_CL
 
 #include "samplers/sampler_types.cl"
 
-// A permutation of the numbers below `count`: rounds of bijections of the least power of 2 that holds them, repeated
-// until the result is below `count` (cycle walking; Black and Rogaway, "Ciphers with arbitrary finite domains", 2002).
+// Permutes the numbers below `count`: rounds of bijections of the least power of 2 that holds them,
+// repeated until the result is below `count` (cycle walking; Black and Rogaway, "Ciphers with
+// arbitrary finite domains", 2002).
 static inline uint permuted_number(uint number, uint count, uint seed) {
   const uint bits = 32u - clz(count - 1u);
   const uint mask = bits == 0u ? 0u : 0xffffffffu >> (32u - bits), shift = (bits + 1u) / 2u;
@@ -24,7 +26,8 @@ static inline uint permuted_number(uint number, uint count, uint seed) {
   return number;
 }
 
-// 2^32 times the place of a random point of part `part` of `parts`; of its middle without jitter.
+// Returns 2^32 times the place of a random point of part `part` of `parts`; of its middle without
+// jitter.
 static inline uint within_part(PathSample at, uint part, uint parts, uint random) {
   const uint inside = (at.view->strategy & CAPLET_STRATEGY_UNJITTERED) != 0u ? 0x80000000u : random;
   return (uint)((((ulong)part << 32) | inside) / parts);

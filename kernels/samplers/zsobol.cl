@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One Sobol sequence over the whole image, whose points are dealt to pixels in a shuffled Morton order: the samples of
-// a square block of pixels are a net together, so that the error of neighbouring pixels cancels. Ahmed and Wonka,
-// "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels", 2020; the
-// shuffling is Burley's.
+// This sampler distributes one Sobol sequence over the whole image: pixels take its points in a
+// shuffled Morton order. The samples of a square block of pixels are a net together, so that the
+// error of neighbouring pixels cancels. Ahmed and Wonka, "Screen-space blue-noise diffusion of
+// Monte Carlo sampling error via hierarchical ordering of pixels", 2020, describe it; the shuffling
+// is Burley's.
 #ifndef CAPLET_SAMPLERS_ZSOBOL_CL
 #define CAPLET_SAMPLERS_ZSOBOL_CL
 
 #include "samplers/sampler_types.cl"
 #include "samplers/sobol.cl"
 
-// The low 16 bits at the even places of 32.
+// Returns the low 16 bits at the even places of 32.
 static inline uint spread_bits(uint x) {
   x &= 0xffffu;
   x = (x | (x << 8)) & 0x00ff00ffu;
@@ -20,8 +21,8 @@ static inline uint spread_bits(uint x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-// Sets the number and the key of a sample's point. What lies beyond the 32 bits of a number, and samples beyond those
-// that were asked for, name another sequence.
+// Sets the number and the key of a sample's point. Bits beyond the 32 of a number, and samples
+// beyond those that were asked for, select another sequence.
 static inline void zsobol_address(PathSample* at) {
   const uint bits = at->view->sampler_x;  // of a sample's number
   const ulong pixel = (ulong)(spread_bits(at->x) | (spread_bits(at->y) << 1));

@@ -1,38 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear patch: (1-u)(1-v) p00 + u (1-v) p10 + (1-u) v p01 + u v p11.
+// A bilinear patch is (1-u)(1-v) p00 + u (1-v) p10 + (1-u) v p01 + u v p11.
 //
-// After Reshetov ("Cool patches", Ray Tracing Gems, 2019) the line of constant u that meets the ray is sought first. Here that is
-// done in the ray's own plane: sheared as for triangles, the ray is the z axis and a shared vertex has one place for all its
-// patches. The line from A(u) on one edge to B(u) on the other passes the origin where
-//   A x B = f0 (1-u)^2 + F u (1-u) + f1 u^2 = 0,   f0 = q00 x q01, f1 = q10 x q11, F = q00 x q11 + q10 x q01,
-// so with D^2 = F^2 - 4 f0 f1 and k = -(F +- D) / 2, the sign that of F, the roots are u : 1-u = k : f1 and f0 : k. Nothing
-// cancels for u in [0, 1], and whether it is there are the signs of k and of the exact edge functions f0 or f1. The slope of A x
-// B is the Jacobian of the map to the plane, -+D: one root is seen from the front and the other from behind, so a patch has at
-// most one of either.
+// As in Reshetov ("Cool patches", Ray Tracing Gems, 2019), the line of constant u that meets the
+// ray is found first. Here that is done in the ray's own plane: sheared as for triangles, the ray
+// is the z axis and a shared vertex has one place for all its patches. The line from A(u) on one
+// edge to B(u) on the other passes the origin where
+//   A x B = f0 (1-u)^2 + F u (1-u) + f1 u^2 = 0,
+//   f0 = q00 x q01, f1 = q10 x q11, F = q00 x q11 + q10 x q01,
+// so with D^2 = F^2 - 4 f0 f1 and k = -(F +- D) / 2, the sign that of F, the roots are u : 1-u = k
+// : f1 and f0 : k. Nothing cancels for u in [0, 1], and whether it is there are the signs of k and
+// of the exact edge functions f0 or f1. The slope of A x B is the Jacobian of the map to the plane,
+// -+D: one root is seen from the front and the other from behind, so a patch has at most one of
+// either.
 //
-// A root is then polished by two damped Newton steps on (u, v), clamped to the patch; it counts if the patch's point there is
-// within 2^-20 of the patch's extent in the plane from the ray, and still on the root's side of any fold (a root off the patch
-// may be led to the other one). Rays that pass an edge closer than that count as touching: neighbours may both be hit there, but
-// not neither. Distance of the reported point from the patch: 24 eps (|o - p00| + size) (docs/numerics.md, "Patches").
+// A root is then polished by two damped Newton steps on (u, v), clamped to the patch; it counts if
+// the patch's point there is within 2^-20 of the patch's extent in the plane from the ray, and
+// still on the root's side of any fold (a root off the patch may be led to the other one). Rays
+// that pass an edge closer than that count as touching: neighbours may both be hit there, but not
+// neither. The reported point is within 24 eps (|o - p00| + size) of the patch (docs/numerics.md,
+// "Patches").
 //
-// What goes in may come after what goes out: t_enter may be greater than t_exit.
+// The entering crossing may come after the leaving one: t_enter may be greater than t_exit.
 #ifndef CAPLET_SHAPES_BILINEAR_CL
 #define CAPLET_SHAPES_BILINEAR_CL
 
 #include "shapes/triangle.cl"
 
-// The patch in the ray's plane, scaled to an extent of 1 to 2: a corner, the edges from it along u and v, and the twist; depths
-// as given.
+// BilinearImage is the patch in the ray's plane, scaled to an extent of 1 to 2: a corner, the edges
+// from it along u and v, and the twist; depths as given.
 typedef struct {
   real x, y, z, ux, uy, uz, vx, vy, vz, wx, wy, wz;
 } BilinearImage;
 
 static inline real unit_clamp(real x) { return real_max(real_min(x, real_of(1.0f)), real_of(0.0f)); }
 
-// The crossing at u = num : rest, of one sign, where the Jacobian has that of `turn`: lanes in which it is on the patch, and its
-// depth.
+// Tests the crossing at u = num : rest, of one sign, where the Jacobian has that of `turn`. Returns
+// the lanes in which it is on the patch, and its depth.
 static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real rest, real turn, real* depth) {
   real u = unit_clamp(num / (num + rest));
   real lx = b->vx + u * b->wx, ly = b->vy + u * b->wy;
@@ -43,7 +48,8 @@ static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real
   real off = px * px + py * py;
   for (int i = 0; i < 2; i++) {
     const real mx = b->ux + v * b->wx, my = b->uy + v * b->wy;
-    // (J J^T + damping) s = p; where the map folds, J is singular and the step stays finite.
+    // The step solves (J J^T + damping) s = p; where the map folds, J is singular and the step
+    // stays finite.
     const real xx = mx * mx + lx * lx, yy = my * my + ly * ly, xy = mx * my + lx * ly;
     const real damping = (xx + yy) * 0x1p-20f + 0x1p-60f;
     const real a = xx + damping, c = yy + damping, inv = 1.0f / (a * c - xy * xy);
@@ -64,7 +70,7 @@ static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real
   *depth = (b->z + u * b->uz) + v * (b->vz + u * b->wz);
   const real mx = b->ux + v * b->wx, my = b->uy + v * b->wy;
   const real jacobian = mx * ly - my * lx;
-  // Both lines are off by some eps, as much as the patch is large: short ones turn by more.
+  // Both lines are off by some eps of the patch's size, so short ones turn by more.
   const real slack = 0x1p-22f * (fabs(mx) + fabs(my) + fabs(lx) + fabs(ly));
   return (off <= 0x1p-40f) & ((turn > 0.0f ? jacobian : -jacobian) >= -slack);
 }
@@ -100,9 +106,10 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   const real scale = real_power_of_two_below_inverse(extent);
   x00 *= scale, y00 *= scale, x10 *= scale, y10 *= scale;
   x01 *= scale, y01 *= scale, x11 *= scale, y11 *= scale;
-  // The family of lines whose roots are known better is chosen: f0, F and f1 are off by eps of their size, and that
-  // over the length of the lines is an error of distance. Where the patch crosses over itself, seen along the ray, the lines of
-  // one family are short and many while those of the other are long and few.
+  // The family of lines whose roots are known better is chosen: f0, F and f1 are off by eps of
+  // their size, and that over the length of the lines is an error of distance. Where the patch
+  // crosses over itself, seen along the ray, the lines of one family are short and many while those
+  // of the other are long and few.
   const real along_u = fabs(x10 - x00) + fabs(y10 - y00) + fabs(x11 - x01) + fabs(y11 - y01);
   const real along_v = fabs(x01 - x00) + fabs(y01 - y00) + fabs(x11 - x10) + fabs(y11 - y10);
   const real near_u = edge_function(x00, y01, y00, x01), far_u = edge_function(x10, y11, y10, x11);
@@ -126,8 +133,8 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   b.ux = ax - x00, b.uy = ay - y00, b.uz = az - z00;
   b.vx = bx - x00, b.vy = by - y00, b.vz = bz - z00;
   b.wx = (x11 - bx) - b.ux, b.wy = (y11 - by) - b.uy, b.wz = (z11 - bz) - b.uz;
-  // The normal points along the ray where the Jacobian (turned by the swap) and the ray's z have one sign; at k : f1 it has the
-  // sign of k.
+  // The normal points along the ray where the Jacobian (turned by the swap) and the ray's z have
+  // one sign; at k : f1 it has the sign of k.
   const real sense = (negative ? real_of(axes.inv_dz) : real_of(-axes.inv_dz)) * (swap ? real_of(-1.0f) : real_of(1.0f));
   const real_mask first_leaves = sense > 0.0f;
   const real_mask first = k >= 0.0f ? f1 >= 0.0f : f1 <= 0.0f, second = k >= 0.0f ? f0 >= 0.0f : f0 <= 0.0f;

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Box along the axes: the span is what its three slabs share.
+// A box lies along the axes. Its span is the intersection of the spans of its three slabs.
 //
-// A plane is crossed at (plane - o) / d: the difference is rounded once and the product by 1 / d leaves a relative error of 7
-// eps, so the reported point is within 8 eps (|o - c| + size) of its plane (docs/numerics.md, "Boxes"). The crossing depends on
-// nothing but the plane and the ray: boxes that share a coordinate are left and entered at the same t, and no ray slips between
-// them.
+// A plane is crossed at (plane - o) / d: the difference is rounded once and the product by 1 / d
+// leaves a relative error of 7 eps, so the reported point is within 8 eps (|o - c| + size) of its
+// plane (docs/numerics.md, "Boxes"). The crossing depends on nothing but the plane and the ray:
+// boxes that share a coordinate are left and entered at the same t, and no ray slips between them.
 #ifndef CAPLET_SHAPES_BOX_CL
 #define CAPLET_SHAPES_BOX_CL
 
 #include "shapes/lanes.cl"
 
-// The part of the ray between the planes at `low` and `high`, both counted in. `inv`: 1 / d, or 0 for a ray along the planes.
+// Computes the part of the ray between the planes at `low` and `high`, both included. `inv`: 1 / d,
+// or 0 for a ray along the planes.
 static inline void box_slab(real low, real high, float o, float inv, real* near, real* far) {
   if (inv == 0.0f) {
     const real_mask between = (low <= o) & (high >= o);
@@ -26,7 +27,8 @@ static inline void box_slab(real low, real high, float o, float inv, real* near,
   *far = inv > 0.0f ? b : a;
 }
 
-// 1 / d. A component below 2^-50 of the largest counts as zero: along the box it moves the ray by less than its size's rounding.
+// Returns 1 / d. A component below 2^-50 of the largest counts as zero: along the box it moves the
+// ray by less than its size's rounding.
 static inline float box_inverse(float d, float largest) { return fabs(d) < 0x1p-50f * largest ? 0.0f : 1.0f / d; }
 
 static inline Span box_span(const ShapeRay* ray, __global const float* block, uint lane) {

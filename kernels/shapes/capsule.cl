@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The capsule's span: the tube around the axis, closed by the spheres at its ends.
+// Computes the capsule's span. A capsule is a tube around the axis, closed by the spheres at its
+// ends.
 //
-// With the ray moved to its point p nearest to p0, axis b = p1 - p0, the parts of p and d across the axis are
-// e = p - (p.b / b.b) b and f = d - (d.b / b.b) b. The tube is |e + t f| = r: nearest to the axis at t0 = -e.f / f.f, where the
-// distance vector is q = e + t0 f, half a chord away from both crossings: h^2 = (r^2 - q^2) / f.f. A crossing beyond an end of the
-// axis is replaced by the crossing of that end's sphere.
+// With the ray moved to its point p nearest to p0, axis b = p1 - p0, the parts of p and d across
+// the axis are e = p - (p.b / b.b) b and f = d - (d.b / b.b) b. The tube is |e + t f| = r: nearest
+// to the axis at t0 = -e.f / f.f, where the distance vector is q = e + t0 f, half a chord away from
+// both crossings: h^2 = (r^2 - q^2) / f.f. A crossing beyond an end of the axis is replaced by the
+// crossing of that end's sphere.
 //
-// Why not the quadratic's b^2 - 4ac: its terms grow as L^2 and cancel to r^2, an error of eps L^2 / r. Here f is off by at most
-// 3 eps |d|, which tilts the ray by no more than 3 eps L over the capsule, and given f everything else is relative to |e| <= L + r.
-// Distance of the reported point from the surface: 12 eps (|o - p0| + L + r), eps = 2^-24 (docs/numerics.md).
+// The quadratic's b^2 - 4ac is not used: its terms grow as L^2 and cancel to r^2, an error of eps
+// L^2 / r. Here f is off by at most 3 eps |d|, which tilts the ray by no more than 3 eps L over the
+// capsule, and given f everything else is relative to |e| <= L + r. The reported point is within 12
+// eps (|o - p0| + L + r) of the surface, eps = 2^-24 (docs/numerics.md).
 #ifndef CAPLET_SHAPES_CAPSULE_CL
 #define CAPLET_SHAPES_CAPSULE_CL
 
@@ -23,7 +26,8 @@ typedef struct {
   real r, ff;          // ff: f.f
 } CapsuleLine;
 
-// The crossing on the entering (sign -1) or leaving (+1) side, as an offset from the moved origin; lanes without one leave `hit`.
+// Returns the crossing on the entering (sign -1) or leaving (+1) side, as an offset from the moved
+// origin; lanes without one leave `hit`.
 static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float sign, real_mask* hit) {
   const real side = c->t0 + sign * c->h;
   const real y = c->u + c->v * side;
@@ -34,13 +38,14 @@ static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float 
   const real tc = -real_dot(cx, cy, cz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real qx = cx + tc * ray->dx, qy = cy + tc * ray->dy, qz = cz + tc * ray->dz;
   const real qq = real_dot(qx, qy, qz, qx, qy, qz), disc = c->r * c->r - qq;
-  // 2 to 4 eps (L + r) of room: where rounding takes a crossing of the tube past its end, the sphere must not disown it.
+  // This is 2 to 4 eps (L + r) of room: where rounding takes a crossing of the tube past its end,
+  // it must still count as on the sphere.
   const real outer = c->r + 0x1p-23f * (fabs(c->bx) + fabs(c->by) + fabs(c->bz) + c->r);
   *hit &= body | (qq <= outer * outer);
   return body ? side : tc + sign * sqrt(real_max(disc, zero) * ray->inv_dd);
 }
 
-// Lanes whose tube the line meets; fills `c`. `shift`: the moved origin.
+// Fills `c` and returns the lanes whose tube the line meets. `shift`: the moved origin.
 static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVector p1, real r, CapsuleLine* line,
                                      real* shifted) {
   CapsuleLine c;
@@ -59,7 +64,8 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
   c.v = real_dot(c.bx, c.by, c.bz, ray->dx, ray->dy, ray->dz) * inv_bb;
   const real ex = c.px - c.u * c.bx, ey = c.py - c.u * c.by, ez = c.pz - c.u * c.bz;
   const real fx = ray->dx - c.v * c.bx, fy = ray->dy - c.v * c.by, fz = ray->dz - c.v * c.bz;
-  // Along the axis f vanishes; the floor makes the tube's span longer than any capsule whose shape single precision can hold.
+  // Along the axis f vanishes; the lower limit makes the tube's span longer than any capsule whose
+  // shape single precision can hold.
   c.ff = real_dot(fx, fy, fz, fx, fy, fz);
   const real inv_ff = 1.0f / real_max(c.ff, real_of(ray->ff_min));
   c.t0 = -real_dot(ex, ey, ez, fx, fy, fz) * inv_ff;
@@ -71,14 +77,16 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
   return disc >= 0.0f;
 }
 
-// Lanes that capsule_hit may name for t in [t_min, t_max], and few others: whose axis comes nearer to the ray than r, seen along it.
+// Returns the lanes that capsule_hit may return for t in [t_min, t_max], and few others: those
+// whose axis, seen along the ray, is nearer to it than r.
 //
-// In the frame (u, v, w) the ends are a and b relative to the ray's origin, each component off by 12 eps |a| at most: one rounding
-// of a difference, three products and two sums, 6 eps by which the frame is none. The nearest point q of the segment is found
-// with a parameter off by 6 eps |a| / |b - a|, which lengthens |q| by 6 eps |a|. What capsule_hit names is a point of the ray
-// within 16 eps (|o - p0| + L + r) of the surface, L <= 2 D with D the greater of |a| and |b|; a t in lengths is off by 16 eps of it.
-// Together 82 eps D + 16 eps r; 96 eps (D + r) are allowed, with D as a sum of components, and 1e-18 for segments seen end-on, whose
-// direction has no digits.
+// In the frame (u, v, w) the ends are a and b relative to the ray's origin, each component off by
+// 12 eps |a| at most: one rounding of a difference, three products and two sums, 6 eps by which the
+// frame is none. The nearest point q of the segment is found with a parameter off by 6 eps |a| / |b
+// - a|, which lengthens |q| by 6 eps |a|. The hit of capsule_hit is a point of the ray within 16
+// eps (|o - p0| + L + r) of the surface, L <= 2 D with D the greater of |a| and |b|; a t in lengths
+// is off by 16 eps of it. Together 82 eps D + 16 eps r; 96 eps (D + r) are allowed, with D as a sum
+// of components, and 1e-18 for segments seen end-on, whose direction has no digits.
 #define CAPLET_CAPSULE_NEAR 1
 static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane, float t_min, float t_max) {
   const RealVector p0 = capsule_p0_lanes(block, lane), p1 = capsule_p1_lanes(block, lane);
@@ -109,7 +117,8 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
   *t = shift + capsule_end(ray, &c, -1.0f, &hit);
   const real_mask leaving = hit & (*t <= ray->t_min) & (shift + (c.t0 + c.h) > ray->t_min);
   if (mask_bits(leaving) != 0) {
-    // A capsule that is entered is also left: where rounding lets the ray miss the end's sphere, at the point nearest to that sphere.
+    // A capsule that is entered is also left: where rounding lets the ray miss the end's sphere, it
+    // is left at the point nearest to that sphere.
     real_mask exits = hit;
     const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
     *t = leaving ? t_exit : *t;

@@ -1,33 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cone's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round).
-// A frustum where both are flat, a tapered capsule where both are round.
+// Computes the cone's span. A cone is the convex hull of its two ends, each a disk across the axis
+// (flat, open) or a ball (round). It is a frustum where both are flat, a tapered capsule where both
+// are round.
 //
-// The ends are joined by the cone c |e| + k y = D that touches both, at height y above p0 and offset e from the axis: (c, k) is
-// the normal's parts across and along the axis. It touches a disk in its rim, a ball in the circle at k times the radius above
-// the centre. The solid is the intersection of
-// - the nappe c |e| <= D - k y, whose part beyond a ball's circle is replaced by the ball's own surface (as in capsule.cl),
-// - a half-space at every flat end; and where the other end's ball reaches through that disk without holding it (its radius is
-//   longer than the axis), instead, the second cone from the rim to the ball, outside the disk.
-// So is its span: the latest entrance and the earliest exit of them all, which no gap between side and cap can spoil. A ball that
-// holds the other end is all there is.
-// Distance of the reported point from the surface: 16 eps (|o - p0| + L + r0 + r1) (docs/numerics.md, "Cones").
+// The ends are joined by the cone c |e| + k y = D that touches both, at height y above p0 and
+// offset e from the axis: (c, k) is the normal's parts across and along the axis. It touches a disk
+// in its rim, a ball in the circle at k times the radius above the centre. The solid is the
+// intersection of
+// - the nappe c |e| <= D - k y, whose part beyond a ball's circle is replaced by the ball's own
+//   surface (as in capsule.cl),
+// - a half-space at every flat end; or, where the other end's ball reaches through that disk
+//   without holding it (its radius is longer than the axis), the second cone from the rim to the ball,
+//   outside the disk.
+// So the span is the latest entrance and the earliest exit of them all, and no gap can open between
+// side and cap. A ball that holds the other end is the whole solid. The reported point is within 16
+// eps (|o - p0| + L + r0 + r1) of the surface (docs/numerics.md, "Cones").
 #ifndef CAPLET_SHAPES_CONE_CL
 #define CAPLET_SHAPES_CONE_CL
 
 #include "shapes/lanes.cl"
 #include "shapes/sphere.cl"
 
-// A line in cylinder coordinates of an axis: offset e + t f and height u + v t, t from the moved origin.
+// AxisLine is a line in cylinder coordinates of an axis: offset e + t f and height u + v t, t from
+// the moved origin.
 typedef struct {
   real ex, ey, ez, fx, fy, fz, ff;
   real u, v;
   real nearest;  // t of the point nearest to the axis
 } AxisLine;
 
-// Lanes whose line meets the nappe c |e| <= D - k y, and both crossings: t (infinite where the line stays within) and height.
-// `thin`: height of the circle at the thin end of the part that matters.
+// Returns the lanes whose line meets the nappe c |e| <= D - k y, and both crossings: t (infinite
+// where the line stays within) and height. `thin`: height of the circle at the thin end of the part
+// that matters.
 static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, real thin, real* t_enter, real* t_exit,
                                    real* y_enter, real* y_exit) {
   const real zero = real_of(0.0f), far = real_of(INFINITY);
@@ -45,7 +51,8 @@ static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, re
   // Parallel to the cone the other nappe is met at infinity.
   const real t1 = s / (a == 0.0f ? real_of(-FLT_MIN) : a), t2 = s == 0.0f ? zero : free / s;
   const real first = real_min(t1, t2), second = real_max(t1, t2);
-  // Along the cone the nappe is met once, where D - k y is greater, and never left towards its wide end; along a tube not at all.
+  // Along the cone the nappe is met once, where D - k y is greater, and never left towards its wide
+  // end; along a tube not at all.
   const real_mask along = (a == 0.0f) & (slope == 0.0f);
   const real low = across ? first : (slope < 0.0f ? second : -far);
   const real high = across ? second : (slope > 0.0f ? first : far);
@@ -56,13 +63,14 @@ static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, re
   return along ? (free <= 0.0f) & (rest >= 0.0f) : (across ? (disc >= 0.0f) & (rest >= 0.0f) : slope != 0.0f);
 }
 
-// The hull of the ends at p0 and p0 + b, for a ray from p0 + w. Caps: CAPLET_CAP_*.
+// Returns the span of the hull of the ends at p0 and p0 + b, for a ray from p0 + w. Caps:
+// CAPLET_CAP_*.
 static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, real bx, real by, real bz, real r0, real r1,
                                 real cap0, real cap1) {
   const real zero = real_of(0.0f), one = real_of(1.0f), far = real_of(INFINITY);
   const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
 
-  // The ray's point nearest to p0, in cylinder coordinates.
+  // The ray's point nearest to p0 is computed in cylinder coordinates.
   AxisLine l;
   const CAPLET_WAITS real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real px = wx + shift * ray->dx, py = wy + shift * ray->dy, pz = wz + shift * ray->dz;
@@ -79,7 +87,7 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   l.fy = ray->dy - l.v * my;
   l.fz = ray->dz - l.v * mz;
   l.ff = real_dot(l.fx, l.fy, l.fz, l.fx, l.fy, l.fz);
-  // Along the axis f is rounding noise: none at all, then, so that the point stays where it is.
+  // Along the axis f is rounding noise: it is set to 0, so that the point stays where it is.
   const real_mask crosses = l.ff * ray->inv_dd > 0x1p-50f;
   l.fx = crosses ? l.fx : zero;
   l.fy = crosses ? l.fy : zero;
@@ -93,7 +101,8 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   const real_mask near_axis = tube >= 0.0f;
   if (mask_bits(near_axis) == 0) return span_of(near_axis, shift, shift);
 
-  // Balls, touched within 4 eps of everything: a crossing that the cone and a ball both disown would be lost.
+  // Balls are touched within 4 eps of everything: otherwise a crossing that rounding takes off both
+  // the cone and the ball would be lost.
   const real room = 0x1p-22f * (length + wide);
   real ball_enter, ball_exit;
   const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &ball_enter, &ball_exit);
@@ -101,8 +110,9 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   const real_mask met1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &ball_enter, &ball_exit);
   CAPLET_WAITS real enter1 = ball_enter, exit1 = ball_exit;
 
-  // The joining cone. From a rim of radius s to a ball of radius R its generator has the length w, w^2 = L^2 + s^2 - R^2; between
-  // two balls w^2 = L^2 - (r0 - r1)^2, between two rims L^2 + (r0 - r1)^2.
+  // This is the joining cone. From a rim of radius s to a ball of radius R its generator has the
+  // length w, w^2 = L^2 + s^2 - R^2; between two balls w^2 = L^2 - (r0 - r1)^2, between two rims
+  // L^2 + (r0 - r1)^2.
   const real taper = r0 - r1, product = taper * (r0 + r1);
   const real_mask balls = round0 & round1, mixed = (round0 | round1) & (balls == 0);
   const real ball = round0 ? r0 : r1, rim = round0 ? r1 : r0;
@@ -130,7 +140,8 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   hit &= ((enter_at1 | exit_at1) == 0) | met1;
   span.t_enter = enter_at0 ? enter0 : (enter_at1 ? enter1 : span.t_enter);
   span.t_exit = exit_at0 ? exit0 : (exit_at1 ? exit1 : span.t_exit);
-  // A shallow ray may meet a ball on the other side of the circle than the cone: what counts is where it does.
+  // A shallow ray may meet a ball on the other side of the circle than the cone: the side where it
+  // meets it counts.
   y_enter = l.u + l.v * span.t_enter;
   y_exit = l.u + l.v * span.t_exit;
   const real_mask side = int_of(0), one_end = int_of(1), other_end = int_of(2);
@@ -139,8 +150,8 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   span.surface_exit = (all0 | (exit_at0 & (y_exit < low))) ? one_end : ((all1 | (exit_at1 & (y_exit > high))) ? other_end : side);
   span.enter = span.exit = int_of(-1);
 
-  // At a wide flat end of a short cone two surfaces meet in a sharp edge, and roundings of both move it far out: the tube through
-  // that rim does not let them.
+  // At a wide flat end of a short cone two surfaces meet in a sharp edge, and roundings of both can
+  // move it far out. The tube through that rim limits it.
   const real_mask sharp = ((taper > 0.0f) & (round0 == 0)) | ((taper < 0.0f) & (round1 == 0));
   const real h = crosses ? sqrt(real_max(tube, zero) / l.ff) : far;
   const real_mask enter_tube = sharp & (l.nearest - h > span.t_enter), exit_tube = sharp & (l.nearest + h < span.t_exit);
@@ -149,7 +160,7 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   span.surface_enter = enter_tube ? side : span.surface_enter;
   span.surface_exit = exit_tube ? side : span.surface_exit;
 
-  // Half-spaces of flat ends. A line along them stays on its side for ever.
+  // Flat ends are half-spaces. A line along them stays on its side for ever.
   const real_mask pierced = mixed & (ball > length);
   const real_mask flat0 = (round0 | pierced | one_ball) == 0, flat1 = (round1 | pierced | one_ball) == 0;
   const real_mask up = l.v >= 0.0f;

@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Closed solids combined by union, intersection and difference: the crossings of all operands in order along the ray, each turning its
-// operand on or off; where the expression's value changes the ray crosses the result.
+// A csg shape combines closed solids by union, intersection and difference. The crossings of all
+// operands are visited in order along the ray, and each turns its operand on or off; where the
+// expression's value changes the ray crosses the result.
 //
-// leaves[begin ..], written by host/lower/csg.cpp, rows of 8; whole numbers by their bits; offsets count floats of `leaves`:
-//   header: centre c (3), radius of a ball around c that holds the result, groups, length of the program, operands, 0
-//   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the first operand, offset of the transform
-//     (object_from_csg and csg_from_object, 12 floats each), or CAPLET_NONE, offset of u at both ends of each operand of
-//     chains (a row), or CAPLET_NONE, 0 0
-//   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED where it is taken away
+// host/lower/csg.cpp writes leaves[begin ..] in rows of 8; whole numbers by their bits; offsets
+// count floats of `leaves`:
+//   header: centre c (3), radius of a ball around c that holds the result, groups, length of the
+//     program, operands, 0
+//   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the
+//     first operand, offset of the transform (object_from_csg and csg_from_object, 12 floats each), or
+//     CAPLET_NONE, offset of u at both ends of each operand of chains (a row), or CAPLET_NONE, 0 0
+//   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED
+//     where it is subtracted
 //   program: postfix, one number each: an operand, or CAPLET_CSG_UNION, _INTERSECTION, _DIFFERENCE
-// A group is a leaf block of up to four operands of one kind in one space: lanes 0..3 hold them, lanes 4..7 the same solids grown
-// by their error bound. Row 0 holds the offset of each operand's uv_space (GeometryRecord). csg space is the space of the tree moved by -c: coordinates are as small as the shape.
+// A group is a leaf block of up to four operands of one kind in one space: lanes 0..3 hold them,
+// lanes 4..7 the same solids grown by their error bound. Row 0 holds the offset of each operand's
+// uv_space (GeometryRecord). csg space is the space of the tree moved by -c, so that coordinates
+// are as small as the shape.
 //
-// A computed crossing is off its operand's surface by no more than the bound b. The solid is convex, so from where the ray enters the
-// grown solid (t - s) to as far beyond the crossing (t + s) it is within b of the surface. Crossings of different operands that have an
-// instant in common in these intervals are one event: moving each surface by no more than b makes them coincide. So solids that touch
-// have no surface between them, and what is subtracted flush leaves no skin (docs/numerics.md, "CSG").
+// A computed crossing is off its operand's surface by no more than the bound b. The solid is
+// convex, so from where the ray enters the grown solid (t - s) to as far beyond the crossing (t +
+// s) it is within b of the surface. Crossings of different operands that have an instant in common
+// in these intervals are one event: moving each surface by no more than b makes them coincide. So
+// solids that touch have no surface between them, and a flush subtraction leaves no thin layer
+// (docs/numerics.md, "CSG").
 #ifndef CAPLET_SHAPES_CSG_CL
 #define CAPLET_SHAPES_CSG_CL
 
@@ -25,7 +33,8 @@
 #include "shapes/fields.cl"
 #include "shapes/spans.cl"
 
-// The operands' crossings of one ray. Event 2 i is where operand i is entered, 2 i + 1 where it is left.
+// CsgLine holds the operands' crossings of one ray. Event 2 i is where operand i is entered, 2 i +
+// 1 where it is left.
 typedef struct {
   float t[2 * CAPLET_CSG_MAX_OPERANDS], slack[2 * CAPLET_CSG_MAX_OPERANDS];
   ushort surface[2 * CAPLET_CSG_MAX_OPERANDS];  // of the operand
@@ -60,7 +69,8 @@ static inline int csg_value(const CsgLine* line) {
 }
 
 #if CAPLET_REAL_WIDTH == 8
-// Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to `grown_exit`; `shift` is added to all t.
+// Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to
+// `grown_exit`; `shift` is added to all t.
 static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter, float grown_exit, float shift,
                            int surface_enter, int surface_exit) {
   exit = fmax(exit, enter);
@@ -75,7 +85,7 @@ static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float
 }
 #endif
 
-// The crossings of the operands of one group with the ray `own`.
+// Adds the crossings of the operands of one group with the ray `own`.
 static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group, float shift) {
   __global const float* block = own->leaves + group[1];
   const uint kind = group[0], count = group[2], first = group[3];
@@ -97,7 +107,8 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
 #else
   for (uint i = 0; i < count; i++) {
     const uint at = 2 * (first + i);
-    // One place in the code for all solids, not two; what the first leaves waits in `line`, not in registers.
+    // The loop has one place in the code for all solids, not two; results of the first round stay
+    // in `line`, not in registers.
 #pragma unroll 1
     for (uint grown = 0; grown < 2; grown++) {
       const Span span = solid_span(kind, own, block, i + 4 * grown);
@@ -121,14 +132,15 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
 #endif
 }
 
-// The crossings of all operands of the csg shape at leaves[begin]. 0: there are none.
+// Computes the crossings of all operands of the csg shape at leaves[begin]. Returns 0 if there are
+// none.
 static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
   __global const float* header = ray->leaves + begin;
   __global const uint* numbers = (__global const uint*)header;
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   float3 o = (float3)(ray->ox, ray->oy, ray->oz) - load3(header);
-  // A ray from outside is moved to its point nearest to c first, once for all operands: the rounding of that is the same for all, and
-  // later errors do not grow with the distance.
+  // A ray from outside is moved to its point nearest to c first, once for all operands: the
+  // rounding of that is the same for all, and later errors do not grow with the distance.
   const float radius = header[3], nearest = -dot(o, d) * ray->inv_dd;
   const float3 near = o + nearest * d;
   if (!(dot(near, near) <= radius * radius)) return 0;
@@ -161,7 +173,8 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
   return line->pending != 0;
 }
 
-// The earliest event to come; of equal ones that of the lowest number, so that an operand is entered before it is left.
+// Returns the earliest event to come; of equal ones that of the lowest number, so that an operand
+// is entered before it is left.
 static inline uint csg_earliest(const CsgLine* line) {
   uint earliest = lowest_event(line->pending);
   for (ulong rest = line->pending & (line->pending - 1ul); rest != 0; rest &= rest - 1ul) {
@@ -171,7 +184,8 @@ static inline uint csg_earliest(const CsgLine* line) {
   return earliest;
 }
 
-// The next crossing of the result beyond t_min: 1, its t and HitRecord.surface. 0: there is none.
+// Returns 1 with the t and HitRecord.surface of the next crossing of the result beyond t_min, or 0
+// if there is none.
 static inline int csg_next(CsgLine* line, float* t, int* side) {
   while (line->pending != 0) {
     const int before = line->value;
@@ -192,19 +206,21 @@ static inline int csg_next(CsgLine* line, float* t, int* side) {
       line->pending &= ~(1ul << event);
       line->inside ^= 1u << (event >> 1);
       const int value = csg_value(line);
-      // The first member that makes the difference.
+      // `crossed` is the first member that makes the difference.
       if (line->value == before && value != before) crossed = event;
       line->value = value;
       if (line->pending == 0) break;
       event = csg_earliest(line);
     }
-    // Several surfaces at which the ray begins are all behind it, unless the instants that they have in common, and the crossing itself,
-    // lie ahead. (The ray may graze one of them for long, so that the crossing of that one is far behind.)
+    // Several surfaces at which the ray begins are all behind it, unless the instants that they
+    // have in common, and the crossing itself, lie ahead. (The ray may graze one of them for long,
+    // so that the crossing of that one is far behind.)
     const int seen = line->t[crossed] > line->t_min && (first_seen || low > line->t_min);
     if (line->value == before || !seen) continue;
     if ((line->value != 0 ? line->sees_entering : line->sees_leaving) == 0) continue;
     const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
-    // Each crossing is reported beyond the last one, so that a chord of no length still enters before it leaves.
+    // Each crossing is reported beyond the last one, so that a chord of no length still enters
+    // before it leaves.
     line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
     *t = line->last;
     *side = (int)surface | (line->value != 0 ? 0 : CAPLET_LEAVING);
@@ -213,7 +229,7 @@ static inline int csg_next(CsgLine* line, float* t, int* side) {
   return 0;
 }
 
-// The nearest crossing of the csg shape at leaves[begin] beyond t_min.
+// Finds the nearest crossing of the csg shape at leaves[begin] beyond t_min.
 static inline int csg_nearest(const ShapeRay* ray, uint begin, float* t, int* side) {
   CsgLine line;
   return csg_start(ray, begin, &line) && csg_next(&line, t, side);

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cylinder's span: the convex hull of its two ends, each a disk across the axis (flat, open) or a ball (round).
+// Computes the cylinder's span. A cylinder is the convex hull of its two ends, each a disk across
+// the axis (flat, open) or a ball (round).
 //
-// The tube is capsule.cl's: crossed at t0 -+ h, and a crossing beyond a round end is replaced by one of the ball. A flat end is a
-// half-space, entered and left where the position on the axis u + v t is 0 or 1. The span is the latest entrance and the earliest
-// exit: side and cap share their crossing on the rim, so no ray slips between them. A ball that reaches through the other, flat
-// end (r > L) makes it a cone outside the disk: cone.cl has that case. Distance of the reported point from the surface: 16 eps
-// (|o - p0| + L + r) (docs/numerics.md, "Flat ends").
+// The tube is that of capsule.cl: it is crossed at t0 -+ h, and a crossing beyond a round end is
+// replaced by one of the ball. A flat end is a half-space, which is entered and left where the
+// position on the axis u + v t is 0 or 1. The span is the latest entrance and the earliest exit:
+// side and cap share their crossing on the rim, so no ray slips between them. A ball that reaches
+// through the other, flat end (r > L) makes it a cone outside the disk: cone.cl has that case. The
+// reported point is within 16 eps (|o - p0| + L + r) of the surface (docs/numerics.md, "Flat
+// ends").
 #ifndef CAPLET_SHAPES_CYLINDER_CL
 #define CAPLET_SHAPES_CYLINDER_CL
 
 #include "shapes/capsule.cl"
 #include "shapes/cone.cl"
 
-// The crossing of the tube, or of the ball at the round end beyond which it lies, on the entering (sign -1) or leaving (+1) side.
-// `position` on the axis of the tube's; lanes that miss the ball leave `hit`; `surface`: 0 tube, 1 or 2 ball.
+// Returns the crossing of the tube, or of the ball at the round end beyond which it lies, on the
+// entering (sign -1) or leaving (+1) side. `position` is the place on the axis of the tube's
+// crossing; lanes that miss the ball leave `hit`; `surface`: 0 tube, 1 or 2 ball.
 static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float sign, real_mask round0, real_mask round1,
                                 real_mask* hit, real_mask* surface) {
   const real tube = c->t0 + sign * c->h;
@@ -31,7 +35,8 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
   const real_mask met = sphere_span_within(ray, cx, cy, cz, c->r, room, &enter, &exit);
   *hit &= body | met;
   const real t = body ? tube : (sign < 0.0f ? enter : exit);
-  // A shallow ray may meet the ball on the other side of the circle than the tube: what counts is where it does.
+  // A shallow ray may meet the ball on the other side of the circle than the tube: the side where
+  // it meets it counts.
   const real place = c->u + c->v * t;
   *surface = (beyond0 & (place < 0.0f)) ? int_of(1) : ((beyond1 & (place > 1.0f)) ? int_of(2) : int_of(0));
   return t;
@@ -52,7 +57,7 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
   const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
   const real r = cylinder_r_lanes(block, lane), bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
   const real bb = real_dot(bx, by, bz, bx, by, bz);
-  // A ball that reaches through the other end, which is flat.
+  // `pierced`: a ball reaches through the other end, which is flat.
   const real_mask pierced = (round0 | round1) & ((round0 & round1) == 0) & (bb < r * r);
 #if CAPLET_REAL_WIDTH == 1
   if (pierced) return cylinder_hull(ray, block, lane);
@@ -61,8 +66,9 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
   const real_mask shallow = c.ff < ray->ff_min;
   if (mask_bits(hit | shallow | pierced) == 0) return span_of(hit, shift, shift);
   if (mask_bits(shallow) != 0) {
-    // f is rounding noise (or d is tiny). With the floor alone t0 is too small and q too short, which a capsule's ends make good,
-    // but not flat ones: the distance from the axis is to be right in between, too.
+    // f is rounding noise (or d is tiny). With the lower limit alone t0 is too small and q too
+    // short. A capsule's ends correct that, but flat ends do not: the distance from the axis must
+    // be right in between, too.
     const real ex = c.px - c.u * c.bx, ey = c.py - c.u * c.by, ez = c.pz - c.u * c.bz;
     const real fx = ray->dx - c.v * c.bx, fy = ray->dy - c.v * c.by, fz = ray->dz - c.v * c.bz;
     const real_mask crosses = c.ff * ray->inv_dd > 0x1p-50f;

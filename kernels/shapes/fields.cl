@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The fields of shapes.def as functions of a primitive's data: capsule_r(data), capsule_p0(data). Datum j is at data[8 * j].
+// This file defines the fields of shapes.def as functions of a primitive's data: capsule_r(data),
+// capsule_p0(data). Datum j is at data[8 * j].
 #ifndef CAPLET_SHAPES_FIELDS_CL
 #define CAPLET_SHAPES_FIELDS_CL
 
 #include "shared/shapes.h"
 
-// Data of the primitive in lane `lane` of a leaf block.
+// Returns the data of the primitive in lane `lane` of a leaf block.
 static inline __global const float* lane_data(__global const float* block, uint lane) { return block + 8 + lane; }
 
 #define CAPLET_FIELD_scalar(function, at) \

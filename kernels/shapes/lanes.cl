@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The fields of shapes.def as functions of a leaf block: capsule_r_lanes(block, lane), of all its primitives at once or of the one in
-// `lane` (real.cl).
+// This file defines the fields of shapes.def as functions of a leaf block: capsule_r_lanes(block,
+// lane), for all its primitives at once or for the one in `lane` (real.cl).
 #ifndef CAPLET_SHAPES_LANES_CL
 #define CAPLET_SHAPES_LANES_CL
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Tube around the z axis, or part of one, open: pbrt's cylinder.
+// This shape is an open tube around the z axis, or part of one: pbrt's cylinder.
 //
-// Across the axis the ray is e + t f, with e and f as given: nothing is rounded. As for spheres, the perpendicular from the axis
-// and half the chord place the crossings within 8 eps (|e| + r) of the tube, however flat the ray. Both are tried against the
-// clips at the parameters that are reported, which adds 3 eps (|o - c| + size) (docs/numerics.md, "Partial shapes").
+// Across the axis the ray is e + t f, with e and f as given: nothing is rounded. As for spheres,
+// the perpendicular from the axis and half the chord place the crossings within 8 eps (|e| + r) of
+// the tube, however flat the ray. Both are tried against the clips at the parameters that are
+// reported, which adds 3 eps (|o - c| + size) (docs/numerics.md, "Partial shapes").
 #ifndef CAPLET_SHAPES_OPEN_CYLINDER_CL
 #define CAPLET_SHAPES_OPEN_CYLINDER_CL
 
@@ -21,12 +22,12 @@ static inline real_mask open_cylinder_holds(const ShapeRay* ray, __global const 
 static inline Span open_cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
   const real r = open_cylinder_r_lanes(block, lane);
   const float ff = ray->dx * ray->dx + ray->dy * ray->dy;
-  // Flatter than 2^-40 to the axis no tube that single precision can hold is crossed.
+  // A ray within 2^-40 of the axis' direction crosses no tube that single precision can hold.
   const int crosses = ff * ray->inv_dd > 0x1p-80f && ff > 0x1p-120f;
   const float inv_ff = 1.0f / (crosses ? ff : 1.0f);
   const float t0 = -(ray->ox * ray->dx + ray->oy * ray->dy) * inv_ff;
   const float ax = ray->ox + t0 * ray->dx, ay = ray->oy + t0 * ray->dy;
-  // A second step takes away the error of the first, which matters when the origin is far.
+  // A second step removes the error of the first, which matters when the origin is far.
   const float t1 = -(ax * ray->dx + ay * ray->dy) * inv_ff;
   const float qx = ax + t1 * ray->dx, qy = ay + t1 * ray->dy;
   const real disc = r * r - (qx * qx + qy * qy);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Part of a sphere around the origin, open: pbrt's.
+// This shape is part of a sphere around the origin, open: pbrt's sphere.
 //
-// Both crossings of the sphere (sphere.cl) are tried against the clips: the first goes in, the second out. The points tried are
-// those that are reported, so a clip is off by their own error: 16 eps (|o| + r).
+// Both crossings of the sphere (sphere.cl) are tested against the clips: the first goes in, the
+// second out. The points tested are those that are reported, so a clip is off by their own error:
+// 16 eps (|o| + r).
 #ifndef CAPLET_SHAPES_PARTIAL_SPHERE_CL
 #define CAPLET_SHAPES_PARTIAL_SPHERE_CL
 
@@ -15,7 +16,7 @@ static inline real_mask partial_sphere_holds(const ShapeRay* ray, __global const
   const real r = partial_sphere_r_lanes(block, lane), low = partial_sphere_z_min_lanes(block, lane),
              high = partial_sphere_z_max_lanes(block, lane);
   const real x = ray->ox + t * ray->dx, y = ray->oy + t * ray->dy, z = ray->oz + t * ray->dz;
-  // A clip at the pole or beyond is none: rounding may place z there.
+  // A clip at the pole or beyond does not clip, because rounding may place z there.
   const real_mask above = (z >= low) | (low <= -r), below = (z <= high) | (high >= r);
   return above & below & within_turn(x, y, partial_sphere_phi_max_lanes(block, lane));
 }

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Convex polyhedron: the points below all of its planes. `leaves` holds the planes (shared/shapes.def). The ray is in from the last plane that it goes down through to the first one that it comes up through.
+// A convex polyhedron is the points below all of its planes. `leaves` holds the planes
+// (shared/shapes.def). The ray is inside from the last plane that it crosses downwards to the first
+// one that it crosses upwards.
 //
-// The ray is moved to its point p nearest to the centre c first: 3 eps |o - c|. There a plane is d - n.p away, rounded by 4 eps
-// of the size, and the crossing at (d - n.p) / n.d displaces the point from the plane by the errors of d - n.p and n.d and of the
-// quotient alone, however obliquely it is met: 16 eps (|o - c| + size) together (docs/numerics.md, "Polyhedra").
+// The ray is moved to its point p nearest to the centre c first: 3 eps |o - c|. There a plane is d
+// - n.p away, rounded by 4 eps of the size, and the crossing at (d - n.p) / n.d displaces the point
+// from the plane by the errors of d - n.p and n.d and of the quotient alone, however obliquely it
+// is met: 16 eps (|o - c| + size) together (docs/numerics.md, "Polyhedra").
 #ifndef CAPLET_SHAPES_POLYHEDRON_CL
 #define CAPLET_SHAPES_POLYHEDRON_CL
 
 #include "shapes/lanes.cl"
 
-// Whether the line meets one polyhedron, where it goes in and out, and through which planes.
+// Returns whether the line meets one polyhedron, where it goes in and out, and through which
+// planes.
 static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit, int* surface_enter,
                                     int* surface_exit) {
   __global const float* head = ray->leaves + begin;
@@ -34,7 +38,7 @@ static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_en
       exit = s;
       exit_plane = (int)i;
     }
-    // A line along a plane is inside of it all the way, or nowhere.
+    // A line along a plane is inside of it everywhere or nowhere.
     hit &= along != 0.0f || room >= 0.0f;
   }
   *t_enter = shift + enter;

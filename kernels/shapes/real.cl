@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `real`: what a shape formula computes with. CAPLET_REAL_WIDTH 8 tests eight primitives of a leaf block at once (CPUs), 1 tests
-// one (GPUs). Masks are made by comparisons and used by `mask ? a : b`, & and | alone, which mean the same for both widths.
+// `real` is the type that a shape formula computes with. CAPLET_REAL_WIDTH 8 tests eight primitives
+// of a leaf block at once (CPUs), 1 tests one (GPUs). Masks are made by comparisons and used by
+// `mask ? a : b`, & and | alone, which mean the same for both widths.
 #ifndef CAPLET_SHAPES_REAL_CL
 #define CAPLET_SHAPES_REAL_CL
 
@@ -12,7 +13,8 @@
 #define CAPLET_REAL_WIDTH 1
 #endif
 
-// What is made long before it is needed: where one primitive is tested at a time it waits in memory, not in registers, of which GPUs have few.
+// CAPLET_WAITS marks values that are computed long before they are needed: where one primitive is
+// tested at a time they wait in memory, not in registers, of which GPUs have few.
 #if CAPLET_REAL_WIDTH == 8
 #define CAPLET_WAITS
 typedef float8 real;
@@ -37,7 +39,7 @@ static inline void mask_store(real_mask m, int* out) { vstore8(m, 0, out); }
 #define CAPLET_MOVMSK 1
 #endif
 #endif
-// Bit i: lane i is true.
+// Returns a word in which bit i is lane i.
 static inline uint mask_bits(real_mask m) {
 #ifdef CAPLET_MOVMSK
   typedef float caplet_v8sf __attribute__((vector_size(32)));
@@ -72,7 +74,8 @@ static inline real real_min(real a, real b) { return a < b ? a : b; }
 static inline real real_max(real a, real b) { return a > b ? a : b; }
 static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) { return ax * bx + ay * by + az * bz; }
 
-// A power of two that takes a positive x to [1, 2). (Of 2^127 or more, and of subnormals: some finite number.)
+// Returns a power of two that takes a positive x to [1, 2). (For 2^127 or more, and for subnormals,
+// it is some finite number.)
 static inline real real_power_of_two_below_inverse(real x) {
   const real_mask exponent = int_of(0x7f000000) - (real_bits(x) & int_of(0x7f800000));
 #if CAPLET_REAL_WIDTH == 8
@@ -82,11 +85,12 @@ static inline real real_power_of_two_below_inverse(real x) {
 #endif
 }
 
-// Index of the lowest set bit; bits must not be 0.
+// Returns the index of the lowest set bit; bits must not be 0.
 static inline uint lowest_bit(uint bits) { return popcount(~bits & (bits - 1u)); }
 
-// What triangles need of a ray: offsets, in floats of a leaf block, of the components that become x, y and z once the largest component of
-// d is z; the shear, and 1 / dz (Woop, Benthin and Wald 2013).
+// TriangleRay is what triangles need of a ray: offsets, in floats of a leaf block, of the
+// components that become x, y and z once the largest component of d is z; the shear, and 1 / dz
+// (Woop, Benthin and Wald 2013).
 typedef struct {
   uint row_x, row_y, row_z;
   float kox, koy, koz, shear_x, shear_y, inv_dz;
@@ -96,7 +100,7 @@ static inline TriangleRay triangle_ray(float3 o, float3 d) {
   TriangleRay ray;
   const float ax = fabs(d.x), ay = fabs(d.y), az = fabs(d.z);
   const int z_is_x = ax > ay && ax > az, z_is_y = !z_is_x && ay > az;
-  // (x y z) -> (y z x), (z x y) or (x y z): cyclic, so that the orientation stays.
+  // The order is (x y z) -> (y z x), (z x y) or (x y z): cyclic, so that the orientation stays.
   ray.row_x = z_is_x ? 8 : z_is_y ? 16 : 0;
   ray.row_y = z_is_x ? 16 : z_is_y ? 0 : 8;
   ray.row_z = z_is_x ? 0 : z_is_y ? 8 : 16;
@@ -110,7 +114,7 @@ static inline TriangleRay triangle_ray(float3 o, float3 d) {
   return ray;
 }
 
-// A ray in the space of the primitives, with what every primitive needs of it.
+// ShapeRay is a ray in the space of the primitives, with what every primitive needs of it.
 typedef struct {
   float ox, oy, oz, dx, dy, dz;
   float t_min;
@@ -151,15 +155,15 @@ static inline TriangleRay triangle_ray_of(const ShapeRay* ray) {
 #endif
 }
 
-// A ray as filters want it that look along it: its origin, an orthonormal frame with w along the direction, and the length of the
-// direction, in which t counts, rounded up.
+// NearRay is a ray for filters that look along it: its origin, an orthonormal frame with w along
+// the direction, and the length of the direction, in which t counts, rounded up.
 typedef struct {
   float ox, oy, oz;
   float ux, uy, uz, vx, vy, vz, wx, wy, wz;
   float length;
 } NearRay;
 
-// The frame: Duff et al. 2017, Building an Orthonormal Basis, Revisited.
+// The frame is that of Duff et al. 2017, Building an Orthonormal Basis, Revisited.
 static inline NearRay near_ray(float3 o, float3 d) {
   NearRay ray;
   const float length = sqrt(dot(d, d));
@@ -181,17 +185,18 @@ static inline NearRay near_ray(float3 o, float3 d) {
   return ray;
 }
 
-// What a line does to a shape: it goes in at t_enter and out at t_exit, through the surfaces of these numbers. `enter` and `exit`: lanes
-// in which that crossing is on the shape: both or none for closed solids; open ones miss parts, and one crossing alone is an entrance or
-// an exit by the side it is seen from. t_enter <= t_exit to rounding wherever both are there (of bilinear patches either may be first);
-// elsewhere t has no meaning.
+// Span is where a line crosses a shape: it goes in at t_enter and out at t_exit, through the
+// surfaces of these numbers. `enter` and `exit` are the lanes in which that crossing is on the
+// shape: both or none for closed solids; open ones miss parts, and one crossing alone is an
+// entrance or an exit by the side it is seen from. t_enter <= t_exit to rounding wherever both are
+// there (of bilinear patches either may be first); elsewhere t has no meaning.
 typedef struct {
   real t_enter, t_exit;
   real_mask enter, exit;
   real_mask surface_enter, surface_exit;  // integers
 } Span;
 
-// The span of a closed solid that has one surface.
+// Returns the span of a closed solid that has one surface.
 static inline Span span_of(real_mask hit, real t_enter, real t_exit) {
   Span span;
   span.t_enter = t_enter;
@@ -201,7 +206,7 @@ static inline Span span_of(real_mask hit, real t_enter, real t_exit) {
   return span;
 }
 
-// The span of an open shape that a line crosses once; `side`: HitRecord.surface.
+// Returns the span of an open shape that a line crosses once; `side`: HitRecord.surface.
 static inline Span span_of_one(real_mask hit, real t, real_mask side) {
   const real_mask leaving = (side & int_of(CAPLET_LEAVING)) != 0;
   Span span;
@@ -219,7 +224,8 @@ static inline Span span_of_one(real_mask hit, real t, real_mask side) {
     return span_nearest(ray, &span, t, side);                                                                                     \
   }
 
-// The nearest crossing beyond t_min that the ray sees: lanes that have one, t, and HitRecord.surface.
+// Finds the nearest crossing beyond t_min that the ray sees: the lanes that have one, t, and
+// HitRecord.surface.
 static inline real_mask span_nearest(const ShapeRay* ray, const Span* span, real* t, real_mask* side) {
   const real_mask enter = span->enter & (span->t_enter > ray->t_min) & int_of(ray->sees_entering);
   const real_mask exit = span->exit & (span->t_exit > ray->t_min) & int_of(ray->sees_leaving);

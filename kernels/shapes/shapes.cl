@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The shapes that there are and the switch over them: what a scene does not have costs its traversal nothing.
+// This file holds the shapes of the scene and the switch over them. Traversal has no code for
+// shapes that the scene does not have.
 #ifndef CAPLET_SHAPES_SHAPES_CL
 #define CAPLET_SHAPES_SHAPES_CL
 
@@ -15,7 +16,8 @@
 #define HIT_CASE_csg(traits) HIT_CASE(csg, traits)
 #define HIT_CASE_instance(traits)
 
-// Lanes of the leaf block that the ray hits, where, and which side of which surface it sees. Of rare shapes: rare_hit.
+// Returns the lanes of the leaf block that the ray hits, where, and which side of which surface it
+// sees. Rare shapes have rare_hit.
 static inline real_mask shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
   switch (shape) {
 #if CAPLET_REAL_WIDTH == 8
@@ -62,7 +64,7 @@ static inline int shape_is_rare(uint shape) {
 }
 #endif
 
-// The same of every shape, rare ones too.
+// Does the same for every shape, rare ones too.
 static inline real_mask any_shape_hit(uint shape, const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
 #if CAPLET_REAL_WIDTH == 1
   if (shape_is_rare(shape)) return rare_hit(shape, ray, block, lane, t, side);

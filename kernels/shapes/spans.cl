@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The spans of the shapes that there are, csg aside, and the switches over them.
+// This file holds the spans of the shapes of the scene, csg aside, and the switches over them.
 #ifndef CAPLET_SHAPES_SPANS_CL
 #define CAPLET_SHAPES_SPANS_CL
 
@@ -13,7 +13,8 @@
     if (SPAN_IS_ASKED(traits)) return name##_span(ray, block, lane); \
     break;
 
-// The crossings of the lanes of a block with the ray's line; not for csg shapes, which have any number of them.
+// Returns the crossings of the lanes of a block with the ray's line. csg shapes have any number of
+// them and are not handled here.
 static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
   switch (shape) {
 #define COMPOUND(name, traits)
@@ -25,7 +26,7 @@ static inline Span shape_span(uint shape, const ShapeRay* ray, __global const fl
   return span_of(int_of(0), real_of(0.0f), real_of(0.0f));
 }
 
-// The same of solids alone: what csg shapes combine.
+// Does the same for solids alone, which csg shapes combine.
 static inline Span solid_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
   switch (shape) {
 #define COMPOUND(name, traits)
@@ -38,7 +39,7 @@ static inline Span solid_span(uint shape, const ShapeRay* ray, __global const fl
 }
 #undef SHAPE
 
-// Whether all that a line does to shapes of this kind is one span.
+// Returns whether shapes of this kind cross a line in one span only.
 static inline int shape_is_solid(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The surface where a ray hit: computed once, from the tiny record that traversal leaves. Bounds: docs/numerics.md, "Surface
-// points".
+// Computes the surface where a ray hit, once, from the small record that traversal leaves. Bounds:
+// docs/numerics.md, "Surface points".
 #ifndef CAPLET_SHAPES_SURFACE_CL
 #define CAPLET_SHAPES_SURFACE_CL
 
@@ -10,9 +10,11 @@
 #include "shapes/surface_csg.cl"
 #include "shapes/surface_shapes.cl"
 
-// World space. p lies on the surface within `error`: p +- ng * error is on the intended side. ng points outward of solids, and by
-// winding / +z for open shapes, and ReverseOrientation turns it; ns on the same side. light: index into `lights` or CAPLET_NONE;
-// primitive_light: that of the whole primitive, of which this surface may be dark. flags: GeometryRecord's.
+// Surface is in world space. p lies on the surface within `error`: p +- ng * error is on the
+// intended side. ng points outward of solids, and by winding / +z for open shapes, and
+// ReverseOrientation turns it; ns is on the same side. light: index into `lights` or CAPLET_NONE;
+// primitive_light: that of the whole primitive, of which this surface may be dark. flags:
+// GeometryRecord's.
 typedef struct {
   float3 p, ng, ns, dpdu, dpdv;
   float2 uv;
@@ -38,7 +40,7 @@ static inline LocalSurface surface_local(const SurfaceQuery* q) {
   return csg ? csg_surface(&operand, s) : s;
 }
 
-// The surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
+// Returns the surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
 static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
   float3 o = (float3)(ray->ox, ray->oy, ray->oz);
   float3 d = (float3)(ray->dx, ray->dy, ray->dz);
@@ -53,7 +55,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
   const uint surface = hit->surface & CAPLET_SURFACE_MASK;
-  // u at both ends of a capsule of a chain.
+  // chain_u is u at both ends of a capsule of a chain.
   __global const float* chain_u = 0;
   if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
     chain_u = surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin);
@@ -98,16 +100,17 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   return s;
 }
 
-// The next float away from zero movement: up when `step` > 0, down when < 0, x itself when 0.
+// Returns the next float in the direction of `step`: up when it is > 0, down when < 0, x itself
+// when 0.
 static inline float round_along(float x, float step) {
   if (step == 0.0f || !isfinite(x)) return x;
   if (x == 0.0f) return step > 0.0f ? FLT_MIN : -FLT_MIN;
   return as_float(as_int(x) + ((x > 0.0f) == (step > 0.0f) ? 1 : -1));
 }
 
-// The origin for a ray that leaves p towards `direction`: moved by `error` to that side of the surface with normal ng, each
-// component rounded further out, so that it never lands short (after Woo, Pearce and Ouellette 1996; Pharr, Jakob and Humphreys
-// 2016, 3.9.5).
+// Returns the origin for a ray that leaves p towards `direction`: moved by `error` to that side of
+// the surface with normal ng, each component rounded further out, so that it is never too near
+// (after Woo, Pearce and Ouellette 1996; Pharr, Jakob and Humphreys 2016, 3.9.5).
 static inline float3 offset_origin(float3 p, float3 ng, float error, float3 direction) {
   const float3 step = (dot(direction, ng) < 0.0f ? -error : error) * ng;
   const float3 moved = p + step;

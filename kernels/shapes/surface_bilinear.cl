@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear patch: p00 p10 p01 p11, with the mesh's normals and uvs. The point is interpolated from the corners; its normal is
-// dp/du x dp/dv of the patch's own parameters, which are the uv of meshes without any.
+// Computes points of a bilinear patch: p00 p10 p01 p11, with the mesh's normals and uvs. The point
+// is interpolated from the corners; its normal is dp/du x dp/dv of the patch's own parameters,
+// which are the uv of meshes without any.
 #ifndef CAPLET_SHAPES_SURFACE_BILINEAR_CL
 #define CAPLET_SHAPES_SURFACE_BILINEAR_CL
 
 #include "groups.cl"
 #include "shapes/surface_triangle.cl"
 
-// Corners seen from x along `toward` (a unit vector on the normal's side): the (u, v) of the point at x that shows its front. The
-// derivation is in bilinear.cl; the front is the root with a positive Jacobian.
+// Sees the corners from x along `toward` (a unit vector on the normal's side) and returns the (u,
+// v) of the point at x that shows its front. The derivation is in bilinear.cl; the front is the
+// root with a positive Jacobian.
 static inline float2 bilinear_parameters(float3 p00, float3 p10, float3 p01, float3 p11, float3 x, float3 toward) {
   const Frame frame = frame_from_normal(toward);
   float2 q00 = (float2)(dot(p00 - x, frame.s), dot(p00 - x, frame.t)),
@@ -59,7 +61,8 @@ static inline LocalSurface surface_bilinear(const SurfaceQuery* q) {
   const float3 p00 = bilinear_p00(q->data), p10 = bilinear_p10(q->data), p01 = bilinear_p01(q->data), p11 = bilinear_p11(q->data);
   const float2 at = bilinear_parameters(p00, p10, p01, p11, q->x, q->fallback);
   const float u = at.x, v = at.y;
-  // Each from the edges along it: a narrow patch's short edges must not be told from its long ones.
+  // Each derivative comes from the edges along it: the long edges of a narrow patch must not
+  // determine its short ones.
   const float3 edge_u = p10 - p00, edge_v = p01 - p00;
   const float3 dpdu = edge_u + v * ((p11 - p01) - edge_u), dpdv = edge_v + u * ((p11 - p10) - edge_v);
   LocalSurface s;

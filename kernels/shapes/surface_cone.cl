@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Cylinder and cone: the hull of two ends, disks across the axis or balls. Surfaces: 0 the side, 1 the end at p0, 2 the end at
-// p1. On all of them u is the turn around the axis p0 -> p1, the same on both sides of a rim; v runs along the profile from p0 to
-// p1: on the side by length from one end's circle to the other's, on a flat cap at p0 from its centre (0) to its rim (1), at p1
-// from the rim (0) to the centre (1), on a round cap by angle from pole to circle or circle to pole. So dpdu x dpdv points
-// outward. Where a ball reaches through the other, flat end (it is longer than the axis) there is no cap but a second part of the
-// side, from the rim to the ball; v still is 1 at p1's end. That ball's surface, and one that holds the other end, has v over the
-// whole sphere.
+// Computes points of cylinders and cones: the hull of two ends, disks across the axis or balls.
+// Surfaces: 0 the side, 1 the end at p0, 2 the end at p1. On all of them u is the turn around the
+// axis p0 -> p1, the same on both sides of a rim; v runs along the profile from p0 to p1: on the
+// side by length from one end's circle to the other's, on a flat cap at p0 from its centre (0) to
+// its rim (1), at p1 from the rim (0) to the centre (1), on a round cap by angle from pole to
+// circle or circle to pole. So dpdu x dpdv points outward. Where a ball reaches through the other,
+// flat end (it is longer than the axis) there is no cap but a second part of the side, from the rim
+// to the ball; v still is 1 at p1's end. That ball's surface, and one that holds the other end, has
+// v over the whole sphere.
 #ifndef CAPLET_SHAPES_SURFACE_CONE_CL
 #define CAPLET_SHAPES_SURFACE_CONE_CL
 
 #include "shapes/surface_local.cl"
 
-// The hull's axis and side. Angles in normals: k along the axis, c across it.
+// ConeProfile is the hull's axis and side; k and c are the parts of the side's normal along and
+// across the axis.
 typedef struct {
   float3 axis, unit_axis;
   float length;
@@ -32,7 +35,7 @@ static inline ConeProfile cone_profile(float3 p0, float3 p1, float r0, float r1,
   const float taper = r0 - r1, product = taper * (r0 + r1), length = s.length;
   const int balls = round0 && round1, mixed = !balls && (round0 || round1);
   const float ball = round0 ? r0 : r1, rim = round0 ? r1 : r0;
-  // As in cone.cl; w: the length of the side's generator.
+  // The formulas are those of cone.cl; w: the length of the side's generator.
   const float ww = balls   ? (length - taper) * (length + taper)
                    : mixed ? length * length + (round0 ? -product : product)
                            : length * length + taper * taper;
@@ -55,7 +58,8 @@ static inline ConeProfile cone_profile(float3 p0, float3 p1, float r0, float r1,
   return s;
 }
 
-// The second part of the side, outside a disk through which the other end's ball of radius `ball` reaches.
+// Returns the second part of the side, outside a disk through which the other end's ball of radius
+// `ball` reaches.
 static inline ConeProfile cone_second_profile(ConeProfile s, float ball, float rim, int round0) {
   const float length = s.length, w = sqrt(fmax((length - ball) * (length + ball) + rim * rim, 0.0f));
   s.c = (ball - length) * (ball + length) / (rim * ball + length * w);
@@ -71,7 +75,8 @@ static inline ConeProfile cone_second_profile(ConeProfile s, float ball, float r
   return s;
 }
 
-// Part of the side from 0 (p0's circle) to 1 (p1's) nearest to a point at height y, `rho` from the axis; and how far that one is.
+// Returns the place on the side, from 0 (p0's circle) to 1 (p1's), nearest to a point at height y,
+// `rho` from the axis; and in *away the distance from it.
 static inline float cone_side_position(const ConeProfile* s, float y, float rho, float* away) {
   const float dy = s->y1 - s->y0, drho = s->rho1 - s->rho0, squared = dy * dy + drho * drho;
   const float along = squared > 0.0f ? ((y - s->y0) * dy + (rho - s->rho0) * drho) / squared : 0.0f;
@@ -90,13 +95,14 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
   const float3 center = first ? p0 : p1;
   const float radius = first ? r0 : r1;
 
-  // Cylinder coordinates of x; the second subtraction makes `radial` perpendicular to the axis to rounding of its own length.
+  // These are cylinder coordinates of x; the second subtraction makes `radial` perpendicular to the
+  // axis to rounding of its own length.
   const float3 from = x - (surface == 0u ? p0 : center);
   const float y = dot(from, m);
   float3 radial = from - y * m;
   radial -= dot(radial, m) * m;
   float3 unit_radial = unit_or(radial, perpendicular(m));
-  // Where x is on the axis to rounding, what is left may point along it.
+  // Where x is on the axis to rounding, the remainder may point along it.
   const float tilt = dot(unit_radial, m);
   unit_radial = fabs(tilt) < 0.5f ? unit_or(unit_radial - tilt * m, unit_radial) : perpendicular(m);
 
@@ -117,7 +123,8 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
         position = position_second;
       }
     }
-    // Between a point of each end, so that an error of the normal moves it by that error's square alone.
+    // The point lies between a point of each end, so that an error of the normal moves it only by
+    // that error's square.
     out.ng = s.k * m + s.c * unit_radial;
     const float3 spoke0 = r0 * (round0 ? out.ng : unit_radial), spoke1 = r1 * (round1 ? out.ng : unit_radial);
     const float3 q = p0 + position * s.axis;
@@ -132,10 +139,10 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
     const float3 rim = s.k * m + s.c * unit_radial;
     const float3 outward = first ? -m : m;
     out.ng = unit_or(from, whole ? query->fallback : outward);
-    // What rounding takes past the circle belongs to it.
+    // Points that rounding takes past the circle belong to it.
     if (!whole && (first ? dot(out.ng, m) > s.k : dot(out.ng, m) < s.k)) out.ng = rim;
     out.p = center + radius * out.ng;
-    // Angles from the pole that comes first along the axis.
+    // Angles count from the pole that comes first along the axis.
     const float begin = first || whole ? 0.0f : acos(-s.k), end = first && !whole ? acos(-s.k) : CAPLET_PI;
     const float angle = angle_between(-m, out.ng);
     out.uv.y = fmin(fmax((angle - begin) / (end - begin), 0.0f), 1.0f);
@@ -152,7 +159,7 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
     out.dpdu = along_turn(&turn, spoke);
     out.dpdv = distance > 0.0f ? (first ? radius : -radius) * unit_radial : (float3)(0.0f);
   }
-  // L: what the span functions' roundings at either end grow with when a ray starts here.
+  // Roundings of the span functions at either end grow with L when a ray starts here.
   out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * s.length + 6.0f * (norm1(base) + fmax(r0, r1)));
   out.ns = out.ng;
   return out;

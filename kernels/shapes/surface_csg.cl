@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A csg shape's surface: that of an operand, in two halves around surface_shape, so that the switch over shapes stands in a kernel once.
+// A csg shape's surface is that of an operand. It is computed in two halves around surface_shape,
+// so that a kernel has the switch over shapes only once.
 #ifndef CAPLET_SHAPES_SURFACE_CSG_CL
 #define CAPLET_SHAPES_SURFACE_CSG_CL
 
 #include "shapes/surface_shapes.cl"
 
-// Where a csg shape's surface comes from.
+// CsgOperand says which operand a csg shape's surface comes from.
 typedef struct {
   float3 center;
   int subtracted;
@@ -15,14 +16,16 @@ typedef struct {
   int placed;
 } CsgOperand;
 
-// The operand that surface q->surface belongs to: its shape kind, and what to ask of surface_shape. Layout: csg.cl.
+// Finds the operand that surface q->surface belongs to: returns its shape kind, and the query for
+// surface_shape. Layout: csg.cl.
 static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, SurfaceQuery* own) {
   __global const float* leaves = q->leaves;
   __global const float* header = leaves + csg_begin(q->data);
   __global const uint* numbers = (__global const uint*)header;
   const uint groups = numbers[4];
   __global const uint* operands = numbers + 8 * (1 + groups);
-  // Operands are not in the order of their surfaces: the last one that begins no later.
+  // Operands are not in the order of their surfaces, so this finds the last one that begins no
+  // later.
   uint found = 0, begin = 0;
   for (uint i = 0; i < numbers[6]; i++) {
     const uint first = operands[i] & CAPLET_SURFACE_MASK;
@@ -41,7 +44,7 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   own->surface = q->surface - begin;
   own->data = lane_data(leaves + row[1], found - row[3]);
   own->x = q->x - operand->center;
-  // Row 0, which in a leaf holds the primitive's id.
+  // This is row 0, which in a leaf holds the primitive's id.
   const uint space = as_uint(own->data[-8]);
   own->space = space != CAPLET_NONE ? leaves + space : 0;
   own->fallback = operand->subtracted ? -q->fallback : q->fallback;
@@ -54,15 +57,15 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   return row[0];
 }
 
-// The csg shape's surface from its operand's.
+// Returns the csg shape's surface from its operand's.
 static inline LocalSurface csg_surface(const CsgOperand* operand, LocalSurface s) {
   if (operand->placed) s = surface_transformed(operand->transform + 12, operand->transform, s);
   if (operand->subtracted) {
     s.ng = -s.ng;
     s.ns = -s.ns;
   }
-  // Into csg space a ray's origin is rounded by eps of its distance from the centre, and the point on the way back by eps of its size;
-  // twice each.
+  // Into csg space a ray's origin is rounded by eps of its distance from the centre, and the point
+  // on the way back by eps of its size; twice each.
   const float3 moved = operand->center + s.p;
   s.error += CAPLET_EPS * (2.0f * norm1(s.p) + 2.0f * norm1(moved));
   s.p = moved;

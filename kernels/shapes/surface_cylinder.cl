@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Cylinder: a cone of equal radii.
+// A cylinder is a cone of equal radii.
 #ifndef CAPLET_SHAPES_SURFACE_CYLINDER_CL
 #define CAPLET_SHAPES_SURFACE_CYLINDER_CL
 

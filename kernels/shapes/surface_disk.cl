@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Disk: centre, unit normal, radius. uv as pbrt's disk, of its own space: u = angle from +x / 2 pi, v = 1 - distance from the
-// centre / radius.
+// Computes points of a disk: centre, unit normal, radius. uv is as pbrt's disk, of its own space: u
+// = angle from +x / 2 pi, v = 1 - distance from the centre / radius.
 #ifndef CAPLET_SHAPES_SURFACE_DISK_CL
 #define CAPLET_SHAPES_SURFACE_DISK_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the surface functions of all shapes share: the result, and unit vectors that never become NaN.
+// This file holds what the surface functions of all shapes share: the result, and unit vectors that
+// never become NaN.
 #ifndef CAPLET_SHAPES_SURFACE_LOCAL_CL
 #define CAPLET_SHAPES_SURFACE_LOCAL_CL
 
@@ -9,7 +10,8 @@
 #include "math/vector.cl"
 #include "shapes/fields.cl"
 
-// A point of a shape in the space in which its data is stored (world, or an instance's object space).
+// LocalSurface is a point of a shape in the space in which its data is stored (world, or an
+// instance's object space).
 typedef struct {
   float3 p;     // on the surface, within `error`
   float3 ng;    // unit; outward of solids, by winding or stored normal for open shapes
@@ -20,15 +22,16 @@ typedef struct {
   int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders, cones lie along dpdv
 } LocalSurface;
 
-// any_chain says that there may be capsules with u at their ends (FlatScene::has_chains). Programs for other scenes have
-// no code of them.
+// any_chain says that there may be capsules with u at their ends (FlatScene::has_chains). Programs
+// for other scenes have no code of them.
 #ifdef CAPLET_CHAINS
 enum { any_chain = 1 };
 #else
 enum { any_chain = 0 };
 #endif
 
-// What a surface function answers: the point of a shape's surface `surface` nearest to x, in the space its data is stored in.
+// SurfaceQuery asks a surface function for the point of a shape's surface `surface` nearest to x,
+// in the space its data is stored in.
 typedef struct {
   const Surfaces* surfaces;
   __global const float* leaves;
@@ -37,7 +40,8 @@ typedef struct {
   __global const float* data;  // shapes/fields.cl
   float3 x;
   float3 fallback;  // unit normal where x leaves it undefined
-  // A rotation or reflection (3x4 row-major, no translation) that the shape is stored under, where its uv tells it from none; or 0.
+  // `space` is a rotation or reflection (3x4 row-major, no translation) that the shape is stored
+  // under, if its uv depends on it; or 0.
   __global const float* space;
   float3 direction;                // of the ray, of any length, in the space of x
   __global const float* chain_u;  // u at p0 and at p1 of a capsule of a chain; 0: it is in none
@@ -45,7 +49,7 @@ typedef struct {
 
 static inline float norm1(float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 
-// v / |v| for any magnitude; `otherwise` when v is zero or not finite.
+// Returns v / |v| for any magnitude; `otherwise` when v is zero or not finite.
 static inline float3 unit_or(float3 v, float3 otherwise) {
   const float scale = max3(fabs(v));
   if (!(scale > 0.0f && scale < INFINITY)) return otherwise;
@@ -54,11 +58,12 @@ static inline float3 unit_or(float3 v, float3 otherwise) {
   return length_squared < 4.0f ? v / sqrt(length_squared) : otherwise;
 }
 
-// Some unit vector perpendicular to the unit vector n.
+// Returns some unit vector perpendicular to the unit vector n.
 static inline float3 perpendicular(float3 n) { return frame_from_normal(n).s; }
 
-// Angles around `axis` (unit) run from s to t: in the shape's own space s is where +x goes when +z, or -z for axes below -0.9, is
-// turned onto the axis the short way. The frame jumps there and not at the axes that people write.
+// Angles around `axis` (unit) run from s to t: in the shape's own space s is where +x goes when the
+// shortest rotation takes +z, or -z for axes below -0.9, to the axis. The frame jumps there and not
+// at the axes that people write.
 static inline Frame turn_frame(__global const float* space, float3 axis) {
   const float3 n = space ? unit_or(transform_transposed(space, axis), axis) : axis;
   Frame f = frame_from_pole(n, n.z >= -0.9f ? 1.0f : -1.0f);
@@ -69,36 +74,40 @@ static inline Frame turn_frame(__global const float* space, float3 axis) {
   }
   return f;
 }
-// The z axis of the shape's own space.
+// Returns the z axis of the shape's own space.
 static inline float3 own_z(__global const float* space) {
   return space ? (float3)(space[2], space[6], space[10]) : (float3)(0.0f, 0.0f, 1.0f);
 }
 
-// Angle of `n` around the frame's n (both unit), over a full turn: in [0, 1).
+// Returns the angle of `n` around the frame's n (both unit), over a full turn: in [0, 1).
 static inline float turn_around(const Frame* f, float3 n) {
   const float turn = atan2(dot(n, f->t), dot(n, f->s)) * (0.5f * CAPLET_INV_PI);
   return turn < 0.0f ? fmin(turn + 1.0f, 0x1.fffffep-1f) : turn;
 }
 
-// Derivative by that turn of a point at v from somewhere on the axis. Reflections turn the other way.
+// Returns the derivative by that turn of a point at v from somewhere on the axis. Reflections turn
+// the other way.
 static inline float3 along_turn(const Frame* f, float3 v) {
   return (dot(cross(f->s, f->t), f->n) < 0.0f ? -2.0f : 2.0f) * CAPLET_PI * cross(f->n, v);
 }
 
-// uv of a chain's capsules, which are those of pbrt's curves: u is linear along the axis and constant on the caps, so
-// that neighbours agree at their joint; v runs across the tube from 0 to 1 as the ray sees it. out->ng is the normal at
-// the ball that stands `s` of the way from p0 to p1 and has `radius`; `c` is what of the side's normal is across the
-// axis (unit), and `side` the length of the side.
+// Computes the uv of a chain's capsules, which are those of pbrt's curves: u is linear along the
+// axis and constant on the caps, so that neighbours agree at their joint; v runs across the tube
+// from 0 to 1 as the ray sees it. out->ng is the normal at the ball that stands `s` of the way from
+// p0 to p1 and has `radius`; `c` is the part of the side's normal across the axis (unit), and
+// `side` the length of the side.
 static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c, float radius, float side,
                             LocalSurface* out) {
   const float u0 = q->chain_u[0], u1 = q->chain_u[1];
   // Both neighbours have the same number at their joint.
   const float u = s < 1.0f ? u0 + s * (u1 - u0) : u1;
-  // On the caps dp/du goes on as at the rim: in the plane of the axis, with the length that it has there.
+  // On the caps dp/du continues as at the rim: in the plane of the axis, with the length that it
+  // has there.
   const float rate = side / (u1 - u0);
   const float along = dot(axis, out->ng);
   out->dpdu = (fabs(rate) < INFINITY ? rate : side) * unit_or(axis - along * out->ng, (float3)(0.0f));
-  // e is across the axis as the ray sees it, and f points against the ray: v = (1 + sin a) / 2 at sin a e + cos a f.
+  // e is across the axis as the ray sees it, and f points against the ray: v = (1 + sin a) / 2 at
+  // sin a e + cos a f.
   const float3 e = unit_or(cross(q->direction, axis), (float3)(0.0f)), f = cross(e, axis);
   const float3 across = out->ng - along * axis;
   const float turned =
@@ -108,10 +117,11 @@ static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c
   out->dpdv = turned * (2.0f * radius * c / steep) * unit_or(cross(axis, across), (float3)(0.0f));
 }
 
-// Angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.
+// Returns the angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.
 static inline float angle_between(float3 axis, float3 n) { return atan2(length(n - axis * dot(n, axis)), dot(n, axis)); }
 
-// Sum over columns of |m| |p|, translation included: what roundings of transform_point(m, p) are proportional to.
+// Returns the sum over columns of |m| |p|, translation included; roundings of transform_point(m, p)
+// are proportional to it.
 static inline float3 transform_magnitude(__global const float* m, float3 p) {
   const float3 a = fabs(p);
   return (float3)(fabs(m[0]) * a.x + fabs(m[1]) * a.y + fabs(m[2]) * a.z + fabs(m[3]),
@@ -119,12 +129,14 @@ static inline float3 transform_magnitude(__global const float* m, float3 p) {
                   fabs(m[8]) * a.x + fabs(m[9]) * a.y + fabs(m[10]) * a.z + fabs(m[11]));
 }
 
-// Takes a surface point through an affine map (to_world, 3x4 row-major) with its inverse (to_object).
+// Takes a surface point through an affine map (to_world, 3x4 row-major) with its inverse
+// (to_object).
 static inline LocalSurface surface_transformed(__global const float* to_world, __global const float* to_object, LocalSurface s) {
   const float3 magnitude = transform_magnitude(to_world, s.p);
   const float3 normal = unit_or(transform_transposed(to_object, s.ng), s.ng);
   const float3 shading = unit_or(transform_transposed(to_object, s.ns), normal);
-  // Object-space uncertainty: that of the point, and the rounding of the way there and back with both rounded matrices.
+  // This is the object-space uncertainty: that of the point, and the rounding of the way there and
+  // back with both rounded matrices.
   const float object_error = s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
   LocalSurface out = s;
   out.p = transform_point(to_world, s.p);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Open cylinder: radius, zmin, zmax, phimax. uv as pbrt's: u = phi / phimax, v = (z - zmin) / (zmax - zmin); the normal points
-// outward.
+// Computes points of an open cylinder: radius, zmin, zmax, phimax. uv is as pbrt's: u = phi /
+// phimax, v = (z - zmin) / (zmax - zmin); the normal points outward.
 #ifndef CAPLET_SHAPES_SURFACE_OPEN_CYLINDER_CL
 #define CAPLET_SHAPES_SURFACE_OPEN_CYLINDER_CL
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Partial disk: height, radius, inner radius, phimax. uv as pbrt's: u = phi / phimax, v = (radius - distance) / (radius - inner);
-// the normal is +z.
+// Computes points of a partial disk: height, radius, inner radius, phimax. uv is as pbrt's: u = phi
+// / phimax, v = (radius - distance) / (radius - inner); the normal is +z.
 #ifndef CAPLET_SHAPES_SURFACE_PARTIAL_DISK_CL
 #define CAPLET_SHAPES_SURFACE_PARTIAL_DISK_CL
 

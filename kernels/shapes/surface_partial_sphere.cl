@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Partial sphere: radius, zmin, zmax, phimax. uv as pbrt's: u = phi / phimax, v = (theta - theta(zmin)) / (theta(zmax) -
-// theta(zmin)) with the angle theta from +z; the normal points outward.
+// Computes points of a partial sphere: radius, zmin, zmax, phimax. uv is as pbrt's: u = phi /
+// phimax, v = (theta - theta(zmin)) / (theta(zmax) - theta(zmin)) with the angle theta from +z; the
+// normal points outward.
 #ifndef CAPLET_SHAPES_SURFACE_PARTIAL_SPHERE_CL
 #define CAPLET_SHAPES_SURFACE_PARTIAL_SPHERE_CL
 
 #include "shapes/surface_local.cl"
 #include "shapes/surface_turn.cl"
 
-// The angle from +z at height z on a sphere of radius r.
+// Returns the angle from +z at height z on a sphere of radius r.
 static inline float sphere_theta(float r, float z) { return atan2(sqrt(fmax(0.0f, (r - z) * (r + z))), z); }
 
 static inline LocalSurface surface_partial_sphere(const SurfaceQuery* q) {
@@ -20,7 +21,8 @@ static inline LocalSurface surface_partial_sphere(const SurfaceQuery* q) {
   float phi;
   const float2 spoke = spoke_within_turn(n.x, n.y, phi_max, &phi);
   const float z = fmin(fmax(r * n.z, low), high);
-  // Off the clips the point keeps its distance from the axis: near a pole z alone would not tell it.
+  // Off the clips the point keeps its distance from the axis: near a pole z alone would not
+  // determine it.
   const float rho = z == r * n.z ? r * sqrt(n.x * n.x + n.y * n.y) : sqrt(fmax(0.0f, (r - z) * (r + z)));
   s.p = (float3)(rho * spoke.x, rho * spoke.y, z);
   s.ng = s.ns = unit_or(s.p, n);

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Surfaces of polyhedra: the planes in their order. uv is affine over each plane: its coefficients lie behind the planes.
+// The surfaces of polyhedra are the planes in their order. uv is affine over each plane: its
+// coefficients lie behind the planes.
 #ifndef CAPLET_SHAPES_SURFACE_POLYHEDRON_CL
 #define CAPLET_SHAPES_SURFACE_POLYHEDRON_CL
 
 #include "shapes/surface_local.cl"
 
-// The point of face `face` nearest to v (relative to the centre; all corners are within `radius` of it). In the face's plane each
-// other plane is a half-plane, and they are added one by one: where the nearest point so far is beyond one, the new nearest point
-// is on that one's line, within the earlier ones (Seidel 1991). A hit is beyond an edge by its rounding alone, so this is done
-// once or twice at most. Of a ray from so far that its rounding is larger than the solid any point will do: one nearby keeps feet
-// of perpendiculars exact, and where planes parallel but for rounding bound a line nowhere, it ends.
+// Returns the point of face `face` nearest to v (relative to the centre; all corners are within
+// `radius` of it). In the face's plane each other plane is a half-plane, and they are added one by
+// one: where the nearest point so far is beyond one, the new nearest point is on that one's line,
+// within the earlier ones (Seidel 1991). A hit is beyond an edge by its rounding alone, so this is
+// done once or twice at most. Where a ray comes from so far that its rounding is larger than the
+// solid, any point will do, so v is moved near. That keeps feet of perpendiculars exact, and ends
+// the search where planes parallel but for rounding do not bound a line.
 static inline float3 polyhedron_face_point(__global const float* planes, uint count, float radius, uint face, float3 v) {
   const float4 own = vload4(face, planes);
   const float away = max3(fabs(v));

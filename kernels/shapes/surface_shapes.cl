@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The switch over the surfaces of the shapes that there are; csg shapes have those of their operands.
+// This file holds the switch over the surfaces of the shapes of the scene; csg shapes have those of
+// their operands.
 #ifndef CAPLET_SHAPES_SURFACE_SHAPES_CL
 #define CAPLET_SHAPES_SURFACE_SHAPES_CL
 
 #include "shapes/surface_local.cl"
 #include "shapes/surface_{shapes}.cl"
 
-// The point (before ReverseOrientation) of a surface nearest to a point in its own space.
+// Returns the point (before ReverseOrientation) of a surface nearest to a point in its own space.
 static inline LocalSurface surface_shape(uint shape, const SurfaceQuery* q) {
   switch (shape) {
 #define SHAPE(name, traits) \

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Sphere: centre, radius. uv as pbrt's full sphere: u around +z from +x, v = 0 at -z, 1 at +z (by angle), of its own space.
+// Computes points of a sphere: centre, radius. uv is as pbrt's full sphere: u around +z from +x, v
+// = 0 at -z, 1 at +z (by angle), of its own space.
 #ifndef CAPLET_SHAPES_SURFACE_SPHERE_CL
 #define CAPLET_SHAPES_SURFACE_SPHERE_CL
 
 #include "shapes/surface_local.cl"
 
-// The sphere of `radius` around `center` at q->x projected from its centre. uv about `axis` (unit). end: which of a
-// capsule's it is, 0 or 1.
+// Returns the point of the sphere of `radius` around `center` that is q->x projected from its
+// centre. uv is about `axis` (unit). end: which of a capsule's it is, 0 or 1.
 static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius, float3 axis, float end) {
   const Frame turn = turn_frame(q->space, axis);
   LocalSurface s;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Tapered capsule: p0, p1, and a radius at each end; the geometry is surface_capsule.cl's.
+// A tapered capsule has p0, p1, and a radius at each end; the geometry is surface_capsule.cl's.
 #ifndef CAPLET_SHAPES_SURFACE_TAPERED_CAPSULE_CL
 #define CAPLET_SHAPES_SURFACE_TAPERED_CAPSULE_CL
 

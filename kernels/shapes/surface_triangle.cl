@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Triangle: three vertices, with the mesh's normals and uvs. The point is interpolated from the vertices, so that it lies in the
-// triangle's plane however far the ray came from.
+// Computes points of a triangle: three vertices, with the mesh's normals and uvs. The point is
+// interpolated from the vertices, so that it lies in the triangle's plane however far the ray came
+// from.
 #ifndef CAPLET_SHAPES_SURFACE_TRIANGLE_CL
 #define CAPLET_SHAPES_SURFACE_TRIANGLE_CL
 
 #include "groups.cl"
 #include "shapes/surface_local.cl"
 
-// a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
+// Returns a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
 static inline float difference_of_products(float a, float b, float c, float d) {
   const float cd = c * d;
   return fma(a, b, -cd) + fma(-c, d, cd);
@@ -19,7 +20,8 @@ static inline float3 robust_cross(float3 a, float3 b) {
                   difference_of_products(a.x, b.y, a.y, b.x));
 }
 
-// dpdu and dpdv from the derivatives of uv and of the point by two other parameters; zero where uv leaves them undefined or beyond a float.
+// Computes dpdu and dpdv from the derivatives of uv and of the point by two other parameters; they
+// are zero where uv leaves them undefined or beyond a float.
 static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float3 p_b, LocalSurface* s) {
   const float determinant = difference_of_products(uv_a.x, uv_b.y, uv_a.y, uv_b.x);
   s->dpdu = (uv_b.y * p_a - uv_a.y * p_b) / determinant;
@@ -34,7 +36,8 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
   const float3 e1 = triangle_v1(q->data) - v0, e2 = triangle_v2(q->data) - v0;
   const float3 n = unit_or(robust_cross(e1, e2), q->fallback);
 
-  // Barycentric coordinates of x projected along the normal, kept inside the triangle.
+  // b1 and b2 are barycentric coordinates of x projected along the normal, kept inside the
+  // triangle.
   const float3 v = q->x - v0;
   const float area = dot(robust_cross(e1, e2), n);
   float b1 = area > 0.0f ? fmin(fmax(dot(robust_cross(v, e2), n) / area, 0.0f), 1.0f) : 0.0f;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where a point belongs on a turn around the z axis that ends at phi_max.
+// Finds where a point belongs on a turn around the z axis that ends at phi_max.
 #ifndef CAPLET_SHAPES_SURFACE_TURN_CL
 #define CAPLET_SHAPES_SURFACE_TURN_CL
 
 #include "math/vector.cl"
 
-// x / whole in [0, 1], 0 of nothing: parameters of shapes without an extent.
+// Returns x / whole in [0, 1], and 0 if whole is 0: parameters of shapes without an extent.
 static inline float share_of(float x, float whole) { return whole != 0.0f ? clamp(x / whole, 0.0f, 1.0f) : 0.0f; }
 
-// The unit vector across the z axis towards (x, y), turned back to the nearer edge where rounding took it beyond; the angle in
-// `phi`.
+// Returns the unit vector across the z axis towards (x, y), turned back to the nearer edge where
+// rounding took it beyond; the angle in `phi`.
 static inline float2 spoke_within_turn(float x, float y, float phi_max, float* phi) {
   const float scale = fmax(fabs(x), fabs(y));
   const float2 v = scale > 0.0f ? (float2)(x / scale, y / scale) : (float2)(1.0f, 0.0f);

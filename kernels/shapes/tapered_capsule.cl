@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The tapered capsule's span: the convex hull of two spheres, that is both spheres and the part of their common tangent cone
-// between the circles where it touches them.
+// Computes the tapered capsule's span. A tapered capsule is the convex hull of two spheres, that is
+// both spheres and the part of their common tangent cone between the circles where it touches them.
 //
-// A convex body's span is the hull of the spans of its parts, so entering is the least and leaving the greatest of the two
-// spheres' and the cone's crossings; a sphere inside the other, or equal ends, need no case of their own. With k = (r0 - r1) / L
-// the cone is sqrt(1 - k^2) |e| = r0 - k y at height y above p0 and offset e from the axis; its quadratic's errors reach eps r0^2
-// / r where a ray crosses near a thin end of radius r, which one or two Newton steps on the distance from the hull itself take
-// away. Distance of the reported point from the surface: 16 eps (|o - p0| + L + r0 + r1) (docs/numerics.md, "Cones").
+// A convex body's span is the hull of the spans of its parts, so entering is the least and leaving
+// the greatest of the two spheres' and the cone's crossings; a sphere inside the other, or equal
+// ends, need no special case. With k = (r0 - r1) / L the cone is sqrt(1 - k^2) |e| = r0 - k y at
+// height y above p0 and offset e from the axis; its quadratic's errors reach eps r0^2 / r where a
+// ray crosses near a thin end of radius r, which one or two Newton steps on the distance from the
+// hull itself remove. The reported point is within 16 eps (|o - p0| + L + r0 + r1) of the surface
+// (docs/numerics.md, "Cones").
 #ifndef CAPLET_SHAPES_TAPERED_CAPSULE_CL
 #define CAPLET_SHAPES_TAPERED_CAPSULE_CL
 
@@ -22,7 +24,8 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
   const real zero = real_of(0.0f);
 
-  // The ray's point nearest to p0, in cylinder coordinates of the axis: offset e + t f from it and height u + v t above p0.
+  // The ray's point nearest to p0 is in cylinder coordinates of the axis: offset e + t f from it
+  // and height u + v t above p0.
   const real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real px = wx + shift * ray->dx, py = wy + shift * ray->dy, pz = wz + shift * ray->dz;
   const real length = sqrt(real_dot(bx, by, bz, bx, by, bz));
@@ -39,7 +42,8 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real_mask near_axis = real_dot(qx, qy, qz, qx, qy, qz) <= wide * wide;
   if (mask_bits(near_axis) == 0) return span_of(near_axis, shift, shift);
 
-  // Room for rounding: 4 eps of everything. A crossing that the cone and a sphere both disown would be lost.
+  // Room for rounding is 4 eps of everything. A crossing that rounding takes off both the cone and
+  // a sphere would be lost.
   const real room = 0x1p-22f * (length + wide);
   real enter0, exit0, enter1, exit1;
   const real_mask hit0 = sphere_span_within(ray, px, py, pz, r0, room, &enter0, &exit0);
@@ -67,7 +71,8 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real s = -(b + (b < 0.0f ? -root : root));  // no cancellation
   const real t1 = s / a, t2 = c / s;                // 0 denominators give infinities or NaN, which lie in no interval
   const real y1 = y + t1 * v, y2 = y + t2 * v;
-  // Past a touching circle by 2^-12 of its sphere's radius the cone is 2^-25 of that radius off the sphere.
+  // Past a touching circle by 2^-12 of its sphere's radius the cone is 2^-25 of that radius off the
+  // sphere.
   const real cosine = 0x1p-12f * sqrt(real_max(cos2, zero));
   const real lowest = low - real_max(r0 * cosine, room), highest = high + real_max(r1 * cosine, room);
   const real_mask cone = (cos2 > 0.0f) & ((disc >= 0.0f) | (a <= 0.0f));

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Watertight ray-triangle test (Woop, Benthin and Wald, "Watertight ray/triangle intersection", JCGT 2013).
+// This is the watertight ray-triangle test of Woop, Benthin and Wald, "Watertight ray/triangle
+// intersection", JCGT 2013.
 //
-// The ray becomes the z axis by a shear that depends on the ray alone, so a shared vertex has the same 2D coordinates in all its
-// triangles. Edge functions of these are within two units in the last place, so the sign is right and opposite in the neighbour,
-// and weights of thin triangles are as good as others'. Zero counts as inside on both sides.
+// The ray becomes the z axis by a shear that depends on the ray alone, so a shared vertex has the
+// same 2D coordinates in all its triangles. Edge functions of these are within two units in the
+// last place, so the sign is right and opposite in the neighbour, and weights of thin triangles are
+// as good as others'. Zero counts as inside on both sides.
 #ifndef CAPLET_SHAPES_TRIANGLE_CL
 #define CAPLET_SHAPES_TRIANGLE_CL
 
 #include "shapes/lanes.cl"
 
-// a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
+// Returns a b - c d to two units in the last place (Kahan; Jeannerod, Louvet and Muller 2013).
 static inline real edge_function(real a, real b, real c, real d) {
   const real cd = c * d;
   return fma(a, b, -cd) + fma(-c, d, cd);
@@ -38,10 +40,10 @@ static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* 
   const real w = edge_function(bx, ay, by, ax);
   const real det = u + v + w;
   const real_mask inside = ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
-  // A convex combination of the vertices' z: off by 6 eps max |z| at most.
+  // This is a convex combination of the vertices' z: off by 6 eps max |z| at most.
   *t = ((u * az + v * bz + w * cz) / det) * axes.inv_dz;
-  // det is minus twice the area in the ray's plane, positive counter-clockwise: the normal points along the ray where its sign and dz's
-  // differ.
+  // det is minus twice the area in the ray's plane, positive counter-clockwise: the normal points
+  // along the ray where its sign and dz's differ.
   *side = det * axes.inv_dz < 0.0f ? int_of(CAPLET_LEAVING) : int_of(0);
   return inside & (det != 0.0f);
 }

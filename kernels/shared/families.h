@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where the data of materials, textures, lights and media lie in material_data, texture_data, light_data and media_data, and what their
-// lists say of them. Valid as OpenCL C 1.2 and as C++.
+// This file says where the data of materials, textures, lights and media lie in material_data,
+// texture_data, light_data and media_data, and what their lists say of them. Valid as OpenCL C 1.2
+// and as C++.
 #ifndef CAPLET_SHARED_FAMILIES_H
 #define CAPLET_SHARED_FAMILIES_H
 
@@ -27,8 +28,9 @@ namespace caplet {
 #define CAPLET_FLOATS_OF_mapping 13
 #define CAPLET_FLOATS_OF_material 1
 
-// spot_at_axis: the first float of a field. spot_floats: how many a light of the kind has. The count begins anew at each. Of
-// textures and media, which share names with others: mix_texture_at_amount, mix_texture_floats.
+// spot_at_axis is the first float of a field, spot_floats the number of floats of a light of that
+// kind. The count restarts at each kind. Textures and media share names with others, so theirs are
+// mix_texture_at_amount and mix_texture_floats.
 enum {
 #define MATERIAL(name, traits) name##_before_floats = -1,
 #define FIELD(kind, name, type) kind##_at_##name, kind##_end_of_##name = kind##_at_##name + CAPLET_FLOATS_OF_##type - 1,
@@ -55,7 +57,7 @@ enum {
   family_floats_end
 };
 
-// spot_axis(data): vectors and turns as a pointer to their first float.
+// spot_axis(data) returns a field; vectors and turns are a pointer to their first float.
 #ifdef __cplusplus
 #define CAPLET_DATA const float*
 #define CAPLET_ACCESSOR(type) constexpr type
@@ -113,7 +115,7 @@ enum {
 
 #ifdef __cplusplus
 
-/// A field of a material, texture, light or medium.
+/// FamilyField is a field of a material, texture, light or medium.
 struct FamilyField {
   std::string_view name;
   std::uint32_t at, floats;
@@ -140,7 +142,7 @@ struct FamilyField {
 #include "shared/media.def"
 #undef MEDIUM
 
-/// A kind's fields; without the last of each list, which is empty.
+/// These are the fields of each kind, without the last of each list, which is empty.
 inline constexpr std::span<const FamilyField> material_fields[] = {
 #define MATERIAL(name, traits) std::span<const FamilyField>(name##_field_list).first(std::size(name##_field_list) - 1),
 #include "shared/materials.def"

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Every device buffer, in groups that live and are used together. Kernel signatures, the structs that kernel functions take, allocation,
-// byte counts and argument binding on the host all expand from these lists: define
-//   GROUP_BEGIN(Type, group)      // Tree, tree: the struct of its buffers and the name that stages know it by
-//   BUFFER(name, type, access)    // access: ONE (a record, read only), IN (an array, read only) or STATE; of paths also what only some
-//                                 // renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES, STATE_SIDES, STATE_MEDIA
+// This file lists every device buffer, in groups that live and are used together. Kernel
+// signatures, the structs that kernel functions take, allocation, byte counts and argument binding
+// on the host all expand from these lists. The including file defines
+//   GROUP_BEGIN(Type, group)
+//       Tree, tree: the struct of its buffers and the name that stages use for it
+//   BUFFER(name, type, access)
+//       access: ONE (a record, read only), IN (an array, read only) or STATE; path buffers that
+//       only some renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES,
+//       STATE_SIDES, STATE_MEDIA
 //   GROUP_END(Type)
-// and write GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
+// and writes GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_GROUPS_H
 #define CAPLET_SHARED_GROUPS_H
 
 // --- The scene ---
 
-// What rays are traced through.
+// Rays are traced through these buffers.
 #define GROUP_TREE                                               \
   GROUP_BEGIN(Tree, tree)                                        \
   BUFFER(world, WorldRecord, ONE)                                 \
@@ -22,7 +26,7 @@
   BUFFER(instances, InstanceRecord, IN)                          \
   GROUP_END(Tree)
 
-// What is found out about a hit afterwards.
+// These buffers tell about a hit after it is found.
 #define GROUP_SURFACES                                                                             \
   GROUP_BEGIN(Surfaces, surfaces)                                                                  \
   BUFFER(geometries, GeometryRecord, IN)                                                           \
@@ -71,14 +75,14 @@
   BUFFER(geometry_boundary, uint, IN) /* by number of the geometry; CAPLET_NONE: none */ \
   GROUP_END(Media)
 
-// The same for every scene.
+// These tables are the same for every scene.
 #define GROUP_OBSERVER                                                                                                    \
   GROUP_BEGIN(Observer, observer)                                                                                         \
   BUFFER(observer, float, IN)         /* CAPLET_LAMBDA_COUNT times x y z of the CIE 1931 observer over the integral of y, and 0 */ \
   BUFFER(wavelength_table, float, IN) /* wavelength at u = i / CAPLET_WAVELENGTH_CELLS (inverse of the sampling CDF, linear between) */ \
   GROUP_END(Observer)
 
-// --- A view of it ---
+// --- A view of the scene ---
 
 #define GROUP_VIEW             \
   GROUP_BEGIN(View, view)      \
@@ -110,7 +114,7 @@
   BUFFER(path_radiance, float4, STATE)   \
   GROUP_END(Radiance)
 
-// What a path carries from one scattering to the next.
+// A path carries these from one scattering to the next.
 #define GROUP_CARRIED                                                                                           \
   GROUP_BEGIN(Carried, carried)                                                                                 \
   BUFFER(path_throughput, float4, STATE)       /* at the four wavelengths */                                    \
@@ -123,7 +127,8 @@
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
   GROUP_END(Carried)
 
-// Of textured scenes: how wide a path's ray is where it begins (world), and how much wider with each unit of length.
+// Textured scenes have these: the width of a path's ray where it begins (world), and its growth
+// with each unit of length.
 #define GROUP_CONES                     \
   GROUP_BEGIN(Cones, cones)             \
   BUFFER(path_cone, float2, STATE_CONES)      \
@@ -142,7 +147,7 @@
   BUFFER(queue_shadow, uint, STATE)           /* paths with a shadow ray */                         \
   GROUP_END(Shadows)
 
-// Of scenes with media.
+// Scenes with media have these.
 #define GROUP_IMMERSION                                                                                     \
   GROUP_BEGIN(Immersion, immersion)                                                                         \
   BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/immersion.cl) */ \
@@ -203,7 +208,7 @@
   BUFFER(picks, PickRecord, STATE)  \
   GROUP_END(Picks)
 
-// What all shading takes.
+// All shading takes these groups.
 #define SHADING_GROUPS GROUP_TREE GROUP_SURFACES GROUP_SPECTRA GROUP_MATERIALS GROUP_LIGHTS GROUP_OBSERVER
 #define SCENE_GROUPS SHADING_GROUPS GROUP_MEDIA
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Ids of everything that has kinds, expanded from the .def lists. Valid as OpenCL C 1.2 and as C++.
+// This file holds ids of everything that has kinds, expanded from the .def lists. Valid as OpenCL C
+// 1.2 and as C++.
 #ifndef CAPLET_SHARED_KINDS_H
 #define CAPLET_SHARED_KINDS_H
 
@@ -100,12 +101,15 @@ enum {
   layer_count
 };
 
-// "None" for any index: instance of a world-space primitive, geometry without light, mesh without normals.
+// CAPLET_NONE is "none" for any index: instance of a world-space primitive, geometry without light,
+// mesh without normals.
 #define CAPLET_NONE 0xffffffffu
 
-// A child reference of a wide node: >= 0 is a node; < 0 is a leaf block: bit 31 set, then the shape kind in CAPLET_LEAF_KIND_BITS bits,
-// then the block's first row in `leaves` (a row is 8 floats). An empty child has an empty box (low +inf, high -inf) and is never entered.
-// Scenes without kinds of high numbers keep more bits for rows: programs are told by the option of this name.
+// A child reference of a wide node is a node if >= 0. If < 0 it is a leaf block: bit 31 set, then
+// the shape kind in CAPLET_LEAF_KIND_BITS bits, then the block's first row in `leaves` (a row is 8
+// floats). An empty child has an empty box (low +inf, high -inf) and is never entered. Scenes
+// without kinds of high numbers keep more bits for rows: the option of this name tells programs the
+// number of bits.
 #ifndef CAPLET_LEAF_KIND_BITS
 #define CAPLET_LEAF_KIND_BITS (shape_count <= 16 ? 4 : shape_count <= 32 ? 5 : 6)
 #endif
@@ -122,8 +126,8 @@ enum {
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
 #define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it
-// First bit of eight for each end of a capsule: how many 255ths of its cap, by height from the top down, are not sampled
-// (host/lower/detail/covered_ends.h).
+// This is the first bit of eight for each end of a capsule: how many 255ths of its cap, by height
+// from the top down, are not sampled (host/lower/detail/covered_ends.h).
 #define CAPLET_LIGHT_COVER_0 16
 #define CAPLET_LIGHT_COVER_1 24
 // InstanceRecord.flags
@@ -139,22 +143,23 @@ enum {
 #define CAPLET_CAP_FLAT 0.0f
 #define CAPLET_CAP_ROUND 1.0f
 #define CAPLET_CAP_OPEN 2.0f
-// Program of a csg shape: below, an operand's number
+// A csg program holds these codes; numbers below them are operands.
 #define CAPLET_CSG_UNION 0x100u
 #define CAPLET_CSG_INTERSECTION 0x101u
 #define CAPLET_CSG_DIFFERENCE 0x102u
 #define CAPLET_CSG_SUBTRACTED 0x80000000u  // with an operand's first surface: its normals flip
-// GGX roughness (pbrt-v4's): below the first in both directions a surface is a perfect mirror or a clear interface, as its lobe is
-// narrower than the rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.
+// These limit GGX roughness (as in pbrt-v4). A surface whose roughness is below the first in both
+// directions is a perfect mirror or a clear interface, because its lobe is narrower than the
+// rounding of a normal in binary32 can resolve; otherwise each direction has at least the second.
 #define CAPLET_ALPHA_SMOOTH 1e-3f
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
 #define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
 #define CAPLET_MATERIAL_MULTISCATTER 2u    // what one scattering loses is made up for (bsdf/multiscatter.cl)
 
-// HitRecord.slot of a path that has come to its end, or has been scattered, before what it hit
+// HitRecord.slot has this value for a path that has ended, or was scattered, before what it hit.
 #define CAPLET_SCATTERED 0xfffffffeu
-// Texels of a level: as floats, as bytes, or as halves of words that number the table's values
+// Texels of a level are floats, bytes, or 16-bit halves of words that index the table's values.
 #define CAPLET_TEXELS_FLOATS 0u
 #define CAPLET_TEXELS_BYTES 1u
 #define CAPLET_TEXELS_NUMBERS 2u
@@ -163,21 +168,23 @@ enum {
 // BoundaryRecord.flags
 #define CAPLET_BOUNDARY_SHEET 1u   // surfaces without an inside of their own: their normals say which side is in
 #define CAPLET_BOUNDARY_CLOSED 2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within
-// Boundaries that are told apart at a point; the numbers of those that there may be
+// These limit the boundaries that are told apart at a point, and the numbers of boundaries in a
+// scene.
 #define CAPLET_HELD_BY 4
 #define CAPLET_MOST_BOUNDARIES 0xfffffeu
-// path_near: a surface by itself; one of several at the same place, with the number of the largest boundary that is left there; what holds the
-// ray is to be counted
+// path_near is one of these: the surface is alone; other surfaces are at the same place; the same,
+// plus the number of the largest boundary that is left there; the boundaries that contain the ray
+// must be counted.
 #define CAPLET_ALONE 0u
 #define CAPLET_NEAR 1u
 #define CAPLET_NEAR_LEFT 2u
 #define CAPLET_UNSETTLED 0xffffffffu
 
-// Fields of textures (textures.def): what spectra of an image are
+// Fields of textures (textures.def) use this to say how colours of an image become spectra.
 #define CAPLET_USE_ALBEDO 0u     // from 0 to 1
 #define CAPLET_USE_UNBOUNDED 1u  // from 0 up
 #define CAPLET_USE_NUMBER 2u     // floats
-// What lies beyond an image
+// These say what lies beyond an image.
 #define CAPLET_WRAP_REPEAT 0u
 #define CAPLET_WRAP_BLACK 1u
 #define CAPLET_WRAP_CLAMP 2u
@@ -186,7 +193,7 @@ enum {
 #define CAPLET_FILTER_BILINEAR 1u
 #define CAPLET_FILTER_TRILINEAR 2u
 #define CAPLET_FILTER_EWA 3u
-// Which coordinates a texture has; the last: those of space
+// These say which coordinates a texture has; the last one uses those of space.
 #define CAPLET_MAPPING_UV 0u
 #define CAPLET_MAPPING_SPHERICAL 1u
 #define CAPLET_MAPPING_CYLINDRICAL 2u
@@ -196,7 +203,7 @@ enum {
 #ifdef __cplusplus
 }
 #endif
-// ViewRecord::strategy: which directions a path takes, and how it finds lights.
+// ViewRecord::strategy says which directions a path takes, and how it finds lights.
 #define CAPLET_STRATEGY_NO_MIS 1u         // light samples and scattered rays are not weighted against each other
 #define CAPLET_STRATEGY_NO_LIGHTS 2u      // lights are not sampled
 #define CAPLET_STRATEGY_UNIFORM 4u        // directions are uniform, not those of the BSDF

@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Sizes that host and kernels share, each in this one place. Valid as OpenCL C 1.2 and as C++.
+// This file holds sizes that host and kernels share. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_LIMITS_H
 #define CAPLET_SHARED_LIMITS_H
 
-// Wavelengths, in nanometres, of every spectral table: 1 nm steps, both ends included.
+// Every spectral table has these wavelengths, in nanometres: 1 nm steps, both ends included.
 #define CAPLET_LAMBDA_MIN 360.0f
 #define CAPLET_LAMBDA_MAX 830.0f
 #define CAPLET_LAMBDA_COUNT 471
-// Steps of the table that wavelengths are sampled by.
+// The table that wavelengths are sampled by has this many steps.
 #define CAPLET_WAVELENGTH_CELLS 1024
 
-// The table of sigmoids by colour (math/uplift.cl): which channel is the largest, its value, and the two others as parts of it.
+// The table of sigmoids by colour (math/uplift.cl) has these sizes: which channel is the largest,
+// its value, and the two others as parts of it.
 #define CAPLET_UPLIFT_VALUES 24
 #define CAPLET_UPLIFT_RATIOS 32
 #define CAPLET_UPLIFT_FLOATS (3 * CAPLET_UPLIFT_VALUES * CAPLET_UPLIFT_RATIOS * CAPLET_UPLIFT_RATIOS * 3)
 
-// The tree.
+// These are sizes of the tree.
 #define CAPLET_WIDTH 8
 #define CAPLET_NODE_FLOATS 56     // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
 #define CAPLET_PACKED_NODE_FLOATS 24  // the same in bytes, for rays that are traced one at a time (kernels/trace/packed.cl)
 #define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
-// The light tree (kernels/lights/tree.cl).
+// These are sizes of the light tree (kernels/lights/tree.cl).
 #define CAPLET_LIGHT_NODE 56            // numbers a node
 #define CAPLET_LIGHT_LEAF 0x80000000u   // of a child: a light
 #define CAPLET_LIGHT_TREE_FROM 16       // lights: fewer are chosen by the table alone
@@ -38,7 +39,7 @@
 namespace caplet {
 #endif
 
-// What stages count (Counters.counters).
+// Stages count these (Counters.counters).
 enum {
   counter_queued,      // paths of this round
   counter_next,        // those that go on

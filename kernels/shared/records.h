@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The records of records.def as plain structs, with their sizes asserted. Valid as OpenCL C 1.2 and as C++.
+// This file defines the records of records.def as plain structs, and asserts their sizes. Valid as
+// OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_RECORDS_H
 #define CAPLET_SHARED_RECORDS_H
 

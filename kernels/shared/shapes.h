@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where the data of shapes lie, and what the traits of shapes.def say. Valid as OpenCL C 1.2 and as C++.
+// This file says where the data of shapes lie, and what the traits of shapes.def say. Valid as
+// OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_SHAPES_H
 #define CAPLET_SHARED_SHAPES_H
 
@@ -17,8 +18,8 @@ namespace caplet {
 #define CAPLET_DATA_OF_vector 3
 #define CAPLET_DATA_OF_index 1
 
-// capsule_at_r: the first datum of a field. capsule_data: how many data a primitive has, and rows of them a leaf block. The count
-// begins anew at each shape.
+// capsule_at_r is the first datum of a field; capsule_data is the number of data of a primitive,
+// and of their rows in a leaf block. The count restarts at each shape.
 enum {
 #define SHAPE(name, traits) name##_before_data = -1,
 #define FIELD(shape, name, type) shape##_at_##name, shape##_last_of_##name = shape##_at_##name + CAPLET_DATA_OF_##type - 1,
@@ -28,14 +29,15 @@ enum {
   shape_data_end
 };
 
-// Bit k: shape kind k. CAPLET_SHAPES: those that the program is for; the code of all others is left out.
+// Bit k stands for shape kind k. CAPLET_SHAPES are the shapes that the program is for; it has no
+// code for others.
 #ifndef CAPLET_SHAPES
 #define CAPLET_SHAPES 0xffffffffffffffffUL
 #endif
 #define CAPLET_HAS_SHAPE(kind) (((CAPLET_SHAPES >> (kind)) & 1u) != 0)
 
 enum {
-  // Whether some shape is tested apart.
+  // has_rare_shape says whether some shape is tested apart.
   has_rare_shape = 0
 #define SHAPE(name, traits) || (CAPLET_HAS_SHAPE(shape_##name) && ((traits)&trait_rare) != 0)
 #include "shared/shapes.def"
@@ -43,7 +45,7 @@ enum {
 };
 
 enum {
-  // Whether some light may be sampled by a ball around it.
+  // any_ball_light says whether some light may be sampled by a ball around it.
   any_ball_light = 0
 #define SHAPE(name, traits) || (CAPLET_HAS_SHAPE(shape_##name) && ((traits)&trait_ball_light) != 0)
 #include "shared/shapes.def"
@@ -52,7 +54,8 @@ enum {
 
 #ifdef __cplusplus
 
-// Traits of a kind. Exactly one of solid, sheet and compound; a light by itself, by its ball, or (instances) not at all.
+// These are the traits of each kind. A kind is exactly one of solid, sheet and compound; it is a
+// light by itself, by its ball, or (instances) not at all.
 constexpr std::uint32_t traits_of[] = {
 #define SHAPE(name, traits) traits,
 #include "shared/shapes.def"
@@ -71,13 +74,13 @@ constexpr std::uint32_t data_of[] = {
 #include "shared/shapes.def"
 #undef SHAPE
 };
-/// Rows of 8 floats of a leaf block: the ids, then the data.
+/// Returns the rows of 8 floats of a leaf block: the ids, then the data.
 constexpr std::uint32_t rows_of(std::uint32_t shape) { return 1 + data_of[shape]; }
 
 constexpr std::uint64_t shape_bit(std::uint32_t shape) { return std::uint64_t{1} << shape; }
 constexpr bool shape_has(std::uint32_t shape, std::uint32_t trait) { return (traits_of[shape] & trait) != 0; }
 
-/// capsule_r(data), of the data of one primitive in order; vectors as a pointer to x.
+/// capsule_r(data) takes the data of one primitive in order; vectors are a pointer to x.
 #define CAPLET_FIELD_scalar(function, at) \
   constexpr float function(const float* data) { return data[at]; }
 #define CAPLET_FIELD_vector(function, at) \

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One work-item: the paths that go on are those of the next round.
+// One work-item moves the counters on: the paths that go on become those of the next round.
 
 static void stage_item(const Stage* g, uint item) {
   __global uint* counters = g->counters.counters;

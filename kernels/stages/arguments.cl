@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The groups of one stage as a struct. A stage's program is the text
+// This file makes the groups of one stage a struct. A stage's program is the text
 //   #define STAGE_NAME extend
 //   #define STAGE_IS_COUNTED   (if GROUP_COUNTERS is one of its groups)
 //   #define STAGE_GROUPS GROUP_TREE GROUP_RAYS   (its row of shared/stages.def or queries.def)

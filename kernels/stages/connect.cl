@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shadow rays: what reaches the light adds its radiance.
+// Traces shadow rays: a light sample that is not occluded adds its radiance.
 #include "trace/shadow.cl"
 
 static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shadow rays, where shapes let some of them through. A light sample's radiance has the chance that its own point stops a ray already.
+// Traces shadow rays where shapes let some of them through. A light sample's radiance already
+// includes the probability that its own point stops a ray.
 #include "trace/alpha.cl"
 #include "trace/shadow.cl"
 

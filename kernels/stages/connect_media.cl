@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shadow rays among media: what is left of their light when they reach it.
+// Traces shadow rays among media and adds the light that is left when they reach it.
 #include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "media/travel.cl"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The crossings of a ray one after the other, those at the same t too; which solids hold it, by those that are still to come.
+// Lists the crossings of a ray one after the other, including those at the same t, and finds which
+// solids contain it from those that are still to come.
 #ifndef CAPLET_STAGES_CROSSINGS_CL
 #define CAPLET_STAGES_CROSSINGS_CL
 
@@ -11,7 +12,8 @@
 
 #define CAPLET_CROSSINGS 16  // that are found at a time; of more at the same t the rest are not told
 
-// What of `ray` has not been told yet, and the next of it.
+// RayCrossings holds the crossings of `ray` that are found but not yet returned, and the number of
+// the next one.
 typedef struct {
   RayRecord ray;
   uint at, count;
@@ -25,7 +27,7 @@ static inline void crossings_begin(RayCrossings* c, RayRecord ray) {
   c->more = 1;
 }
 
-// The next one is hits[at - 1]. 0: there is none.
+// Moves to the next crossing, which is then hits[at - 1]. Returns 0 if there is none.
 static inline int crossings_next(const Tree* tree, RayCrossings* c) {
   if (c->at == c->count) {
     if (!c->more) return 0;
@@ -35,7 +37,8 @@ static inline int crossings_next(const Tree* tree, RayCrossings* c) {
     c->count = min(found, (uint)CAPLET_CROSSINGS);
     if (c->count == 0u) return 0;
     if (c->more) {
-      // Those at the same t as the last one come together.
+      // Crossings at the same t as the last one are kept for the next round, so that they come
+      // together.
       const float last = c->hits[CAPLET_CROSSINGS - 1].t;
       while (c->count > 0u && c->hits[c->count - 1u].t == last) c->count -= 1u;
       if (c->count == 0u) c->count = CAPLET_CROSSINGS;
@@ -46,13 +49,15 @@ static inline int crossings_next(const Tree* tree, RayCrossings* c) {
   return 1;
 }
 
-// How far apart two crossings at about t can be of surfaces that are at one place: what rounding may do to either.
+// Returns how far apart two crossings at about t can be if their surfaces are at one place:
+// rounding may move either by this much.
 static inline float crossings_apart(const RayRecord* ray, float t) {
   const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
   return 0x1p-17f * (max3(fabs(o)) + t * max3(fabs(d))) / length(d);
 }
 
-// Whether the last one is told a second time: of a mesh whose edge or corner the ray meets each face there is a crossing.
+// Returns whether the last crossing is a repetition: where the ray meets an edge or corner of a
+// mesh there is a crossing for each face.
 static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, const Media* media, const RayCrossings* c) {
   const HitRecord hit = c->hits[c->at - 1u];
   const uint geometry = surfaces->primitive_geometry[as_uint(tree->leaves[hit.slot])];
@@ -69,8 +74,8 @@ static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, c
 
 #define CAPLET_HELD_COUNTED 16  // boundaries that are counted at a time
 
-// What holds a ray behind its t_min: the closed solids that it leaves more often than it enters them, and of `before` what goes by
-// normals alone.
+// Finds the boundaries that contain a ray behind its t_min: the closed solids that it leaves more
+// often than it enters them, and from `before` those that are told by normals alone.
 static inline Held held_counted(const Tree* tree, const Surfaces* surfaces, const Media* media, RayRecord ray, Held before) {
   uint boundary[CAPLET_HELD_COUNTED];
   int count[CAPLET_HELD_COUNTED];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Closest hit of every ray in the queue, where shapes let some of them through.
+// Finds the closest hit of every ray in the queue, where shapes let some of them through.
 #include "trace/alpha.cl"
 
 static void stage_item(const Stage* g, uint item) {

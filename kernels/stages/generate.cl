@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Camera rays: one path a work-item. A path's numbers depend on its pixel, its sample and the seed alone.
+// Makes camera rays, one path a work-item. A path's random numbers depend on its pixel, its sample
+// and the seed alone.
 #include "camera/camera.cl"
 #include "math/filter.cl"
 #include "math/spectrum.cl"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What holds the camera: of the first path, or of each where their rays begin at different points.
+// Finds the boundaries that contain the camera: for the first path, or for each one if their rays
+// begin at different points.
 #include "stages/crossings.cl"
 
 static void stage_item(const Stage* g, uint item) {

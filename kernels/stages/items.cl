@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a work-item does: one of `item_count` items of `stage`, or its share of them. Stages that find their data at random places define
-// STAGE_LOOKS_AHEAD and ask for those of items that come next: processors do one work-item after the other.
+// A work-item does one of `item_count` items of `stage`, or its share of them. Stages that find
+// their data at random places define STAGE_LOOKS_AHEAD to prefetch those of the next items, because
+// CPUs do one work-item after the other.
 #ifdef STAGE_TAKES_SHARES
   const uint share = (item_count - 1u) / (uint)get_global_size(0) + 1u, first = (uint)get_global_id(0) * share;
   if (first < item_count) stage_share(&stage, first, min(item_count, first + share));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a path tells the layers of its first hit: BatchRecord.layer_floats floats, of the layers that the film has, in the order of
-// layers.def.
+// A path stores values of its first hit for the layers: BatchRecord.layer_floats floats, for the
+// layers that the film has, in the order of layers.def.
 #ifndef CAPLET_STAGES_LAYERS_CL
 #define CAPLET_STAGES_LAYERS_CL
 
@@ -13,7 +13,7 @@ static inline __global float* layers_of_path(__global const BatchRecord* batch, 
   return path_layers + (size_t)path * batch->layer_floats;
 }
 
-// A camera ray that has hit nothing yet.
+// Stores the values of a camera ray that has hit nothing yet.
 static inline void layers_of_nothing(__global const BatchRecord* batch, uint path, __global float* path_layers) {
   __global float* at = layers_of_path(batch, path, path_layers);
   const uint layers = batch->layers;

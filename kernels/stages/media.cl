@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What paths among media carry beside what all do.
+// This file holds what paths among media carry beside the state of all paths.
 #ifndef CAPLET_STAGES_MEDIA_CL
 #define CAPLET_STAGES_MEDIA_CL
 
@@ -27,13 +27,15 @@ static inline void set_shadow_held(const Stage* g, uint path, Held held, int set
   g->immersion.shadow_around[path] = held.around;
 }
 
-// The path's next ray is in path_ray: into the queue of the next round. `from`: about where it begins.
+// Puts the path, whose next ray is in path_ray, into the queue of the next round. `from`: about
+// where the ray begins.
 static inline void media_goes_on(const Stage* g, Outbox* out, uint path, float3 from, float3 direction) {
   const uint bits = g->batch.batch->sort_bits;
   append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
 }
 
-// What holds a path that goes through what it hit; where other surfaces are there as well, as far as this one tells.
+// Returns the boundaries of a path that goes through its hit. Where other surfaces are at the same
+// place, this is only what this surface tells.
 static inline Held held_behind(const Stage* g, uint path, const HitRecord* hit) {
   Held held = path_held(g, path);
   held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
@@ -41,7 +43,7 @@ static inline Held held_behind(const Stage* g, uint path, const HitRecord* hit) 
   if (near >= CAPLET_NEAR_LEFT) held.around = g->media.boundaries[near - CAPLET_NEAR_LEFT].outside;
   return held;
 }
-// A path that goes on from what it hit, or through it.
+// These are called for a path that goes on from its hit, or through it.
 static inline void media_settles(const Stage* g, uint path) {
   if (g->immersion.path_near[path] != CAPLET_ALONE) g->immersion.path_near[path] = CAPLET_UNSETTLED;
 }
@@ -50,8 +52,9 @@ static inline void media_crossed(const Stage* g, uint path, const HitRecord* hit
   media_settles(g, path);
 }
 
-// 1: the path goes on behind a surface that light passes as if it were not there. Its ray begins where it did, so that the densities
-// of lights are those at the last scattering, and sees nothing up to the surface.
+// Returns 1 if the path goes on behind a surface that lets light pass unchanged. Its ray keeps its
+// origin, so that the densities of lights are those at the last scattering, and its t_min becomes
+// the surface's t.
 static inline int media_passes(const Stage* g, Outbox* out, uint path, uint material, const RayRecord* ray, const HitRecord* hit) {
   if (!material_passes(&g->materials, material)) return 0;
   media_crossed(g, path, hit);
@@ -61,21 +64,22 @@ static inline int media_passes(const Stage* g, Outbox* out, uint path, uint mate
   return 1;
 }
 
-// What is to be known of a light sample beside its radiance: what holds its ray, and the densities.
+// Stores what connect_media needs of a light sample beside its radiance: the boundaries of its ray,
+// and the densities.
 static inline void media_shadow(const Stage* g, uint path, const HitRecord* hit, const Surface* s, float3 wo, const LightSample* light, float bsdf_pdf) {
   const int crosses = dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f;
   set_shadow_held(g, path, crosses ? held_behind(g, path, hit) : path_held(g, path), g->immersion.path_near[path] == CAPLET_ALONE);
   g->immersion.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
 }
 
-// A direction that the hero wavelength alone can have: no other could have made the path.
+// Keeps the hero wavelength alone for a direction that no other wavelength could have made.
 static inline void media_hero_alone(const Stage* g, uint path, float4* throughput, float4 wavelengths) {
   throughput->x /= g->immersion.path_ratio[path].x;
   g->immersion.path_ratio[path] = (float4)(1.0f);
   g->carried.path_wavelengths[path] = (float4)(wavelengths.x);
 }
 
-// The path goes on from a scattering: at a surface, maybe through it.
+// Updates the state for a path that goes on from a scattering at a surface, maybe through it.
 static inline void media_scattered(const Stage* g, uint path, const HitRecord* hit, int crosses) {
   g->immersion.path_light_ratio[path] = g->immersion.path_ratio[path];
   if (crosses)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Paths that a work-item appends to queues. One that does a share of the items takes a block of places at once: where every path took
-// its own, processors would pass the counter's cache line around (decision 26).
+// A work-item appends paths to queues through an outbox. One that does a share of the items takes a
+// block of places at once: if every path took its own place, the cores of a CPU would pass the
+// counter's cache line around (decision 26).
 #ifndef CAPLET_STAGES_OUTBOX_CL
 #define CAPLET_STAGES_OUTBOX_CL
 
@@ -35,14 +36,14 @@ static inline void send_shadow(const Stage* g, Outbox* box) {
   for (uint i = 0; i < count; i++) g->shadows.queue_shadow[begin + i] = box->shadow[i];
 }
 
-// A path goes on, with the key that it is sorted by, where there is one.
+// Appends a path that goes on, with its sort key, where there is one.
 static inline void append_next(const Stage* g, Outbox* box, uint path, uint key) {
   if (box->next_count == CAPLET_OUTBOX_PATHS) send_next(g, box);
   box->next[box->next_count] = path;
   box->keys[box->next_count++] = key;
 }
 
-// A path's shadow ray is to be traced.
+// Appends a path's shadow ray to those to be traced.
 static inline void append_shadow(const Stage* g, Outbox* box, uint path) {
   if (box->shadow_count == CAPLET_OUTBOX_PATHS) send_shadow(g, box);
   box->shadow[box->shadow_count++] = path;

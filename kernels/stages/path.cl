@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The control flow of a path, and which sample dimensions its decisions take.
+// This is the control flow of a path, and the sample dimensions that its decisions take.
 //
 //   generate -> queue
-//   repeat: extend (closest hits) -> shade (ends paths or fills queue_next and queue_shadow) -> connect (shadow rays)
+//   repeat: extend (closest hits) -> shade (ends paths or fills queue_next and queue_shadow)
+//           -> connect (shadow rays)
 //           -> sort_sums, sort_prefix, sort_scatter (queue_next into queue, spatially sorted)
 //   resolve (radiance to film)
 #ifndef CAPLET_STAGES_PATH_CL
@@ -17,7 +18,7 @@
 #define PATH_SPECULAR 1u   // the last scattering was a delta: light sampling could not have found what is hit next
 #define PATH_DEPTH_SHIFT 8
 
-// Addresses of random numbers (dimensions.def).
+// These are addresses of random numbers (dimensions.def).
 enum {
 #define CAMERA_DIMENSION(name) camera_dimension_##name,
 #define SCATTERING_DIMENSION(name)
@@ -37,24 +38,26 @@ enum {
 #define CAMERA_SAMPLE(name) camera_dimension_##name
 #define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
 
-// The density of a scattered direction, as it is weighted against that of light samples. Without such weights it is so
-// small that scattered rays find only lights that samples cannot.
+// Returns the density of a scattered direction for weighting against light samples. Without MIS it
+// is so small that scattered rays find only lights that samples cannot find.
 static inline float path_pdf(__global const ViewRecord* view, float pdf) {
   return (view->strategy & CAPLET_STRATEGY_NO_MIS) != 0u ? 0x1p-60f : pdf;
 }
 
-// PATH_SPECULAR where what is hit next counts in full.
+// Returns PATH_SPECULAR where the next hit counts in full.
 static inline uint path_flag(__global const ViewRecord* view, int specular) {
   return specular || (view->strategy & CAPLET_STRATEGY_NO_LIGHTS) != 0u ? PATH_SPECULAR : 0u;
 }
 
-// A key for numbers that a scattering takes beside those of dimensions.def.
+// Returns a key for numbers that a scattering takes beside those of dimensions.def.
 static inline uint path_hash(PathSample at, uint depth) {
   return hash_combine(hash_combine(at.seed ^ 0xb5297a4du, at.sample), depth);
 }
 
-// Where pixel number `pixel` of a batch is in the full image. A window's pixels are numbered tile by tile of 8 x 8, so that camera rays
-// of near numbers are neighbours: tiles in rows from the top left, within each likewise; those at the right and lower edges are smaller.
+// Returns the place of pixel number `pixel` of a batch in the full image. A window's pixels are
+// numbered tile by tile of 8 x 8, so that camera rays of near numbers are neighbours: tiles in rows
+// from the top left, and pixels within each likewise; those at the right and lower edges are
+// smaller.
 static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
   const uint width = batch->window_width, in_window = batch->pixel_begin + pixel;
   const uint band = in_window / (8u * width), in_band = in_window - band * 8u * width;
@@ -64,19 +67,19 @@ static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
   return (uint2)(batch->window_x + 8u * tile + in_tile % columns, batch->window_y + 8u * band + in_tile / columns);
 }
 
-// The number of a path of a batch: that of sample number `sample` of pixel number `pixel`.
+// Returns the number of a path of a batch: that of sample number `sample` of pixel number `pixel`.
 static inline uint path_number(__global const BatchRecord* batch, uint pixel, uint sample) {
   return batch->by_sample ? sample * batch->pixel_count + pixel : pixel * batch->sample_count + sample;
 }
 
-// Of path number `path` of a batch.
+// Returns the sample of path number `path` of a batch.
 static inline PathSample path_sample(__global const BatchRecord* batch, __global const ViewRecord* view, uint path) {
   const uint2 pixel = batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
   return sample_of_pixel(view, pixel.x, pixel.y, batch->sample_begin + (batch->by_sample
                              ? path / batch->pixel_count : path % batch->sample_count));
 }
 
-// The ray of a path that goes on from a point.
+// Returns the ray of a path that goes on from a point.
 static inline RayRecord path_onward(float3 origin, float3 direction) {
   RayRecord ray;
   ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
@@ -84,9 +87,10 @@ static inline RayRecord path_onward(float3 origin, float3 direction) {
   return ray;
 }
 
-// Russian roulette: whether a path goes on, and with what throughput. The square root keeps paths longer than their
-// throughput alone would, and the first three scatterings always go on: variance falls faster than time grows (decision
-// 3). eta_scale takes the squared indices of refractions out of the throughput.
+// Applies Russian roulette: returns whether a path goes on, and scales its throughput. The square
+// root keeps paths longer than their throughput alone would, and the first three scatterings always
+// go on: variance falls faster than time grows (decision 3). eta_scale takes the squared indices of
+// refractions out of the throughput.
 static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
   const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));
   if (depth < 3 || survival >= 1.0f) return 1;

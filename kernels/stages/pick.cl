@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The nearest crossing of every ray of a query.
+// Finds the nearest crossing of every ray of a query.
 #include "stages/pick_record.cl"
 
 static __global const RayRecord* traced_ray_at(const Stage* g, uint item) { return g->query.query_rays + item; }

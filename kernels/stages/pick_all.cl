@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Every crossing of every ray of a query.
+// Finds every crossing of every ray of a query.
 #include "trace/list.cl"
 
 static void stage_item(const Stage* g, uint item) {

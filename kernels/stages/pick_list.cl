@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The lists that pick_all leaves, as records one after the other.
+// Turns the lists of pick_all into records one after the other.
 #include "stages/pick_record.cl"
 
 static void stage_item(const Stage* g, uint item) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What queries tell of a hit.
+// This file makes the records that queries return of a hit.
 #ifndef CAPLET_STAGES_PICK_RECORD_CL
 #define CAPLET_STAGES_PICK_RECORD_CL
 
 #include "groups.cl"
 #include "shapes/surface.cl"
 
-// Shapes whose two sides are told apart by a normal alone.
+// Returns whether the two sides of a shape are told apart by a normal alone.
 static inline int shape_is_sheet(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \
@@ -19,7 +19,8 @@ static inline int shape_is_sheet(uint shape) {
   }
 }
 
-// The record of a hit of `ray`, or of a miss. The normal points against the ray, from inside too.
+// Returns the record of a hit of `ray`, or of a miss. The normal points against the ray, from
+// inside too.
 static inline PickRecord pick_record(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
   PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE, CAPLET_NONE, 0, 0, 0, 0, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   if (hit->slot == CAPLET_NONE) return out;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Finished paths to the film: one work-item a pixel, or a layer of it, adds its samples to sums that no order of adding can change.
+// Adds finished paths to the film: one work-item a pixel, or a layer of it, adds its samples to
+// sums that do not depend on the order of adding.
 #include "math/exact.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
 #include "stages/layers.cl"
 #include "stages/path.cl"
 
-// CIE XYZ of a sample, scaled to the view's limit where it is beyond; black, and counted, where it is not a number.
+// Returns CIE XYZ of a sample, scaled down to the view's limit if it is beyond; a sample that is
+// not a number is black and counted.
 static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   const float4 radiance = g->radiance.path_radiance[path];
   const float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
@@ -21,8 +23,8 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   return (float3)(0.0f);
 }
 
-// Adds the samples of the batch's pixel `number` to `count` sums of `words` words at `film`. sample: a
-// float4 by the number `path` of a path.
+// Adds the samples of the batch's pixel `number` to `count` sums of `words` words at `film`.
+// sample: a float4 as a function of the number `path` of a path.
 #define ADD_SAMPLES(count, words, unit, sample)                                                     \
   {                                                                                                 \
     ulong4 sums[words];                                                                             \
@@ -40,7 +42,7 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
     }                                                                                               \
   }
 
-// radiance_layer_<name>: the value of a sample.
+// radiance_layer_<name> returns the value of a sample.
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)                        \
   static inline float4 radiance_layer_##name(float3 xyz, __global const ViewRecord* view) {          \
     const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);                                         \

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a work-item of a stage that fills queues does: the including file has defined sending_item(g, out, item).
+// This is the work-item of a stage that fills queues; the including file defines sending_item(g,
+// out, item).
 #ifdef STAGE_TAKES_SHARES
 static void stage_share(const Stage* g, uint begin, uint end) {
   Outbox out;

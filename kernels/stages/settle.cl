@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Before paths travel: what holds those that began where several surfaces are at one place, counted anew; and whether such a place is where they come to.
+// Recounts, before paths travel, the boundaries that contain rays which began where several
+// surfaces are at one place, and finds whether their hits are at such a place.
 #include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "stages/path.cl"
@@ -35,7 +36,7 @@ static void stage_item(const Stage* g, uint item) {
     if (other.slot == hit.slot && other.instance == hit.instance && other.t == hit.t && other.surface == hit.surface) continue;
     if (boundary != CAPLET_NONE) near = CAPLET_NEAR;
     if (!passes || other.t != hit.t) continue;
-    // What stops light at the same t, the nearest hit has hidden.
+    // The nearest hit may hide, at the same t, a surface that stops light.
     const uint geometry = g->surfaces.primitive_geometry[as_uint(g->tree.leaves[other.slot])];
     passes = g->surfaces.geometries[geometry].alpha != CAPLET_NONE || surface_passes(&g->tree, &g->surfaces, &g->materials, &other);
     if (passes) continue;

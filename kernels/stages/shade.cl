@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a ray hit: emission and environment weighted against light sampling (Veach 1997, chapter 9), then one light sample,
-// one BSDF sample and Russian roulette. Fills queue_shadow and queue_next.
+// Shades the hits of rays: emission and environment are weighted against light sampling (Veach
+// 1997, chapter 9), then there is one light sample, one BSDF sample and Russian roulette. Fills
+// queue_shadow and queue_next.
 #include "math/ahead.cl"
 #include "math/vector.cl"
 #include "math/spectrum.cl"
@@ -19,24 +20,24 @@
 #include "stages/media.cl"
 #endif
 
-// The white of the film's colour space, of luminance 1.
+// Returns the white of the film's colour space, of luminance 1.
 static inline float4 film_white(const Stage* g, float4 wavelengths) {
   return spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
 }
 
-// CIE XYZ under white, whatever lights there are: a white surface has albedo 1 1 1.
+// Returns CIE XYZ under white, whatever lights there are: a white surface has albedo 1 1 1.
 static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
   const float4 seen = bsdf_albedo(bsdf, wo_local) * film_white(g, wavelengths);
   return xyz_from_spectrum(g->observer.observer, seen, wavelengths, pdfs);
 }
 
-// Number in the object-id layer: the shape's, or that of the instance which holds it.
+// Returns the number in the object-id layer: the shape's, or that of the instance which holds it.
 static inline uint first_hit_object(const Stage* g, const Surface* s, uint instance) {
   if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE) return g->tree.instances[instance].object;
   return g->surfaces.geometries[s->geometry].object;
 }
 
-// The values of layers.def.
+// Stores the values of layers.def.
 static inline void store_layers(const Stage* g, uint path, const HitRecord* hit, const Surface* s, const Bsdf* bsdf, float3 wo_local,
                                 float3 wo, float4 wavelengths, float4 pdfs) {
   __global float* at = layers_of_path(g->batch.batch, path, g->layers.path_layers);
@@ -60,7 +61,8 @@ static inline void store_layers(const Stage* g, uint path, const HitRecord* hit,
 #undef ID_LAYER
 }
 
-// As light samples of a point with this frame and BSDF see it: what lets nothing through takes light on the side that wo is on alone.
+// Returns the side of a point with this frame and BSDF that light samples see: an opaque surface
+// takes light only on the side that wo is on.
 static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 wo_local) {
 #ifdef CAPLET_LIGHT_TREE
   if (bsdf_is_opaque(bsdf)) return normal_bits(wo_local.z < 0.0f ? -frame->n : frame->n);
@@ -70,27 +72,29 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
   return CAPLET_NONE;
 }
 
-// Returns 1 where directions go by the shading normal alone, as pbrt-v4's do: with bumps and, on surfaces that are open
-// or let light through, with normals of meshes. A closed opaque mesh takes what crosses it as no reflection, and so lets no
-// light through (decision 0023).
+// Returns 1 where directions go by the shading normal alone, as pbrt-v4's do: with bumps and, on
+// surfaces that are open or let light through, with normals of meshes. A closed opaque mesh takes
+// what crosses it as no reflection, and so lets no light through (decision 0023).
 static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int bumped) {
   if (bumped) return 1;
   return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u && ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));
 }
 
-// One light sample: its unoccluded contribution waits in path_shadow_radiance for `connect`.
+// Takes one light sample; its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const HitRecord* hit, const Surface* s, const Frame* frame,
                                 const Bsdf* bsdf, uint side, int by_shading, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
                                 float2 u) {
   LightSample light;
-  // From the side that wo is on, as the density of a reflected ray that meets the light is: within an emitting solid it matters.
+  // The origin is on the side of wo, as for the density of a reflected ray that meets the light:
+  // this matters within an emitting solid.
   const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), side};
   if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
   const float3 wi_local = to_local(frame, light.wi);
   const int transmitted = wi_local.z * wo_local.z < 0.0f;
   const int crosses = dot(light.wi, s->ng) * dot(wo, s->ng) < 0.0f;
   if (transmitted != crosses && !by_shading) return;
-  // A ray that crosses sees its own primitive from the other side than this sample did: it alone finds that light.
+  // A ray that crosses sees its own primitive from the other side than this sample did, so only
+  // that ray finds the light.
   if (crosses && light.index == s->primitive_light) return;
   float bsdf_pdf;
   const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
@@ -110,9 +114,9 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   append_shadow(g, out, path);
 }
 
-// Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the integrator asks for
-// it, in place of bsdf_sample: the integrators "simplepath" and "randomwalk". Returns 0 where nothing is scattered
-// there.
+// Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the
+// integrator asks for it, in place of bsdf_sample: the integrators "simplepath" and "randomwalk".
+// Returns 0 where nothing is scattered there.
 static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_local, float2 u, BsdfSample* s) {
   const int is_sphere = (strategy & CAPLET_STRATEGY_SPHERE) != 0u || !bsdf_is_opaque(bsdf);
   const float z = is_sphere ? 1.0f - 2.0f * u.x : copysign(u.x, wo_local.z), across = sqrt(fmax(0.0f, 1.0f - z * z));
@@ -127,8 +131,8 @@ static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_loca
   return max4(s->weight) > 0.0f;
 }
 
-// Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it does not meet within
-// the greatest distance is white.
+// Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it
+// does not meet within the greatest distance is white.
 static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, const HitRecord* hit, const Surface* s,
                                       float3 wo) {
   __global const ViewRecord* view = g->view.view;
@@ -156,8 +160,8 @@ static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, co
 
 #if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
 #define STAGE_LOOKS_AHEAD
-// Paths come in the order of their rays, so that everything of a path, of what it hit and of the object hit lies anywhere: each is asked
-// for when what leads to it has come.
+// Paths come in the order of their rays, so that the data of a path, of its hit and of the object
+// hit lie anywhere. Each is prefetched when the index that leads to it has arrived.
 static inline void stage_ahead(const Stage* g, uint item, uint count) {
   if (item + 24u < count) {
     const uint path = g->queues.queue[item + 24u];
@@ -222,7 +226,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
     if (max4(emitted) > 0.0f) {
       float weight = 1.0f;
-      // A ray finds light of the primitive that it crossed by this strategy alone.
+      // Only this strategy finds light of the primitive that the ray crossed.
       if (!specular && as_uint(scatter.z) != s.light) {
 #ifdef CAPLET_LIGHT_TREE
         const uint before = g->carried.path_normal[path];
@@ -274,7 +278,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (depth >= g->view.view->max_depth) return;
 #endif
   if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
-    // A direction that depends on wavelength belongs to the hero wavelength alone: the others end here, whatever comes of the samples.
+    // A direction that depends on wavelength belongs to the hero wavelength alone: the others end
+    // here, whatever the samples contribute.
     pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
     throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
 #ifdef SHADE_IN_MEDIA
@@ -301,7 +306,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   float3 wi = to_world(&frame, sample.wi);
   int crosses = dot(wi, s.ng) * dot(wo, s.ng) < 0.0f;
   if (sample.transmitted != crosses && !by_shading) {
-    // Rims of mirrors would be black: what they reflect beneath the surface, they reflect above it.
+    // Rims of mirrors would be black: a reflection that goes beneath the surface is mirrored to
+    // above it.
     if (!sample.specular || (s.flags & CAPLET_GEOMETRY_NORMALS) == 0u) return;
     wi -= 2.0f * dot(wi, s.ng) * s.ng;
     crosses = 0;
@@ -324,7 +330,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
     if (sample.specular) {
       const float side = dot(wo, s.ng) < 0.0f ? -1.0f : 1.0f;
       const float reach = fmax(cone.x, 1e3f * s.error);
-      // eta_scale: the squared index of the side of wi over that of wo.
+      // eta_scale is the squared index of the side of wi over that of wo.
       cone = cone_turned(cone.x, cone.y, side * surface_bend(&g->tree, &g->surfaces, &ray, &hit, &s, reach), fabs(dot(wo, s.ng)),
                          sample.transmitted ? rsqrt(sample.eta_scale) : 0.0f);
     }

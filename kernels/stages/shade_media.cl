@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a ray hit, in a scene with media.
+// Shades the hits of rays in a scene with media.
 #define SHADE_IN_MEDIA
 #include "stages/shade.cl"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The tree of sums over the sort bins: behind the bins lie the sums of blocks of BatchRecord.sort_fan bins, behind these the sums of
-// blocks of as many sums, and so on until there is one. Items of sort_sums and sort_prefix are its blocks, the lowest first.
+// This is the tree of sums over the sort bins: behind the bins lie the sums of blocks of
+// BatchRecord.sort_fan bins, behind these the sums of blocks of as many sums, and so on until there
+// is one. Items of sort_sums and sort_prefix are its blocks, the lowest first.
 #ifndef CAPLET_STAGES_SORT_BLOCKS_CL
 #define CAPLET_STAGES_SORT_BLOCKS_CL
 

@@ -17,7 +17,7 @@ static inline uint sort_cell(float x, float center, float radius, float cells) {
   return (uint)clamp((x - center + radius) * (0.5f * cells / radius), 0.0f, cells - 1.0f);
 }
 
-// Octant above the Morton code of the origin's cell: 2^(3 sort_bits + 3) keys.
+// Returns the octant above the Morton code of the origin's cell: 2^(3 sort_bits + 3) keys.
 static inline uint sort_key(__global const WorldRecord* world, uint sort_bits, float3 origin, float3 direction) {
   const float cells = (float)(1u << sort_bits), radius = fmax(world->radius, 1e-30f);
   const uint x = sort_cell(origin.x, world->center_x, radius, cells);

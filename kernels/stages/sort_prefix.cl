@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Exclusive prefix sums of the sort bins, in place: each block begins where the one above it says, from the last level down to the
-// bins. With all bins in one block that is a work-item that adds up a few thousand numbers.
+// Computes exclusive prefix sums of the sort bins, in place: each block begins where the one above
+// it says, from the last level down to the bins. With all bins in one block one work-item adds up a
+// few thousand numbers.
 #include "stages/sort_blocks.cl"
 
 static void stage_item(const Stage* g, uint item) {

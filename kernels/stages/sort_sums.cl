@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The sum of a block of sort bins, or of sums: level by level, from the bins on.
+// Computes the sum of a block of sort bins, or of sums: level by level, from the bins on.
 #include "stages/sort_blocks.cl"
 
 static void stage_item(const Stage* g, uint item) {

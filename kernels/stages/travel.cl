@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The way of each ray to what it hit, among media: paths that are scattered on it take one light sample and one of the phase function, and go on from there.
+// Moves each ray to its hit through media: paths that are scattered on the way take one light
+// sample and one of the phase function, and go on from there.
 #include "lights/lights.cl"
 #include "math/phase.cl"
 #include "media/travel.cl"
@@ -9,7 +10,7 @@
 #include "stages/media.cl"
 #include "stages/path.cl"
 
-// Random numbers beside those of dimensions.def: how far each of a path's rays comes.
+// These are random numbers beside those of dimensions.def, for the distances of a path's rays.
 #define MEDIUM_SAMPLE(depth) (0x40000000u + (depth))
 
 static inline void sample_medium_light(const Stage* g, Outbox* out, const Scene* scene, uint path, float3 p, float3 direction, float asymmetry, Held held, int settled, float4 throughput,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Subsurfaces: what light meets from where it comes in through the boundary until it is out again counts as one scattering, as where pbrt-v4 has a
-// profile of diffusion. All that follows the first is not held against the greatest depth of a path, but against a roulette of its own.
+// In subsurfaces everything that light meets from where it enters through the boundary until it
+// leaves counts as one scattering, as where pbrt-v4 has a profile of diffusion. Scatterings after
+// the first do not count towards the greatest depth of a path, but have a roulette of their own.
 #ifndef CAPLET_STAGES_WITHIN_CL
 #define CAPLET_STAGES_WITHIN_CL
 
@@ -13,7 +14,7 @@ static inline int medium_is_within(const Media* media, uint medium) {
   return medium != CAPLET_NONE && (media->mediums[medium].flags & CAPLET_MEDIUM_SUBSURFACE) != 0u;
 }
 
-// Whether a ray meets the boundary of a subsurface from within.
+// Returns whether a ray meets the boundary of a subsurface from within.
 static inline int boundary_is_met_within(const Stage* g, uint path, const HitRecord* hit) {
   const uint boundary = boundary_of(&g->tree, &g->surfaces, &g->media, hit);
   if (boundary == CAPLET_NONE) return 0;
@@ -24,8 +25,10 @@ static inline int boundary_is_met_within(const Stage* g, uint path, const HitRec
   return held_medium(&g->media, &here) == medium;
 }
 
-// After `within` scatterings that did not count, one more: whether the path goes on, by the random number u. Light leaves half of space that absorbs
-// nothing with a tail of n^-1/2; going on with 1 - 1 / 2n leaves weights of such a tail with a finite mean and, beyond 2,048, none is endless.
+// Returns whether a path goes on, by the random number u, after `within` scatterings that did not
+// count and one more. Light leaves a half-space that absorbs nothing with a tail of n^-1/2; going
+// on with 1 - 1 / 2n leaves weights of such a tail with a finite mean and, beyond 2,048, none is
+// endless.
 static inline int within_survives(uint within, float u, float4* throughput) {
   if (within < 64u) return 1;
   const float ends = fmax(0.5f / (float)within, 0x1p-12f);

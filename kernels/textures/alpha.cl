@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The chance of a ray to be stopped by a shape, 0 to 1.
+// This texture is the probability that a shape stops a ray, 0 to 1.
 #ifndef CAPLET_TEXTURES_ALPHA_CL
 #define CAPLET_TEXTURES_ALPHA_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear between values at the corners of the unit square, and on beyond it.
+// This texture is bilinear between values at the corners of the unit square, and extrapolates
+// beyond it.
 #ifndef CAPLET_TEXTURES_BILERP_CL
 #define CAPLET_TEXTURES_BILERP_CL
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Squares, or cubes, of unit size: the first texture where the sum of their numbers is even. What is seen of several at once is their
-// mean over a box, in closed form.
+// This texture has squares, or cubes, of unit size: the first texture where the sum of their
+// numbers is even. A footprint over several of them takes their mean over a box, in closed form.
 #ifndef CAPLET_TEXTURES_CHECKERBOARD_CL
 #define CAPLET_TEXTURES_CHECKERBOARD_CL
 
 #include "textures/mapping.cl"
 
-// Mean over [x - width / 2, x + width / 2] of 1 where floor(x) is even and -1 where it is odd.
+// Returns the mean over [x - width / 2, x + width / 2] of 1 where floor(x) is even and -1 where it
+// is odd.
 static inline float checks_mean(float x, float width) {
   const float low = x - 0.5f * width, high = x + 0.5f * width, half_low = floor(low) * 0.5f;
-  // Whole numbers as floats: their halves tell odd from even at any size.
+  // These are whole numbers as floats: their halves tell odd from even at any size.
   if (!(floor(low) != floor(high))) return half_low != floor(half_low) ? -1.0f : 1.0f;
-  // Its integral goes up to 1 and down again: from a point modulo 2, which keeps the digits.
+  // The integral goes up to 1 and down again: taking points modulo 2 keeps the digits.
   const float from = low - 2.0f * floor(0.5f * low), to = from + width;
   const float before = 1.0f - fabs(from - 1.0f), after = 1.0f - fabs(to - 2.0f * floor(0.5f * to) - 1.0f);
   return (after - before) / width;

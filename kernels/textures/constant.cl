@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One value everywhere.
+// This texture has one value everywhere.
 #ifndef CAPLET_TEXTURES_CONSTANT_CL
 #define CAPLET_TEXTURES_CONSTANT_CL
 

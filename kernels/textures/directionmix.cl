@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Between two textures by the angle of the surface: the first where its normal is along a direction, the second across it.
+// This texture mixes two textures by the angle of the surface: the first where its normal is along
+// a direction, the second across it.
 #ifndef CAPLET_TEXTURES_DIRECTIONMIX_CL
 #define CAPLET_TEXTURES_DIRECTIONMIX_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How far a surface is moved along its normal: of it, where a material has one, the change alone is rendered (bsdf/bump.cl).
+// This texture is how far a surface is moved along its normal. Where a material has one, only its
+// effect on the normal is rendered (bsdf/bump.cl).
 #ifndef CAPLET_TEXTURES_DISPLACEMENT_CL
 #define CAPLET_TEXTURES_DISPLACEMENT_CL
 

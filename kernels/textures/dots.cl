@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Disks of radius 0.35 in some of the unit squares about whole points, moved within them at random.
+// This texture has disks of radius 0.35 in some of the unit squares about whole points, moved
+// within them at random.
 #ifndef CAPLET_TEXTURES_DOTS_CL
 #define CAPLET_TEXTURES_DOTS_CL
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// k of a metal of index 1 whose reflectance r at normal incidence a texture tells: r = k^2 / (4 + k^2); r at most 0.9999 (pbrt-v4).
+// Computes k of a metal of index 1 from a texture of its reflectance r at normal incidence: r = k^2
+// / (4 + k^2); r at most 0.9999 (pbrt-v4).
 #ifndef CAPLET_TEXTURES_EXTINCTION_CL
 #define CAPLET_TEXTURES_EXTINCTION_CL
 

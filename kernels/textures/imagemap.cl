@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// An image: filtered as it is, then scaled, and a spectrum of its colour. Its bottom row is at t = 0.
+// This texture is an image: it is filtered as it is, then scaled, and its colour becomes a
+// spectrum. Its bottom row is at t = 0.
 #ifndef CAPLET_TEXTURES_IMAGEMAP_CL
 #define CAPLET_TEXTURES_IMAGEMAP_CL
 
@@ -17,7 +18,7 @@ static inline float4 imagemap_texture_at(const TexturePoint* at, __global const 
   float4 value = image_filtered(at->materials, image, filter, imagemap_texture_wrap(data), imagemap_texture_maxanisotropy(data),
                                 (float2)(c.st.x, 1.0f - c.st.y), CAPLET_FILTER_SIDES * (float2)(c.dx.x, -c.dx.y),
                                 CAPLET_FILTER_SIDES * (float2)(c.dy.x, -c.dy.y));
-  // A float of a picture in colour is the mean of its channels, or its alpha where it has one.
+  // As a number, a picture in colour has the mean of its channels, or its alpha where it has one.
   if (use == CAPLET_USE_NUMBER && image->channels != 1u)
     value = (float4)(image->channels == 4u ? value.w : (value.x + value.y + value.z) * (1.0f / 3.0f));
   value *= imagemap_texture_scale(data);

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Images of textures: texels, what lies beyond them, and filters by mip levels.
+// This file reads images of textures: texels, values beyond their edges, and filters by mip levels.
 #ifndef CAPLET_TEXTURES_IMAGES_CL
 #define CAPLET_TEXTURES_IMAGES_CL
 
 #include "textures/texture_types.cl"
 #include "shared/octahedron.h"
 
-// Number x of n that repeat, for any x.
+// Returns x modulo n, from 0 on, for any x.
 static inline int repeated(int x, int n) {
   x %= n;
   return x < 0 ? x + n : x;
 }
 
-// Texel (x, y) of a level, which may lie beyond its edges: grey in all channels, or red, green, blue and alpha.
+// Returns texel (x, y) of a level, which may lie beyond its edges: grey in all channels, or red,
+// green, blue and alpha.
 static inline float4 image_texel(const Materials* materials, __global const ImageRecord* image, uint level, uint wrap, int x, int y) {
   __global const uint* texels = materials->texels;
   __global const uint* of = texels + image->levels_begin + 4u * level;
@@ -46,13 +47,15 @@ static inline float4 image_texel(const Materials* materials, __global const Imag
   return (float4)(decoded[bytes[0]], decoded[bytes[1]], decoded[bytes[2]], channels == 4u ? (float)bytes[3] * (1.0f / 255.0f) : 1.0f);
 }
 
-// st within what an image is asked for: one that repeats has the same everywhere, of the others nothing is new far away.
+// Limits st to where an image is evaluated: one that repeats is the same everywhere, and the others
+// do not change far away.
 static inline float2 image_st(float2 st, uint wrap) {
   if (!isfinite(st.x + st.y)) return (float2)(0.0f);
   return wrap == CAPLET_WRAP_REPEAT ? st - floor(st) : clamp(st, -4.0f, 5.0f);
 }
 
-// Texels about a point with its weights; (0, 0) is the corner of the first texel, (1, 1) that of the last.
+// Interpolates between the texels about a point; (0, 0) is the corner of the first texel, (1, 1)
+// that of the last.
 static inline float4 image_bilinear(const Materials* materials, __global const ImageRecord* image, uint level, uint wrap, float2 st) {
   __global const uint* of = materials->texels + image->levels_begin + 4u * level;
   const float x = st.x * (float)of[1] - 0.5f, y = st.y * (float)of[2] - 0.5f;
@@ -68,7 +71,7 @@ static inline float4 image_point(const Materials* materials, __global const Imag
   return image_texel(materials, image, level, wrap, (int)floor(st.x * (float)of[1]), (int)floor(st.y * (float)of[2]));
 }
 
-// Between the levels about `level`, a number of halvings.
+// Interpolates between the levels about `level`, a number of halvings.
 static inline float4 image_trilinear(const Materials* materials, __global const ImageRecord* image, float level, uint wrap, float2 st) {
   const uint last = image->levels - 1u;
   if (!(level > 0.0f)) return image_bilinear(materials, image, 0u, wrap, st);
@@ -78,8 +81,9 @@ static inline float4 image_trilinear(const Materials* materials, __global const 
   return (1.0f - part) * image_bilinear(materials, image, below, wrap, st) + part * image_bilinear(materials, image, below + 1u, wrap, st);
 }
 
-// The image at st; dx, dy: the sides of what is to be averaged. Filters by their names (kinds.h): all but EWA take the level whose texels
-// are as large as the greatest extent of the sides; EWA looks along the longer side with the level of the shorter one, at most
+// Returns the image at st; dx, dy: the sides of the footprint to be averaged. Filters by their
+// names (kinds.h): all but EWA take the level whose texels are as large as the greatest extent of
+// the sides; EWA takes samples along the longer side with the level of the shorter one, at most
 // max_anisotropy times.
 static inline float4 image_filtered(const Materials* materials, __global const ImageRecord* image, uint filter, uint wrap, float max_anisotropy,
                                     float2 st, float2 dx, float2 dy) {
@@ -92,7 +96,7 @@ static inline float4 image_filtered(const Materials* materials, __global const I
     float2 along = x_is_longer ? dx : dy;
     const float longer = sqrt(dot(along, along)), shorter = x_is_longer ? sqrt(dot(dy, dy)) : sqrt(dot(dx, dx));
     const float most = clamp(max_anisotropy, 1.0f, 16.0f);
-    // Also where the shorter side is less than a texel.
+    // Probes are at least a texel wide, also where the shorter side is less.
     const float wide = fmax(fmax(shorter, longer / most), 1.0f);
     const int probes = isfinite(longer) ? clamp((int)ceil(longer / wide), 1, 16) : 1;
     along /= size;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Coordinates of textures, as pbrt-v4 has them (Pharr, Jakob and Humphreys 2023, 10.2).
+// Computes coordinates of textures, as pbrt-v4 has them (Pharr, Jakob and Humphreys 2023, 10.2).
 #ifndef CAPLET_TEXTURES_MAPPING_CL
 #define CAPLET_TEXTURES_MAPPING_CL
 
 #include "textures/texture_types.cl"
 
-// Coordinates, and how they change along the sides of the place.
+// TextureST holds coordinates, and their changes along the sides of the place.
 typedef struct {
   float2 st, dx, dy;
 } TextureST;
 
-// A point of space with the sides of the place, under a matrix.
+// TextureXYZ is a point of space with the sides of the place, under a matrix.
 typedef struct {
   float3 p, dx, dy;
 } TextureXYZ;
@@ -22,7 +22,7 @@ static inline TextureXYZ texture_xyz(const TexturePoint* at, __global const floa
   return out;
 }
 
-// s: angle from +z over pi; t: angle around it from +x, in turns.
+// s is the angle from +z over pi, t the angle around it from +x, in turns.
 static inline TextureST spherical_st(TextureXYZ at) {
   const float across2 = at.p.x * at.p.x + at.p.y * at.p.y, across = sqrt(across2);
   const float around = atan2(at.p.y, at.p.x) * (0.5f * CAPLET_INV_PI);
@@ -35,7 +35,7 @@ static inline TextureST spherical_st(TextureXYZ at) {
   return out;
 }
 
-// s: angle around z from -x, in turns; t: z.
+// s is the angle around z from -x, in turns, t is z.
 static inline TextureST cylindrical_st(TextureXYZ at) {
   const float across2 = at.p.x * at.p.x + at.p.y * at.p.y;
   TextureST out = {(float2)(0.5f + atan2(at.p.y, at.p.x) * (0.5f * CAPLET_INV_PI), at.p.z), (float2)(0.0f, at.dx.z), (float2)(0.0f, at.dy.z)};
@@ -46,7 +46,7 @@ static inline TextureST cylindrical_st(TextureXYZ at) {
   return out;
 }
 
-// mapping: a field of that type.
+// Returns the coordinates by `mapping`, a field of that type.
 static inline TextureST texture_st(const TexturePoint* at, __global const float* mapping) {
   const uint kind = as_uint(mapping[0]);
   __global const float* m = mapping + 1;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Layers along y, bent by noise, in pbrt-v4's colours.
+// This texture has layers along y, bent by noise, in pbrt-v4's colours.
 #ifndef CAPLET_TEXTURES_MARBLE_CL
 #define CAPLET_TEXTURES_MARBLE_CL
 
 #include "math/uplift.cl"
 #include "textures/noise.cl"
 
-// Control points of the colours: six cubic Bezier curves, each of which takes four, one further on than the last.
+// These are control points of the colours: six cubic Bezier curves, each of which takes four
+// points, one further on than the last.
 __constant float marble_colors[27] = {0.58f, 0.58f, 0.6f, 0.58f, 0.58f, 0.6f, 0.58f, 0.58f, 0.6f, 0.5f, 0.5f, 0.5f, 0.6f, 0.59f,
                                       0.58f, 0.58f, 0.58f, 0.6f, 0.58f, 0.58f, 0.6f, 0.2f, 0.2f, 0.33f, 0.58f, 0.58f, 0.6f};
 

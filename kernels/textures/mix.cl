@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Between two textures, by one of floats.
+// This texture mixes two textures by one of floats.
 #ifndef CAPLET_TEXTURES_MIX_CL
 #define CAPLET_TEXTURES_MIX_CL
 

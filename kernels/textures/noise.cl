@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Gradient noise (Perlin, "Improving noise", SIGGRAPH 2002, with the permutation published there) and sums of its octaves (Pharr, Jakob and
-// Humphreys 2023, 10.6, as pbrt-v4 has them).
+// Computes gradient noise (Perlin, "Improving noise", SIGGRAPH 2002, with the permutation published
+// there) and sums of its octaves (Pharr, Jakob and Humphreys 2023, 10.6, as pbrt-v4 has them).
 #ifndef CAPLET_TEXTURES_NOISE_CL
 #define CAPLET_TEXTURES_NOISE_CL
 
@@ -26,7 +26,8 @@ __constant uchar noise_permutation[256] = {
     184, 84, 204, 176, 115, 121, 50, 45, 127, 4, 150, 254, 138, 236, 205, 93,
     222, 114, 67, 29, 24, 72, 243, 141, 128, 195, 78, 66, 215, 61, 156, 180};
 
-// The product of (x, y, z) with one of twelve directions to the edges of a cube, by the whole coordinates of a corner.
+// Returns the product of v with one of twelve directions to the edges of a cube, chosen by the
+// whole coordinates of a corner.
 static inline float noise_gradient(int3 corner, float3 v) {
   const uint a = (uint)noise_permutation[corner.x & 255] + (uint)corner.y;
   const uint b = (uint)noise_permutation[a & 255u] + (uint)corner.z;
@@ -41,7 +42,8 @@ static inline float noise_between(int3 corner, float3 v, float weight) {
   return low + weight * (high - low);
 }
 
-// In (-1, 1), 0 at whole points. 0 beyond 2^24, where floats know no others, and of what is not a number.
+// Returns noise in (-1, 1), 0 at whole points. It is 0 beyond 2^24, where all floats are whole, and
+// for NaN.
 static inline float noise_at(float3 p) {
   if (!(max3(fabs(p)) < 16777216.0f)) return 0.0f;
   const float3 whole = floor(p), v = p - whole;
@@ -56,7 +58,8 @@ static inline float noise_at(float3 p) {
   return y0 + w.z * (y1 - y0);
 }
 
-// How many octaves can be seen of a footprint, up to `octaves`: those whose cells are twice as large.
+// Returns how many octaves, up to `octaves`, a footprint resolves: those whose cells are twice as
+// large.
 static inline float noise_octaves(TextureXYZ at, uint octaves) {
   const float widest = fmax(dot(at.dx, at.dx), dot(at.dy, at.dy));
   return clamp(-1.0f - 0.5f * log2(fmax(widest, 1e-37f)), 0.0f, (float)octaves);
@@ -67,7 +70,8 @@ static inline float noise_fade(float x) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Octaves of noise, each 1.99 times as fine as the last and `roughness` times as high; the last fades out.
+// Sums octaves of noise, each 1.99 times as fine as the last and `roughness` times as high; the
+// last fades out.
 static inline float noise_fbm(TextureXYZ at, float roughness, uint octaves) {
   const float seen = noise_octaves(at, octaves);
   const int whole = (int)seen;
@@ -81,7 +85,7 @@ static inline float noise_fbm(TextureXYZ at, float roughness, uint octaves) {
   return sum;
 }
 
-// The same of its magnitude, whose mean of 0.2 stands for what cannot be seen.
+// Sums octaves of the magnitude of noise; its mean of 0.2 stands for octaves that are not resolved.
 static inline float noise_turbulence(TextureXYZ at, float roughness, uint octaves) {
   const float seen = noise_octaves(at, octaves);
   const int whole = (int)seen;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Normals by the texels of an image that repeats: (2 r - 1, 2 g - 1, 2 b - 1) in the frame of the surface.
+// This texture gives normals by the texels of an image that repeats: (2 r - 1, 2 g - 1, 2 b - 1) in
+// the frame of the surface.
 #ifndef CAPLET_TEXTURES_NORMALMAP_CL
 #define CAPLET_TEXTURES_NORMALMAP_CL
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The square root of a texture, 0 of what is negative.
+// This texture is the square root of a texture, 0 where that is negative.
 #ifndef CAPLET_TEXTURES_ROOT_CL
 #define CAPLET_TEXTURES_ROOT_CL
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A texture times one of floats.
+// This texture is a texture times one of floats.
 #ifndef CAPLET_TEXTURES_SCALE_CL
 #define CAPLET_TEXTURES_SCALE_CL
 

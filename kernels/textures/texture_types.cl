@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the textures share.
+// This file holds what the textures share.
 #ifndef CAPLET_TEXTURES_TEXTURE_TYPES_CL
 #define CAPLET_TEXTURES_TEXTURE_TYPES_CL
 
@@ -10,7 +10,8 @@
 #include "math/vector.cl"
 #include "shared/families.h"
 
-// A point of a surface, in the world, and what of it one look takes in: a parallelogram, by its sides.
+// TexturePlace is a point of a surface, in the world, and its footprint: a parallelogram, by its
+// sides.
 typedef struct {
   float2 uv;
   float3 p, n;         // n: geometric normal, unit
@@ -18,11 +19,11 @@ typedef struct {
   float2 duvdx, duvdy; // along them
 } TexturePlace;
 
-// Images and checkerboards are means over this many times the sides of a place, about what pbrt-v4's filters of them
-// take in; noise is filtered by the sides as they are.
+// Images and checkerboards are means over this many times the sides of a place, about what
+// pbrt-v4's filters of them take in; noise is filtered by the sides as they are.
 #define CAPLET_FILTER_SIDES 2.0f
 
-// A place at four wavelengths (nm).
+// TexturePoint is a place at four wavelengths (nm).
 typedef struct {
   const Materials* materials;
   const Spectra* spectra;
@@ -30,7 +31,7 @@ typedef struct {
   float4 lambda;
 } TexturePoint;
 
-// The point with coordinates uv of a surface in the plane z = 0.
+// Returns the point with coordinates uv of a surface in the plane z = 0.
 static inline TexturePlace texture_place(float2 uv) {
   const TexturePlace place = {uv, (float3)(uv.x, uv.y, 0.0f), (float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), (float2)(0.0f)};
   return place;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The one door to all textures. A texture of textures.def is a file of this folder by its name, with
+// This file dispatches to all textures. A texture of textures.def has a file in this folder with
+// its name, which defines
 //   float4 NAME_texture_at(at, data, values)
-// its value at the four wavelengths; that of a texture of floats is component 0. values: of the steps before, by the numbers that the
-// fields of type texture hold.
+// It returns the value at the four wavelengths; that of a texture of floats is component 0. values:
+// those of the steps before, by the numbers that the fields of type texture hold.
 #ifndef CAPLET_TEXTURES_TEXTURES_CL
 #define CAPLET_TEXTURES_TEXTURES_CL
 
@@ -12,14 +13,15 @@
 #include "textures/{textures}.cl"
 
 enum {
-  // Whether the program has any.
+  // any_texture says whether the program has any.
   any_texture = 0
 #define TEXTURE(name) || 1
 #include "rows/textures.def"
 #undef TEXTURE
 };
 
-// The texture whose first step is number `first`: its steps in order, the last of which is its value.
+// Evaluates the texture whose first step is number `first`: its steps in order, the last of which
+// is its value.
 static inline float4 texture_eval(uint first, const TexturePoint* at) {
   const Materials* materials = at->materials;
   float4 values[CAPLET_TEXTURE_MAX_STEPS];
@@ -42,7 +44,8 @@ static inline float4 texture_eval(uint first, const TexturePoint* at) {
   return values[steps - 1];
 }
 
-// The chance, 0 to 1, that a surface stops a ray at a point: that of the texture with the first step `alpha`. n: geometric normal, unit.
+// Returns the probability, 0 to 1, that a surface stops a ray at a point: that of the texture with
+// the first step `alpha`. n: geometric normal, unit.
 static inline float alpha_chance(const Materials* materials, const Spectra* spectra, uint alpha, float2 uv, float3 p, float3 n) {
   TexturePoint at = {materials, spectra, texture_place(uv), (float4)(550.0f)};
   at.place.p = p;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Waves of a height that varies slowly, as wind makes them: pbrt-v4's numbers of octaves.
+// This texture has waves of a height that varies slowly, as wind makes them, with pbrt-v4's numbers
+// of octaves.
 #ifndef CAPLET_TEXTURES_WINDY_CL
 #define CAPLET_TEXTURES_WINDY_CL
 

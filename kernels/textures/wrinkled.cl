@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Octaves of the magnitude of noise in space.
+// This texture is a sum of octaves of the magnitude of noise in space.
 #ifndef CAPLET_TEXTURES_WRINKLED_CL
 #define CAPLET_TEXTURES_WRINKLED_CL
 

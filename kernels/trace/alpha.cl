@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Rays among shapes that do not stop all of them: by a number that follows from the ray, the point and the primitive alone.
+// Traces rays among shapes that do not stop all of them: a number that depends on the ray, the
+// point and the primitive alone decides.
 #ifndef CAPLET_TRACE_ALPHA_CL
 #define CAPLET_TRACE_ALPHA_CL
 
@@ -10,7 +11,7 @@
 #include "textures/textures.cl"
 #include "trace/trace.cl"
 
-// What hits are asked about.
+// AlphaScene is the part of the scene that hits are tested with.
 typedef struct {
   Tree tree;
   Surfaces surfaces;
@@ -31,7 +32,7 @@ static inline int alpha_stops(const AlphaScene* scene, const RayRecord* ray, con
   return unit_float(number) < chance;
 }
 
-// The nearest hit that stops the ray.
+// Returns the nearest hit that stops the ray.
 static inline HitRecord trace_stopped(const AlphaScene* scene, RayRecord ray) {
   for (;;) {
     const HitRecord hit = trace_closest(&scene->tree, ray);

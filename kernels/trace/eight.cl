@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Eight lanes and eight bytes in another order. Compilers for processors with such instructions are told of them, where they know their
-// names (CAPLET_EIGHT_IS_FAST); the portable way, which CAPLET_PORTABLE asks for everywhere, gives the same.
+// Permutes eight lanes and eight bytes. For processors with such instructions their builtins are
+// used, where the compiler has them (CAPLET_EIGHT_IS_FAST); the portable code, which
+// CAPLET_PORTABLE asks for everywhere, gives the same.
 #ifndef CAPLET_TRACE_EIGHT_CL
 #define CAPLET_TRACE_EIGHT_CL
 
@@ -14,7 +15,8 @@
 #endif
 #endif
 
-// Entry m: the numbers of the bits set in m from the highest down, a byte each, the highest in the least significant byte.
+// Entry m holds the numbers of the bits set in m from the highest down, a byte each, the highest in
+// the least significant byte.
 __constant ulong set_bits[256] = {
     0x0UL, 0x0UL, 0x1UL, 0x1UL, 0x2UL, 0x2UL, 0x102UL, 0x102UL, 0x3UL, 0x3UL, 0x103UL, 0x103UL, 0x203UL, 0x203UL, 0x10203UL,
     0x10203UL, 0x4UL, 0x4UL, 0x104UL, 0x104UL, 0x204UL, 0x204UL, 0x10204UL, 0x10204UL, 0x304UL, 0x304UL, 0x10304UL, 0x10304UL,
@@ -43,7 +45,7 @@ __constant ulong set_bits[256] = {
     0x10204050607UL, 0x304050607UL, 0x304050607UL, 0x10304050607UL, 0x10304050607UL, 0x20304050607UL, 0x20304050607UL,
     0x1020304050607UL, 0x1020304050607UL};
 
-// Lane i of the result: lane order[i] (0 to 7) of x.
+// Lane i of the result is lane order[i] (0 to 7) of x.
 static inline int8 permuted(int8 x, int8 order) {
 #ifdef CAPLET_EIGHT_IS_FAST
   typedef int caplet_v8si __attribute__((vector_size(32)));
@@ -53,7 +55,7 @@ static inline int8 permuted(int8 x, int8 order) {
 #endif
 }
 
-// Byte i of the result: byte order[i] (0 to 7) of x.
+// Byte i of the result is byte order[i] (0 to 7) of x.
 static inline uchar8 permuted_bytes(uchar8 x, uchar8 order) {
 #ifdef CAPLET_EIGHT_IS_FAST
   typedef char caplet_v16qi __attribute__((vector_size(16)));
@@ -64,7 +66,8 @@ static inline uchar8 permuted_bytes(uchar8 x, uchar8 order) {
 #endif
 }
 
-// Bit i of the result: bit k of byte i. The products of bit 8 i with 2^(56 - 7 i) meet at 56 + i, and no others get there.
+// Bit i of the result is bit k of byte i. The products of bit 8 i with 2^(56 - 7 i) meet at 56 + i,
+// and no others get there.
 static inline uint bit_column(ulong bytes, int k) { return (uint)(((bytes >> k & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56); }
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a ray hits of a leaf block, and which of two hits counts.
+// Finds the hits of a ray with a leaf block, and decides which of two hits counts.
 #ifndef CAPLET_TRACE_HITS_CL
 #define CAPLET_TRACE_HITS_CL
 
@@ -15,8 +15,9 @@ static inline int line_is_valid(float3 o, float3 d) {
   return dd > 0.0f && dd < INFINITY && oo < INFINITY;
 }
 
-// Of two hits at the same t the one that counts: of the world's shapes before those of the scene's instances, these in their order, then
-// of the smaller primitive. Slots and trees that were built otherwise, or moved, cannot show. Read at ties alone.
+// Says which of two hits at the same t counts: hits of the world's shapes come before those of the
+// scene's instances, these in their order, then the smaller primitive comes first. So the hit does
+// not depend on slots, or on how trees were built. The records are read at ties alone.
 static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot, uint other_instance) {
   if (CAPLET_HAS_SHAPE(shape_instance) && instance != other_instance) {
     // Trees of world shapes have no object number: CAPLET_NONE + 1 is 0.
@@ -29,7 +30,8 @@ static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint
   return instance < other_instance;
 }
 
-// The nearest hit that is found so far, and where there is none, how far a ray goes: a hit at exactly its end is none.
+// NearestHit is the nearest hit found so far, or, where there is none, how far a ray goes: a hit at
+// exactly its end is none.
 typedef struct {
   float t;
   uint slot, instance;
@@ -52,12 +54,14 @@ static inline HitRecord hit_record(const NearestHit* nearest) {
   return hit;
 }
 
-// Keeps the nearest of what the ray hits of the lanes from `lane` on of the leaf block at `row`. `instance`: that the ray is in.
+// Keeps the nearest of the ray's hits with the lanes from `lane` on of the leaf block at `row`.
+// `instance`: that the ray is in.
 static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeRay* shape, uint instance, real_mask ok, real t,
                              real_mask side, NearestHit* nearest) {
   __global const float* block = tree->leaves + (size_t)row * 8;
   ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
-  // One by one: PoCL 6.0 aborts where the two are chosen between by the side (docs/drivers.md).
+  // These are tested one by one: PoCL 6.0 aborts where the two are chosen between by the side
+  // (docs/drivers.md).
   if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
   if (shape->sees_leaving == 0) ok &= (side & int_of(CAPLET_LEAVING)) == 0;
   uint bits = mask_bits(ok);
@@ -81,7 +85,8 @@ static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeR
   } while (bits != 0);
 }
 
-// What the ray hits of these lanes, whose shapes are of one kind, and not rare where it is traced alone.
+// Tests the ray with these lanes, whose shapes are of one kind, and not rare where it is traced
+// alone.
 static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
   real t;
   real_mask side;

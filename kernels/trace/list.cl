@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Hit lists: all crossings of a ray, in order.
+// Makes hit lists: all crossings of a ray, in order.
 #ifndef CAPLET_TRACE_LIST_CL
 #define CAPLET_TRACE_LIST_CL
 
@@ -11,7 +11,7 @@
 #define CAPLET_LIST_SPACE __global  // where lists are
 #endif
 
-// The list of one ray while it is made: the nearest crossings so far, in order.
+// HitList is the list of one ray while it is made: the nearest crossings so far, in order.
 typedef struct {
   const Tree* tree;
   CAPLET_LIST_SPACE HitRecord* sorted;
@@ -21,7 +21,8 @@ typedef struct {
   float t_begin;  // nor do those at or before this t
 } HitList;
 
-// By t; leaving before entering, so that solids that touch are not nested for an instant; then tie_is_before, surface.
+// Orders hits by t; leaving before entering, so that solids that touch are not nested for an
+// instant; then by tie_is_before and surface.
 static inline int hit_is_before(const Tree* tree, const HitRecord* a, CAPLET_LIST_SPACE const HitRecord* b) {
   if (a->t != b->t) return a->t < b->t;
   const uint a_leaves = a->surface & CAPLET_LEAVING, b_leaves = b->surface & CAPLET_LEAVING;
@@ -49,7 +50,7 @@ static inline void list_add(HitList* list, float t, uint slot, uint instance, ui
   list->sorted[place] = hit;
 }
 
-// The crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
+// Adds the crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
 static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray, __global const float* block, uint lane, uint slot,
                                   uint instance) {
   const Span span = shape_span(kind, ray, block, lane);
@@ -66,7 +67,7 @@ static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
     const uint i = lowest_bit(bits);
     const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
     if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
-    // A solid touched at one point is left just after it is entered, whatever rounding says.
+    // A solid that is touched at one point is left just after it is entered, whatever the rounding.
     const int touched = shape_is_solid(kind) && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
     const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
     if (leaves && ray->sees_leaving) list_add(list, t_exit, slot + i, instance, (uint)exit_surface[i] | CAPLET_LEAVING);
@@ -84,7 +85,7 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
   }
 }
 
-// Of a leaf block in the tree; not one of instances.
+// Adds the crossings of a leaf block in the tree; not of one of instances.
 static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, uint row, uint instance) {
   __global const float* block = list->tree->leaves + (size_t)row * 8;
   if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
@@ -95,16 +96,18 @@ static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, 
   }
 }
 
-// How far the ray still counts: once it is known that some are left out, what lies behind the last one kept cannot matter.
+// Returns how far the ray still counts: once some crossings are left out, those behind the last one
+// kept cannot matter.
 static inline float list_end(const HitList* list, float t_end) {
   return list->more ? fmin(t_end, list->sorted[list->capacity - 1].t) : t_end;
 }
 
-// All crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order (hit_is_before).
-// Writes the nearest `capacity` of them to `sorted` and returns their number, or capacity + 1 when there are more. Neither the tree nor the order of
-// traversal can show.
-// capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss. HitRecord.surface: of open shapes each sheet counts by
-// itself, leaving along its stored normal, so closed meshes are entered and left by their winding.
+// Finds all crossings of `ray` with the tree under node `root`, with t in (t_min, t_max), in order
+// (hit_is_before). Writes the nearest `capacity` of them to `sorted` and returns their number, or
+// capacity + 1 when there are more. The list does not depend on the tree or on the order of
+// traversal. capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss.
+// HitRecord.surface: of open shapes each sheet counts by itself, leaving along its stored normal,
+// so closed meshes are entered and left by their winding.
 static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
   HitList list;
   list.tree = tree;
@@ -169,7 +172,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
 #endif
 }
 
-// In the whole scene.
+// Finds all crossings in the whole scene.
 static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
   return trace_list(tree, tree->world->root, ray, capacity, sorted);
 }

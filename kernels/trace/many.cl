@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How a stage traces its rays: one a work-item, or, where eight lanes are tested at a time, an equal share of them a work-item, which
-// goes through the tree with many at once if the device is good at it. The including file has defined
+// A stage traces its rays one a work-item, or, where eight lanes are tested at a time, an equal
+// share of them a work-item, which traverses the tree with many at once if the device is good at
+// it. The including file defines
 //   __global const RayRecord* traced_ray_at(const Stage* g, uint item)
 //   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
 //   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
-//   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than this will do (INFINITY: any)
+//   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than
+//                                    // this will do (INFINITY: any)
 //   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them
-// Programs may be built with CAPLET_ONE_BY_ONE: a ray after the other; or CAPLET_PORTABLE: many at once, whatever the device.
+// Programs may be built with CAPLET_ONE_BY_ONE to trace a ray after the other, or with
+// CAPLET_PORTABLE to trace many at once on any device.
 #ifndef CAPLET_TRACE_MANY_CL
 #define CAPLET_TRACE_MANY_CL
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The nodes that rays meet one at a time (host/lower/packed_nodes.h): eight boxes in bytes, 96 bytes a node. Words of 4 bytes:
+// Packed nodes serve rays that are traced one at a time (host/lower/packed_nodes.h). A node holds
+// eight boxes in bytes, 96 bytes a node. Its words of 4 bytes are:
 //   0..2   p: the least corner of the boxes, floats
-//   3      the exponents of the steps sx, sy, sz, a byte each as floats have them (255: the axis is not looked at); then a bit for each child that there is
+//   3      the exponents of the steps sx, sy, sz, a byte each as floats have them (255: the axis is
+//          not tested); then a bit for each child that there is
 //   4..15  rows of eight bytes: low x, y, z, high x, y, z, in steps from p
 //   16..23 references of the children, as those of other nodes (shared/kinds.h)
 #ifndef CAPLET_TRACE_PACKED_CL
@@ -12,16 +14,20 @@
 #include "math/vector.cl"
 #include "shapes/real.cl"
 
-// The ray as these boxes want it. NaN: all of them are met.
+// BoxRay is the ray as tests of these boxes use it. With NaN all of them are met.
 //
-// With eps = 2^-24, plane p + q s of an axis is crossed at T = (p + q s - o) i, i = 1 / d. What is computed is q a + b, with a = s i exact
-// (s is a power of two) and b = (p - o) i -+ room |i|. i is off by 5 eps (OpenCL allows 2.5 ulp). The difference, its product and the sum with
-// the room are off by eps each, 3 eps |p - o| |i| together, the product q a by eps q s |i|, the sum by eps T. As |p - o| <= |p + q s - o| + q s,
-// that is 9 eps of T and 4 eps q s |i|. The former is covered by the factors 1 -+ 2^-20; 4 eps q s is less than 2^-13 of a step,
-// by which the host has made the box larger. What shapes are off by (16 eps of the origin's distance at most), and the rounding of the room, are covered by
-// the room, 32 eps of it. A contracted sum is rounded less. Steps are at least 2^-100, so that what is lost where subnormal numbers are zeros is covered too.
-// Infinities: |o| and |p| are at most 2^126 where they are used, so p - o is finite. a, b and q a + b may be infinite, or NaN where they differ in sign
-// or q is 0: fmin and fmax pass NaN over, so that the box only seems larger.
+// With eps = 2^-24, plane p + q s of an axis is crossed at T = (p + q s - o) i, i = 1 / d. The code
+// computes q a + b, with a = s i exact (s is a power of two) and b = (p - o) i -+ room |i|. i is
+// off by 5 eps (OpenCL allows 2.5 ulp). The difference, its product and the sum with the room are
+// off by eps each, 3 eps |p - o| |i| together, the product q a by eps q s |i|, the sum by eps T. As
+// |p - o| <= |p + q s - o| + q s, that is 9 eps of T and 4 eps q s |i|. The former is covered by
+// the factors 1 -+ 2^-20; 4 eps q s is less than 2^-13 of a step, by which the host has made the
+// box larger. The error of shapes (16 eps of the origin's distance at most) and the rounding of the
+// room are covered by the room, 32 eps of it. A contracted sum is rounded less. Steps are at least
+// 2^-100, so that what is lost where subnormal numbers are zeros is covered too. On infinities: |o|
+// and |p| are at most 2^126 where they are used, so p - o is finite. a, b and q a + b may be
+// infinite, or NaN where they differ in sign or q is 0: fmin and fmax ignore NaN, so that the box
+// only seems larger.
 typedef struct {
   float ix, iy, iz;
   float room;
@@ -29,7 +35,8 @@ typedef struct {
 } BoxRay;
 
 static inline BoxRay box_ray(float3 o, float3 d) {
-  // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never, and nothing is NaN.
+  // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never,
+  // and nothing is NaN.
   const float largest = max3(fabs(d)), smallest = largest * 0x1p-64f, reach = max3(fabs(o));
   const float3 s = (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
                             copysign(fmax(fabs(d.z), smallest), d.z));
@@ -51,7 +58,8 @@ static inline int packed_child(__global const float* nodes, uint node, uint slot
   return ((__global const int*)nodes)[(size_t)node * CAPLET_PACKED_NODE_FLOATS + 16u + slot];
 }
 
-// The children whose box a ray from `o` meets within [t_min, t_best]; bit slot ^ octant, so that those it meets first, nearly, are the lowest.
+// Returns the children whose box a ray from `o` meets within [t_min, t_best]; bit slot ^ octant, so
+// that the children it (nearly) meets first are the lowest.
 static inline uint packed_node_hits(__global const float* nodes, uint node, const BoxRay* r, float ox, float oy, float oz, float t_min,
                                     float t_best) {
   __global const uint4* at = packed_node(nodes, node);

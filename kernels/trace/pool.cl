@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Many rays of one work-item in flight at a time, for processors with eight lanes: what the rays in the pool wait for (memory, a branch)
-// overlaps. A round is three tight loops: over the rays at nodes, over those at leaves, and over all of them to go on. Hits are those of
-// trace_ray to the bit: what is found depends on neither order.
+// Traces many rays of one work-item at a time, for processors with eight lanes: the waits of the
+// rays in the pool (for memory, for a branch) overlap. A round is three tight loops: over the rays
+// at nodes, over those at leaves, and over all of them to go on. Hits are those of trace_ray to the
+// bit, because the hit does not depend on the order of traversal or of tests.
 //
-// What the including file has defined: many.cl.
+// The including file defines what many.cl lists.
 #ifndef CAPLET_TRACE_POOL_CL
 #define CAPLET_TRACE_POOL_CL
 
@@ -15,15 +16,17 @@
 #ifndef CAPLET_POOL_RAYS
 #define CAPLET_POOL_RAYS 24
 #endif
-// Nodes on the longest path, both levels of trees together.
+// This is the number of nodes on the longest path, both levels of trees together.
 #ifndef CAPLET_PATH_NODES
 #define CAPLET_PATH_NODES (2 * CAPLET_TREE_DEPTH_MAX)
 #endif
-// Each node on the path leaves seven children, the last one writes eight places; one entry at the bottom, one that leaves an instance.
+// Each node on the path leaves seven children, and the last one writes eight places; there is one
+// entry at the bottom, and one that leaves an instance.
 #define CAPLET_POOL_STACK (7 * CAPLET_PATH_NODES + 8 + 2)
 #define CAPLET_POOL_LEAVE_INSTANCE 0x7fffffff  // a child: the ray goes back to the world
 
-// A child is a node or a leaf, with the parameter where the ray enters its box: not negative, so its bits order as it does.
+// A child is a node or a leaf, with the parameter where the ray enters its box: not negative, so
+// its bits order as it does.
 typedef struct {
   SlabRay slab;
   ShapeRay shape;
@@ -42,7 +45,7 @@ typedef struct {
 
 static inline int octant_of(const SlabRay* s) { return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0); }
 
-// The ray as it is in the world.
+// Sets up the ray as it is in the world.
 static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) {
   r->instance = CAPLET_NONE;
   r->slab = slab_ray(o, d);
@@ -51,7 +54,7 @@ static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) 
   r->flip = octant_of(&r->slab);
 }
 
-// 0: the ray can hit nothing.
+// Returns 0 if the ray can hit nothing.
 static inline int pool_begin(PooledRay* r, const Stage* g, const Tree* tree, uint root, uint item) {
   const RayRecord ray = traced_ray(g, item);
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -69,12 +72,14 @@ static inline int pool_begin(PooledRay* r, const Stage* g, const Tree* tree, uin
   return line_is_valid(o, d) && ray.t_min < ray.t_max && r->t_min < r->nearest.t;
 }
 
-// The children of a node that the ray meets go on its stack, nearest on top by the octant that they lie in.
+// Puts the children of a node that the ray meets on its stack, nearest on top by the octant that
+// they lie in.
 static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   __global const float* node = nodes + (size_t)(uint)r->current * CAPLET_NODE_FLOATS;
   float8 near;
   const int8 boxes = boxes_met(node, &r->slab, r->t_min, r->nearest.t, &near);
-  // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in the order of k ^ flip.
+  // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in
+  // the order of k ^ flip.
   const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(r->flip);
   const uint met = mask_bits(permuted(boxes, lanes));
   const int8 order = convert_int8(as_uchar8(set_bits[met])) ^ (int8)(r->flip);
@@ -83,7 +88,8 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   r->top += (int)popcount(met);
 }
 
-// Into the instance that the ray is at. Below its root's entries lies one that leads back.
+// Moves the ray into the instance that it is at. Below the entries of the instance's root lies one
+// that leads back.
 static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
   const uint instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
   __global const InstanceRecord* placed = tree->instances + instance;
@@ -105,12 +111,12 @@ static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree*
   pool_ray(r, tree, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz));
 }
 
-// Rays [next, end).
+// Traces rays [next, end).
 static void trace_pool(const Stage* g, uint next, const uint end) {
   const Tree* tree = TRACED_TREE(g);
   const uint root = TRACED_ROOT(g);
   PooledRay pool[CAPLET_POOL_RAYS];
-  // Places in the pool, each with one more that is written and not kept.
+  // These are places in the pool; each list has one more, which is written and not kept.
   uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1], going_on[CAPLET_POOL_RAYS + 1];
   int nodes = 0, leaves = 0;
   const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};

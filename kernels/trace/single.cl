@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The nearest, or any, hit of one ray in a tree of packed nodes.
+// Finds the nearest, or any, hit of one ray in a tree of packed nodes.
 #ifndef CAPLET_TRACE_SINGLE_CL
 #define CAPLET_TRACE_SINGLE_CL
 
 #include "trace/hits.cl"
 #include "trace/walk.cl"
 
-// The lanes of a leaf of rare shapes. What the walk and the nearest hit so far need is put into memory meanwhile, where compilers leave what is volatile.
+// Tests the lanes of a leaf of rare shapes. The state of the walk and the nearest hit so far wait
+// in memory meanwhile, because compilers leave volatile values there.
 static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint kind, uint row, Walk* w, NearestHit* nearest) {
   __global const float* block = tree->leaves + (size_t)row * 8;
   volatile uint kept[8];
@@ -45,8 +46,9 @@ static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord*
   nearest->found = kept[7] != CAPLET_NONE;
 }
 
-// The closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest; INFINITY: any). Equal t: tie_is_before, so that
-// neither the tree nor the order of traversal can show. Zero, infinite and NaN rays miss.
+// Returns the closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest;
+// INFINITY: any). At equal t tie_is_before decides, so that the hit does not depend on the tree or
+// on the order of traversal. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, const float enough) {
   NearestHit nearest = nothing_before(ray->t_max);
   uint2 stack[CAPLET_WALK_ENTRIES];

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Neighbouring rays through the tree together, for processors with eight lanes: a node is fetched once for all rays that come to it, and
-// each of its children is visited by those that meet it. Pays for camera rays, which share most of their way. Those that come to an
-// instance go through its tree together, too. Hits are those of trace_ray to the bit: what is found depends on neither order.
+// Traces neighbouring rays through the tree together, for processors with eight lanes: a node is
+// fetched once for all rays that come to it, and each of its children is visited by those that meet
+// it. This pays for camera rays, which share most of their way. Those that come to an instance go
+// through its tree together, too. Hits are those of trace_ray to the bit, because the hit does not
+// depend on the order of traversal or of tests.
 //
-// What the including file has defined: many.cl.
+// The including file defines what many.cl lists.
 #ifndef CAPLET_TRACE_STREAM_CL
 #define CAPLET_TRACE_STREAM_CL
 
@@ -14,7 +16,8 @@
 #ifndef CAPLET_STREAM_RAYS
 #define CAPLET_STREAM_RAYS 128  // a multiple of 8, at most 256
 #endif
-// Each node on the path leaves lists of seven children, the last one writes eight; one list begins each tree.
+// Each node on the path leaves lists of seven children, and the last one writes eight; one list
+// begins each tree.
 #define CAPLET_STREAM_STACK (7 * CAPLET_PATH_NODES + 8 + 2)
 
 typedef struct {
@@ -23,7 +26,8 @@ typedef struct {
   float t_min, t_best;  // t_best: as t of the ray's NearestHit
 } StreamSlab;
 
-// The rays of a stream, by number, in the world or in an instance. Octant 8: the ray can hit nothing.
+// StreamSpace holds the rays of a stream, by number, in the world or in an instance. Octant 8: the
+// ray can hit nothing.
 typedef struct {
   StreamSlab slabs[CAPLET_STREAM_RAYS];
   ShapeRay shapes[CAPLET_STREAM_RAYS];
@@ -31,7 +35,8 @@ typedef struct {
   uchar octants[CAPLET_STREAM_RAYS];
 } StreamSpace;
 
-// Who is to visit what, one list of numbers after the other; and what a visit writes.
+// StreamLists says which rays visit what, one list of numbers after the other, and holds what a
+// visit writes.
 typedef struct {
   uchar ids[CAPLET_STREAM_STACK * CAPLET_STREAM_RAYS + 16];
   int child[CAPLET_STREAM_STACK], at[CAPLET_STREAM_STACK], count[CAPLET_STREAM_STACK];
@@ -55,7 +60,8 @@ static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, con
 #define WALK_MEETS_INSTANCES 0
 #include "trace/stream_walk.cl"
 
-// The n rays whose numbers begin at l->ids[at] through an instance; entries from `top` on and numbers behind these are free.
+// Traces the n rays whose numbers begin at l->ids[at] through an instance; entries from `top` on
+// and numbers behind these are free.
 static void stream_instance(const Stage* g, uint first, const Tree* tree, uint instance, StreamSpace* space, StreamSpace* inner,
                             NearestHit* nearest, StreamLists* l, int top, int at, int n) {
   __global const InstanceRecord* placed = tree->instances + instance;
@@ -90,7 +96,7 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
 #define WALK_MEETS_INSTANCES 1
 #include "trace/stream_walk.cl"
 
-// Rays [first, first + count), at most CAPLET_STREAM_RAYS.
+// Traces rays [first, first + count), at most CAPLET_STREAM_RAYS.
 static void trace_stream(const Stage* g, uint first, uint count) {
   const Tree* tree = TRACED_TREE(g);
   StreamSpace space, inner;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Part of stream.cl, which takes it twice: rays of a stream in one space through one tree, without instances of it (WALK_MEETS_INSTANCES 0)
-// or with them (1).
+// This is part of stream.cl, which includes it twice: it traces rays of a stream in one space
+// through one tree, without instances (WALK_MEETS_INSTANCES 0) or with them (1).
 //
-// From node `root` on, the `begun` rays whose numbers begin at `l->ids[begin]`; their directions fall in the octant `flip`. Entries from
-// `base` on are free. `instance`: that the rays are in.
+// It begins at node `root`, with the `begun` rays whose numbers begin at `l->ids[begin]`; their
+// directions fall in the octant `flip`. Entries from `base` on are free. `instance`: that the rays
+// are in.
 static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root, int flip, uint instance, StreamSpace* space,
                         NearestHit* nearest, StreamLists* l, int base, int begin, int begun
 #if WALK_MEETS_INSTANCES

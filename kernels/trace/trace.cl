@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Traversal of the 8-wide tree, closest and any hit from one text; all hits: list.cl.
-// One work-item is one ray. CAPLET_REAL_WIDTH 8: eight boxes and eight primitives at a time, here; 1: one after the other, single.cl.
+// Traverses the 8-wide tree for the closest hit or any hit with the same code; list.cl finds all
+// hits. One work-item is one ray. With CAPLET_REAL_WIDTH 8 this file tests eight boxes and eight
+// primitives at a time; with 1 single.cl tests one after the other.
 #ifndef CAPLET_TRACE_TRACE_CL
 #define CAPLET_TRACE_TRACE_CL
 
@@ -10,14 +11,16 @@
 
 #if CAPLET_REAL_WIDTH == 8
 
-// A visited node leaves at most seven of its children on the stack, in both levels of trees, and has all eight there while it orders
-// them; the host checks the depth.
+// A visited node leaves at most seven of its children on the stack, in both levels of trees, and
+// has all eight there while it orders them; the host checks the depth of trees.
 #define CAPLET_STACK_SIZE (2 * 7 * CAPLET_TREE_DEPTH_MAX + 1)
 
-// The ray as slab tests want it. Plane p of axis x is crossed at p * near_ix - near_ox, or with far_: the true parameter is
-// between the two. With eps = 2^-24, 1/d is off by 5 eps (OpenCL allows 2.5 ulp), the products and the difference by eps each,
-// hence the factors 1 -+ 2^-21; the rounding of o/d and the shapes' own error, which grows with the distance of the origin
-// (16 eps at most), are covered by 2^-19 |o| / d. Boxes are padded for the part that grows with the primitive.
+// SlabRay is the ray as slab tests use it. Plane p of axis x is crossed at p * near_ix - near_ox,
+// or with far_: the true parameter is between the two. With eps = 2^-24, 1/d is off by 5 eps
+// (OpenCL allows 2.5 ulp), the products and the difference by eps each, hence the factors 1 -+
+// 2^-21; the rounding of o/d and the shapes' own error, which grows with the distance of the origin
+// (16 eps at most), are covered by 2^-19 |o| / d. Boxes are padded for the part that grows with the
+// primitive.
 typedef struct {
   float near_ix, near_iy, near_iz, near_ox, near_oy, near_oz;
   float far_ix, far_iy, far_iz, far_ox, far_oy, far_oz;
@@ -26,7 +29,8 @@ typedef struct {
 } SlabRay;
 
 static inline SlabRay slab_ray(float3 o, float3 d) {
-  // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never, and nothing is NaN.
+  // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never,
+  // and nothing is NaN.
   const float largest = max3(fabs(d)), smallest = largest * 0x1p-64f;
   const float3 s = (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
                             copysign(fmax(fabs(d.z), smallest), d.z));
@@ -57,7 +61,8 @@ static inline SlabRay slab_ray(float3 o, float3 d) {
   return r;
 }
 
-// Lanes of the children whose box the ray meets within [t_min, t_best], and where it enters them.
+// Returns the lanes of the children whose box the ray meets within [t_min, t_best], and where it
+// enters them.
 static inline int8 boxes_met(__global const float* node, const SlabRay* s, float t_min, float t_best, float8* enter) {
   const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
   const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
@@ -70,7 +75,7 @@ static inline int8 boxes_met(__global const float* node, const SlabRay* s, float
   return *enter <= leave;
 }
 
-// The same as bits.
+// Does the same and returns bits.
 static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
   float8 near;
   const int8 met = boxes_met(node, s, t_min, t_best, &near);
@@ -78,10 +83,12 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
   return mask_bits(met);
 }
 
-// Stack entries order by where the ray enters: parameters are not negative, so their bits order as they do.
+// Stack entries order by where the ray enters: parameters are not negative, so their bits order as
+// they do.
 static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
 
-// The child of a node that the ray enters first goes to `next`, its others in the way on the stack, nearest on top. 0: none is met.
+// Writes the child of a node that the ray enters first to `next`, and pushes the others in the way
+// on the stack, nearest on top. Returns 0 if none is met.
 static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min, float t_best, ulong* stack, int* stack_top,
                              int* next) {
   __global const int* child = (__global const int*)(node + 48);
@@ -119,7 +126,7 @@ static inline int visit_node(__global const float* node, const SlabRay* slab, fl
     *next = (int)(uint)nearest;
     return 1;
   }
-  // Four or more: insertion, nearest on top.
+  // Four or more are inserted in order, nearest on top.
   const int bottom = top;
   stack[top++] = max(second, third);
   stack[top++] = min(second, third);
@@ -140,7 +147,8 @@ static inline int visit_node(__global const float* node, const SlabRay* slab, fl
   return 1;
 }
 
-// The next entry of the stack above `floor`, passing over what begins behind t_best. 0: there is none.
+// Pops the next entry of the stack above `floor` and skips those that begin behind t_best. Returns
+// 0 if there is none.
 static inline int pop_entry(const ulong* stack, int* top, int floor, float t_best, int* next) {
   while (*top != floor) {
     const ulong key = stack[--*top];
@@ -151,7 +159,8 @@ static inline int pop_entry(const ulong* stack, int* top, int floor, float t_bes
   return 0;
 }
 
-// The ray in the space of an instance: it goes along unnormalised, so t stays what it is. 0: nothing is left of it within floats.
+// Transforms the ray to the space of an instance: its direction is not normalised, so t stays the
+// same. Returns 0 if it is not valid in floats.
 static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o, float3 world_d, float t_min,
                                   __global const float* leaves, SlabRay* slab, ShapeRay* shape) {
   const float3 o = transform_point(placed->object_from_world, world_o);
@@ -163,8 +172,9 @@ static inline int ray_to_instance(__global const InstanceRecord* placed, float3 
   return line_is_valid(o, d);
 }
 
-// The closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest; INFINITY: any). Equal t: tie_is_before, so that
-// neither the tree nor the order of traversal can show. Zero, infinite and NaN rays miss.
+// Returns the closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest;
+// INFINITY: any). At equal t tie_is_before decides, so that the hit does not depend on the tree or
+// on the order of traversal. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const float enough) {
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
@@ -220,12 +230,12 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
 }
 #endif
 
-// The nearest hit with t in (t_min, t_max).
+// Returns the nearest hit with t in (t_min, t_max).
 static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
   return trace_ray(tree, tree->world->root, ray, 0.0f);
 }
 
-// 1 if anything is hit with t in (t_min, t_max).
+// Returns 1 if anything is hit with t in (t_min, t_max).
 static inline int trace_any(const Tree* tree, RayRecord ray) {
   return trace_ray(tree, tree->world->root, ray, INFINITY).slot != CAPLET_NONE;
 }

@@ -1,40 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The way of one ray through packed nodes: which leaves it comes to, one after the other.
+// Walks one ray through packed nodes and returns the leaves that it comes to, one after the other.
 //
-// The children of a node are visited in the order of slot ^ octant, which the builder lays them out for. So a node that is left has one number of
-// eight bits to remember, its children to come, and the stack has at most an entry a level: the node and that number. Trees may be deeper than the
-// stack, twice so with instances. Of a stack that is full the lowest entry makes room. The last one that did is kept (`lost`); when all
-// others are done the ray goes down again from the root to its node. Nodes are numbered depth first (host/bvh/bvh.h), so the way leads through the
-// child of the greatest number that is none beyond it, and what is to come at each level are the later ones of that child. Children whose boxes
-// were met before and are no more, since a nearer hit is known, would have been passed over anyway; there are no others.
+// The children of a node are visited in the order of slot ^ octant, which the builder lays them out
+// for. So only one number of eight bits is remembered for a node that is left, its children to
+// come, and the stack has at most an entry a level: the node and that number. Trees may be deeper
+// than the stack, twice so with instances. Of a stack that is full the lowest entry makes room. The
+// last one that did is kept (`lost`); when all others are done the ray goes down again from the
+// root to its node. Nodes are numbered depth first (host/bvh/bvh.h), so the way leads through the
+// child of the greatest number that is none beyond it, and what is to come at each level are the
+// later ones of that child. Some children's boxes that were met before are no longer met, because a
+// nearer hit is known; these would have been skipped anyway. There are no other differences.
 #ifndef CAPLET_TRACE_WALK_CL
 #define CAPLET_TRACE_WALK_CL
 
 #include "trace/hits.cl"
 #include "trace/packed.cl"
 
-// Where rays lie that are traced: those within instances are made of them again and again, so that registers need not hold two.
+// CAPLET_RAY_SPACE is where traced rays lie: rays within instances are recomputed from them again
+// and again, so that registers need not hold two.
 #ifdef CAPLET_RAYS_ARE_GLOBAL
 #define CAPLET_RAY_SPACE __global
 #else
 #define CAPLET_RAY_SPACE __private
 #endif
 
-// Entries of the stack, a power of two. Trees of real scenes have some ten levels.
+// The stack has this many entries, a power of two. Trees of real scenes have some ten levels.
 #ifndef CAPLET_STACK_SIZE
 #define CAPLET_STACK_SIZE 16
 #endif
-// And the entries that were lost last, of the world and of an instance.
+// The walk also keeps the entries that were lost last, of the world and of an instance.
 #define CAPLET_WALK_ENTRIES (CAPLET_STACK_SIZE + 2)
 
-// Whether the ray is ever made anew: in and after instances, and after shapes that are tested apart.
+// This says whether the ray is ever recomputed: in and after instances, and after shapes that are
+// tested apart.
 #define CAPLET_WALK_TURNS (CAPLET_HAS_SHAPE(shape_instance) || has_rare_shape)
 
 #define CAPLET_WALK_ENDS 0  // no reference of a leaf
 
-// The stack is an array of its own: what is read at places that are computed would keep all of this out of registers.
+// The stack is an array of its own: what is read at places that are computed would keep all of this
+// out of registers.
 typedef struct {
   uint node, mask;   // where the ray is, and that node's children to come: bit slot ^ octant
   uint top, bottom;  // entries [bottom, top) of the stack are there, at their number modulo its size; those below were lost
@@ -53,7 +59,7 @@ static inline void walk_push(Walk* w, uint2* stack, uint node, uint mask) {
   stack[w->top++ % CAPLET_STACK_SIZE] = (uint2)(node, mask);
 }
 
-// The child of `node` on the way down to node `to`, which is below it; in *key its bit.
+// Returns the child of `node` on the way down to node `to`, which is below it; in *key its bit.
 static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* key) {
   uint slot = 0, next = 0;
 #pragma unroll 1
@@ -68,8 +74,9 @@ static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* 
   return next;
 }
 
-// The ray in the space of the world or of an instance, along which it goes unnormalised, so that t stays what it is. It is read anew each time: a
-// compiler that kept it would keep it in registers, all the way.
+// Returns the ray in the space of the world or of an instance; its direction is not normalised, so
+// t stays the same. It is read anew each time: a compiler that kept it would keep it in registers,
+// all the way.
 static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint instance) {
   volatile CAPLET_RAY_SPACE const RayRecord* read = ray;
   float3 o = (float3)(read->ox, read->oy, read->oz), d = (float3)(read->dx, read->dy, read->dz);
@@ -87,7 +94,7 @@ static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayReco
   return shape;
 }
 
-// Where the ray goes through nodes from here on. 0: nowhere, nothing is left of it within floats.
+// Recomputes the ray in the space where it goes on. Returns 0 if it is not valid in floats.
 static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape) {
   *shape = walk_ray(tree, ray, w->instance);
   const float3 o = (float3)(shape->ox, shape->oy, shape->oz), d = (float3)(shape->dx, shape->dy, shape->dz);
@@ -96,7 +103,8 @@ static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* 
   return line_is_valid(o, d);
 }
 
-// 0: no way at all. Otherwise the first walk_next has to visit the root.
+// Starts the walk. Returns 0 if there is nothing to visit. Otherwise the first walk_next has to
+// visit the root.
 static inline int walk_begin(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, float t_best) {
   w->node = w->mask = w->top = w->bottom = w->floor = 0;
   w->instance = CAPLET_NONE;
@@ -105,15 +113,16 @@ static inline int walk_begin(const Tree* tree, CAPLET_RAY_SPACE const RayRecord*
   return ray->t_min < ray->t_max && (ray->t_min > 0.0f ? ray->t_min : 0.0f) < t_best;
 }
 
-// After this, `shape` and what is known of boxes are made anew: registers need not keep them meanwhile.
+// After this, `shape` and the ray for boxes are recomputed, so registers need not keep them
+// meanwhile.
 static inline void walk_forget(Walk* w, uint2* stack) {
   if (w->mask != 0) walk_push(w, stack, w->node, w->mask);
   w->mask = 0;
   w->turns = 1;
 }
 
-// The reference of the next leaf whose box the ray meets before t_best, in whose space `shape` then is, or CAPLET_WALK_ENDS. `visit`: a node to
-// begin with, -1: go on.
+// Returns the reference of the next leaf whose box the ray meets before t_best, in whose space
+// `shape` then is, or CAPLET_WALK_ENDS. `visit`: a node to begin with, -1: go on.
 static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, uint2* stack,
                             float t_best, int visit) {
   uint again = CAPLET_NONE, left = 0;  // the node that is to be come to again, and its children to come
