@@ -12,8 +12,8 @@
 // - the nappe c |e| <= D - k y, whose part beyond a ball's circle is replaced by the ball's own
 //   surface (as in capsule.cl),
 // - a half-space at every flat end; or, where the other end's ball reaches through that disk
-//   without holding it (its radius is longer than the axis), the second cone from the rim to the ball,
-//   outside the disk.
+//   without holding it (its radius is longer than the axis), the second cone from the rim to the
+//   ball, outside the disk.
 // So the span is the latest entrance and the earliest exit of them all, and no gap can open between
 // side and cap. A ball that holds the other end is the whole solid. The reported point is within 16
 // eps (|o - p0| + L + r0 + r1) of the surface (docs/numerics.md, "Cones").

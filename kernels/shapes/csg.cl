@@ -10,8 +10,9 @@
 //   header: centre c (3), radius of a ball around c that holds the result, groups, length of the
 //     program, operands, 0
 //   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the
-//     first operand, offset of the transform (object_from_csg and csg_from_object, 12 floats each), or
-//     CAPLET_NONE, offset of u at both ends of each operand of chains (a row), or CAPLET_NONE, 0 0
+//     first operand, offset of the transform (object_from_csg and csg_from_object, 12 floats each),
+//     or CAPLET_NONE, offset of u at both ends of each operand of chains (a row), or CAPLET_NONE,
+//     0 0
 //   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED
 //     where it is subtracted
 //   program: postfix, one number each: an operand, or CAPLET_CSG_UNION, _INTERSECTION, _DIFFERENCE
