@@ -23,8 +23,8 @@ const char* const bundled_mark = ", bundled with Caplet";
 
 namespace {
 
-// PoCL looks for its headers and built-in functions in ../../share/pocl of its library's folder, and for its devices in the
-// folder pocl beside it.
+// PoCL looks for its headers and built-in functions in ../../share/pocl of its library's folder,
+// and for its devices in the folder pocl beside the library.
 constexpr const char* library_in_folder = "lib/caplet/libpocl-caplet.so.2";
 
 std::string variable_of_process(const std::string& name) {
@@ -32,7 +32,7 @@ std::string variable_of_process(const std::string& name) {
   return value ? value : "";
 }
 
-/// Has a value for as long as the object lives.
+/// Sets an environment variable for as long as the object lives.
 class ScopedVariable {
  public:
   ScopedVariable(const char* name, const std::string& value) : name_(name) {
@@ -62,7 +62,8 @@ std::vector<cl::Platform> load_platforms() {
     log::warn("the bundled OpenCL driver cannot be loaded: {}", why ? why : "unknown error");
     return {};
   }
-  // cl_khr_icd: drivers give their platforms by this function, which they name in one that they export.
+  // This follows cl_khr_icd: drivers return their platforms by this function, and return its
+  // address by a function that they export.
   using Address = void*(CL_API_CALL*)(const char*);
   using Platforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);
   const auto address = reinterpret_cast<Address>(::dlsym(library, "clGetExtensionFunctionAddress"));
@@ -103,7 +104,7 @@ std::vector<cl::Device> bundled_devices(const cl::Platform& platform) {
   if (const std::string name = bundled_level(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("avx") != 0);
       !name.empty() && variable_of_process("POCL_KERNELLIB_NAME").empty())
     level.emplace("POCL_KERNELLIB_NAME", name);
-  // Plugins are built for the machine's hwloc, which need not be of the same version.
+  // Plugins are built for the machine's hwloc, which may have another version.
   const ScopedVariable no_plugins("HWLOC_PLUGINS_PATH", bundled_driver().folder.string());
   std::vector<cl::Device> devices;
   cl::Platform(platform).getDevices(CL_DEVICE_TYPE_ALL, &devices);

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A file: this line, the hash of key and contents, the length of the contents (both in text), then the contents.
+// A file holds this line, the hash of key and contents, the length of the contents (both in text),
+// then the contents.
 constexpr std::string_view magic = "caplet cache 1\n";
 
 std::string header(std::string_view key, const std::vector<unsigned char>& contents) {
@@ -46,7 +47,7 @@ fs::path cache_folder() {
 }
 
 std::string content_hash(std::string_view bytes) {
-  // Offset basis 0x6c62272e07bb014262b821756295c58d, prime 2^88 + 0x13b.
+  // The offset basis is 0x6c62272e07bb014262b821756295c58d, the prime 2^88 + 0x13b.
   using Wide = unsigned __int128;
   Wide hash = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) | 0x62b821756295c58du;
   const Wide prime = (static_cast<Wide>(1) << 88) | 0x13bu;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The cache folder: small files found by a key, checked when read. An unusable folder or a broken file is a miss, never an error;
-// the first thing that cannot be stored is warned of.
+// The cache folder holds small files that are found by a key and checked when read. An unusable
+// folder or a broken file is a miss, never an error; the first failure to store is warned of.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,19 @@
 
 namespace caplet {
 
-/// $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else $HOME/.cache/caplet; empty when none of them is set.
+/// Returns $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else $HOME/.cache/caplet; empty when none of
+/// them is set.
 std::filesystem::path cache_folder();
 
-/// 32 hexadecimal digits: FNV-1a with 128 bits (Fowler, Noll, Vo; RFC 9923).
+/// Returns 32 hexadecimal digits: FNV-1a with 128 bits (Fowler, Noll, Vo; RFC 9923).
 std::string content_hash(std::string_view bytes);
 
-/// What was stored under `key` (any text). Nothing when the file is missing, of another version or key, cut short or altered.
+/// Returns what was stored under `key` (any text), or nothing when the file is missing, of another
+/// version or key, cut short or altered.
 std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::string_view extension);
-/// False when it could not be stored.
+/// Returns false when it could not be stored.
 bool cache_store(std::string_view key, std::string_view extension, const std::vector<unsigned char>& contents);
-/// The file that holds `key`; empty without a folder.
+/// Returns the file that holds `key`; empty without a folder.
 std::filesystem::path cache_file(std::string_view key, std::string_view extension);
 
 }  // namespace caplet

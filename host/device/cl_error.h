@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// OpenCL's errors as RunError with the call, the error's name, the place and the device.
+// Turns OpenCL's errors into RunError with the call, the error's name, the place and the device.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// "CL_INVALID_VALUE" for -30; "error -12345" for a code without a name.
+/// Returns "CL_INVALID_VALUE" for -30; "error -12345" for a code without a name.
 std::string cl_error_name(cl_int code);
 
 [[noreturn]] void throw_cl_error(const cl::Error& error, const std::string& place, const std::string& device_name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What OpenCL says of a device, as list_devices() gives it.
+// Describes devices by what OpenCL says of them, as list_devices() returns it.
 #pragma once
 
 #include <string>
@@ -18,15 +18,15 @@ struct FoundPlatform {
 
 enum class Drivers { machine, bundled, all };
 
-/// The platforms of the machine's drivers, in the ICD loader's order, and behind them that of the bundled driver. Empty where
-/// there is none: throws never.
+/// Returns the platforms of the machine's drivers, in the ICD loader's order, and behind them that
+/// of the bundled driver. It is empty where there is none; never throws.
 std::vector<FoundPlatform> find_platforms(Drivers drivers);
 /// Throws cl::Error.
 std::vector<cl::Device> devices_of(const FoundPlatform& platform);
 
-/// Name and version, and bundled_mark. Throws cl::Error.
+/// Returns name and version, and bundled_mark. Throws cl::Error.
 std::string platform_name(const FoundPlatform& platform);
-/// All but the index. Throws cl::Error.
+/// Fills all but the index. Throws cl::Error.
 DeviceInfo describe(const cl::Device& device, const std::string& platform);
 
 }  // namespace caplet

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// OpenCL: choose a device, hold its context and queue, buffers, programs with a disk cache, launches.
-// Every error carries the call, the place and, for programs, the build log.
+// This is the interface to OpenCL: it chooses a device, holds its context and queue, makes buffers,
+// compiles programs with a disk cache, and launches kernels. Every error carries the call, the
+// place and, for programs, the build log.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,7 @@
 
 namespace caplet {
 
-/// An OpenCL call that failed.
+/// DriverError is an OpenCL call that failed.
 class DriverError : public RunError {
  public:
   DriverError(const std::string& message, cl_int code) : RunError(message), code_(code) {}
@@ -30,13 +31,14 @@ class DriverError : public RunError {
   cl_int code_;
 };
 
-/// What was asked for is no device, or not one alone; the message lists what there is.
+/// UnknownDevice is thrown if the choice matches no device, or more than one; the message lists the
+/// devices.
 class UnknownDevice : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// There is no OpenCL device.
+/// NoDevice is thrown if there is no OpenCL device.
 class NoDevice : public RunError {
  public:
   using RunError::RunError;
@@ -52,50 +54,54 @@ struct DeviceInfo {
   bool bundled = false;  // of the driver that came with this program (bundled.h)
 };
 
-/// All OpenCL devices, those of the bundled driver last; empty when there is no platform (never throws for that). From any
-/// thread. Throws RunError in a process that was forked after OpenCL was used, as all does that needs a device (forked.h).
+/// Returns all OpenCL devices, those of the bundled driver last; it is empty when there is no
+/// platform (and never throws for that). It may be called from any thread. Throws RunError in a
+/// process that was forked after OpenCL was used, as everything does that needs a device
+/// (forked.h).
 std::vector<DeviceInfo> list_devices();
 
-/// How kernels go through trees and leaf blocks: eight boxes or primitives at a time in vectors of floats, or one after the
-/// other.
+/// Encoding is how kernels traverse trees and leaf blocks: eight boxes or primitives at a time in
+/// vectors of floats, or one after the other.
 enum class Encoding { automatic, wide, single };
 
-/// "automatic", "wide" or "single". Throws InputError with this place for any other text.
+/// Reads "automatic", "wide" or "single". Throws InputError with this place for any other text.
 Encoding parse_encoding(const std::string& text, const char* place);
 std::string name_of(Encoding encoding);
 
-/// What suits a device: wide on CPUs that compute with vectors, single on others: GPUs, and CPUs whose driver runs a work-item in
-/// each lane itself.
+/// Returns what suits a device: wide on CPUs that compute with vectors, single on others: GPUs, and
+/// CPUs whose driver runs a work-item in each lane itself.
 Encoding natural_encoding(const DeviceInfo& info);
 
-/// How a device is kept busy: as processors are, or as GPUs, with larger batches of work and without the host between their
-/// parts.
+/// Profile is how a device is kept busy: as CPUs are, or as GPUs, with larger batches of work and
+/// without the host between their parts.
 enum class Profile { cpu, gpu };
 
-/// What the environment variable CAPLET_PROFILE says, "cpu" or "gpu", else what the device is. Throws InputError for any other
-/// text.
+/// Returns what the environment variable CAPLET_PROFILE says, "cpu" or "gpu", else what the device
+/// is. Throws InputError for any other text.
 Profile profile_of(const DeviceInfo& info);
 
-/// A chosen device with its context and in-order queue. Copies share them.
+/// Device is a chosen device with its context and in-order queue. Copies share them.
 class Device {
  public:
-  /// `choice`: "" (a GPU if there is one, else the first device), an index, "cpu", "gpu", "bundled", or part of a name (case
-  /// ignored). A device of the bundled driver is meant only where none of the machine's is, or by "bundled" or its index. Throws
-  /// UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic: what the environment variable
-  /// CAPLET_ENCODING says, else natural_encoding, or single for a profile of GPUs.
+  /// Chooses a device. `choice`: "" (a GPU if there is one, else the first device), an index,
+  /// "cpu", "gpu", "bundled", or part of a name (case ignored). A device of the bundled driver is
+  /// chosen only if none of the machine's matches, or by "bundled" or its index. Throws
+  /// UnknownDevice when nothing or more than one name matches, and NoDevice. `encoding` automatic:
+  /// what the environment variable CAPLET_ENCODING says, else natural_encoding, or single for a
+  /// profile of GPUs.
   static Device choose(const std::string& choice, Encoding encoding = Encoding::automatic);
 
-  /// Several: "all" (the bundled one only where the machine has no CPU), or such choices between commas, none of them twice;
-  /// errors as choose.
+  /// Chooses several devices: "all" (the bundled one only where the machine has no CPU), or such
+  /// choices between commas, none of them twice; errors as choose.
   static std::vector<Device> choose_several(const std::string& choice, Encoding encoding = Encoding::automatic);
 
-  /// That many devices, each with a share of this one's compute units, as even as they go. Throws RunError where the driver
-  /// cannot divide it, or there are fewer units than parts.
+  /// Returns that many devices, each with a share of this one's compute units, as even as possible.
+  /// Throws RunError where the driver cannot divide it, or there are fewer units than parts.
   std::vector<Device> split(std::size_t parts) const;
 
   const DeviceInfo& info() const { return info_; }
   bool is_cpu() const { return info_.type == "cpu"; }
-  /// Wide or single.
+  /// Returns wide or single.
   Encoding encoding() const { return encoding_; }
   Profile profile() const { return profile_; }
   /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
@@ -105,7 +111,7 @@ class Device {
   const cl::Device& handle() const { return device_; }
   cl::CommandQueue& queue() const { return *queue_; }
   void finish() const;
-  /// Bytes of buffers alive now, and the most there ever were.
+  /// These are the bytes of buffers alive now, and the most there ever were.
   std::uint64_t bytes_allocated() const;
   std::uint64_t bytes_peak() const;
 
@@ -126,7 +132,8 @@ class Device {
   std::shared_ptr<Programs> programs_;
 };
 
-/// Untyped buffer; Buffer<T> below is the one to use. Empty sizes are allocated as 16 bytes, since OpenCL has no empty buffers.
+/// RawBuffer is an untyped buffer; use Buffer<T> below. Empty sizes are allocated as 16 bytes,
+/// since OpenCL has no empty buffers.
 class RawBuffer {
  public:
   RawBuffer() = default;
@@ -160,13 +167,15 @@ class Buffer : public RawBuffer {
   void write(std::span<const T> values) { RawBuffer::write(values.data(), 0, values.size_bytes()); }
 };
 
-/// The flattened text of kernels/stages/<name>.cl, or of kernels/<name> when the name has a '/', embedded at build with #line
-/// marks. When the environment variable CAPLET_KERNELS names a folder, the file is read and flattened from there instead. Throws
-/// std::logic_error for unknown names.
+/// Returns the flattened text of kernels/stages/<name>.cl, or of kernels/<name> when the name has a
+/// '/', embedded at build with #line marks. When the environment variable CAPLET_KERNELS names a
+/// folder, the file is read and flattened from there instead. Throws std::logic_error for unknown
+/// names.
 std::string kernel_source(std::string_view name);
 
-/// `text` with its `#include "path"` lines resolved like those of kernel_source (paths from kernels/), for a program that has
-/// these rows of the lists: it holds the text of no others. Throws std::logic_error for a file that does not exist.
+/// Returns `text` with its `#include "path"` lines resolved like those of kernel_source (paths from
+/// kernels/), for a program that has these rows of the lists: it has the text of no others. Throws
+/// std::logic_error for a file that does not exist.
 std::string flatten_kernels(const std::string& text, const RowMasks& rows = {});
 
 enum class BinaryCache {
@@ -174,24 +183,27 @@ enum class BinaryCache {
   always
 };
 
-/// A compiled program: one kernel file, one set of options. Copies of a device compile one once. Its binary is cached on disk by
-/// device, driver, source hash and options (folder: $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable
-/// cache is never an error). Compiling that takes noticeable time is logged.
+/// Program is a compiled program: one kernel file, one set of options. Copies of a device compile
+/// one once. Its binary is cached on disk by device, driver, source hash and options (folder:
+/// $CAPLET_CACHE, else $XDG_CACHE_HOME/caplet, else ~/.cache/caplet; an unusable cache is never an
+/// error). Compiling that takes noticeable time is logged.
 class Program {
  public:
-  /// `options` like "-DCAPLET_REAL_WIDTH=8". "-cl-std=CL1.2" is always added. Throws RunError with the build log.
+  /// Compiles a kernel file with `options` like "-DCAPLET_REAL_WIDTH=8". "-cl-std=CL1.2" is always
+  /// added. Throws RunError with the build log.
   Program(const Device& device, const std::string& name, const std::string& options);
-  /// From a text that is not embedded (tests, the probe).
+  /// Compiles a text that is not embedded (tests, the probe).
   static Program from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
                              BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
-  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by launches with null buffers and
-  /// zero scalars: the kernel must do nothing when its count is 0. PoCL compiles a kernel once for fewer than 65536 work-items
-  /// and again for more: both, unless `most`, the largest count it will be launched with, needs the first alone. Nothing on other
-  /// platforms. Returns the seconds it took, which build_seconds() then includes.
+  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by
+  /// launches with null buffers and zero scalars: the kernel must do nothing when its count is 0.
+  /// PoCL compiles a kernel once for fewer than 65536 work-items and again for more: this does
+  /// both, unless `most`, the largest count it will be launched with, needs only the first. Does
+  /// nothing on other platforms. Returns the seconds it took, which build_seconds() then includes.
   double prepare(const std::string& kernel_name, std::size_t local, std::size_t most);
   double build_seconds() const { return build_seconds_; }
-  /// Whether it came from Caplet's own cache.
+  /// Returns whether it came from Caplet's own cache.
   bool from_cache() const { return from_cache_; }
 
  private:
@@ -230,13 +242,14 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
 /// Throws RunError naming the kernel.
 void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local, std::size_t first = 0);
 
-/// The most work-items of a group, up to `wanted`, in halves of it, with which the device can run the kernel.
+/// Returns the most work-items of a group, up to `wanted`, in halves of it, with which the device
+/// can run the kernel.
 std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::size_t wanted);
 
 /// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep
 /// the device's units busy to the end. Throws RunError naming the kernel.
 void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count);
-/// The number of these work-items.
+/// Returns the number of these work-items.
 std::size_t share_count(const Device& device, std::size_t count);
 
 /// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record layout on this device; once per

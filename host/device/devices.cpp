@@ -33,10 +33,11 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
-/// PoCL 3.1 sets its devices up at the first question. A thread that asks meanwhile is told that there are none.
+/// PoCL 3.1 sets its devices up at the first query. A thread that queries meanwhile is told that
+/// there are none.
 std::mutex first_use;
 
-/// A platform or device that cannot be asked is left out: it could not be used either.
+/// A platform or device that cannot be queried is left out: it could not be used either.
 std::vector<Found> find_devices(Drivers drivers) {
   begin_opencl();
   const std::lock_guard lock(first_use);
@@ -144,7 +145,7 @@ std::vector<Device> Device::chosen(const std::string& choice, Encoding encoding,
   constexpr const char* variable = "CAPLET_ENCODING";
   if (const char* named = std::getenv(variable); encoding == Encoding::automatic && named && *named)
     encoding = parse_encoding(named, variable);
-  // The bundled driver is loaded only where it may be meant.
+  // The bundled driver is loaded only where the choice may name it.
   std::vector<Found> devices = find_devices(Drivers::machine);
   std::optional<std::vector<std::size_t>> selected = select_machine_devices(infos_of(devices), choice, several);
   if (!selected) {

@@ -37,7 +37,7 @@ Directive directive_of(std::string_view line) {
   return {line.substr(0, end), trimmed(line.substr(end))};
 }
 
-/// Follows the conditionals of one file as far as __cplusplus is concerned.
+/// Follows the conditionals of one file that depend on __cplusplus.
 class HostText {
  public:
   void see(const Directive& directive) {
@@ -53,7 +53,7 @@ class HostText {
     else if (directive.name == "endif" && !stack_.empty())
       stack_.pop_back();
   }
-  /// Whether the current line is for C++ alone.
+  /// Returns whether the current line is for C++ alone.
   bool active() const {
     return std::any_of(stack_.begin(), stack_.end(), [](const Level& level) { return level.host; });
   }
@@ -65,7 +65,7 @@ class HostText {
   std::vector<Level> stack_;
 };
 
-/// The macro that a line of a list calls; empty where it calls none.
+/// Returns the macro that a line of a list calls; empty where it calls none.
 std::string_view entry_of(std::string_view line) {
   std::size_t end = 0;
   while (end < line.size() && ((line[end] >= 'A' && line[end] <= 'Z') || line[end] == '_')) ++end;
@@ -74,7 +74,7 @@ std::string_view entry_of(std::string_view line) {
 
 bool begins_row(std::string_view entry) { return !entry.empty() && entry != "FIELD" && !entry.ends_with("_END"); }
 
-/// The name of an include guard around the whole file; empty where there is none.
+/// Returns the name of an include guard around the whole file; empty where there is none.
 std::string_view guard_of(std::string_view text) {
   std::string_view name;
   while (!text.empty()) {
@@ -137,7 +137,7 @@ class Flattener {
     return name;
   }
 
-  /// Whether anything was put in.
+  /// Returns whether anything was included.
   bool include(std::string_view operand, const std::string& label, int line) {
     const std::size_t close = operand.find('"', 1);
     if (!operand.starts_with('"') || close == std::string_view::npos)
@@ -169,7 +169,7 @@ class Flattener {
     }
     if (once_.contains(path)) return false;
     const std::string text = text_of(path, label, line);
-    // Under a condition that may be false it does not count as included.
+    // A file under a condition that may be false does not count as included.
     if (depth_ == 0 && !guard_of(text).empty()) once_.insert(path);
     open_.push_back(path);
     add(text, "kernels/" + path);

@@ -18,7 +18,7 @@ void in_child() {
   if (is_used) is_forked = true;
 }
 
-// Before any thread can use OpenCL: a fork that came between a use and this would be missed.
+// This runs before any thread can use OpenCL: a fork between a use and this would be missed.
 [[maybe_unused]] const int registered = ::pthread_atfork(nullptr, nullptr, in_child);
 
 }  // namespace

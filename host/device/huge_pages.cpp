@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t page = std::size_t{2} << 20;
 constexpr std::size_t pays_from = page;
 
-/// Whole pages from the system, which gives addresses between them back.
+/// Pages are whole pages from the system; the addresses around them that are not used are returned.
 struct Pages {
   void* begin = MAP_FAILED;
   std::size_t size = 0;

@@ -27,7 +27,8 @@ constexpr std::size_t largest_record_bytes = std::max({
 #undef RECORD_END
 });
 
-/// The values that the kernel should write (without the count at the front), and what each one means.
+/// Expectation holds the values that the kernel should write (without the count at the front), and
+/// the meaning of each.
 struct Expectation {
   std::vector<cl_uint> values;
   std::vector<std::string> meanings;
@@ -52,8 +53,9 @@ Expectation expectation(const std::vector<RecordLayout>& layouts) {
   return out;
 }
 
-/// Where the text that devices compile, which CAPLET_KERNELS may have changed, first names another record or field than the host:
-/// fields of one size that changed places have the same offsets. Empty where they agree.
+/// Returns the first other name of a record or field in the text that devices compile, which
+/// CAPLET_KERNELS may have changed: fields of one size that changed places have the same offsets.
+/// It is empty where host and text agree.
 std::string other_name(const std::vector<RecordLayout>& layouts) {
   std::vector<std::string> wanted;
   for (const RecordLayout& record : layouts) {
@@ -96,9 +98,11 @@ std::vector<RecordLayout> host_layout() {
 
 std::vector<std::string> compare_layout(const Device& device, const std::vector<RecordLayout>& expected) {
   const Expectation wanted = expectation(expected);
-  // Room for a device list that is longer than the host's, as it can be with CAPLET_KERNELS.
+  // There is room for a device list that is longer than the host's, as it can be with
+  // CAPLET_KERNELS.
   const std::size_t capacity = 2 * wanted.values.size() + 1;
-  // As much beyond the largest record again, should the device's records be larger than the host's.
+  // There is as much beyond the largest record again, in case the device's records are larger than
+  // the host's.
   std::vector<cl_uint> words(2 * largest_record_bytes / sizeof(cl_uint));
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = 0x40000000u + narrow<cl_uint>(4 * i);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// OpenCL's C++ classes. Where this process was forked after OpenCL was used, their destructors give nothing back (forked.h).
+// This file includes OpenCL's C++ classes. Where this process was forked after OpenCL was used,
+// their destructors release nothing (forked.h).
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -22,7 +23,8 @@ cl_int give_back(cl_int(CL_API_CALL* release)(Object), Object object) {
 
 }  // namespace caplet
 
-// The classes call these by their names, and have no other place where that could be said. A macro does not expand within itself.
+// The classes call these functions by their names, and there is no other way to change that. A
+// macro does not expand within itself.
 #define clReleaseCommandQueue(object) caplet::give_back(clReleaseCommandQueue, object)
 #define clReleaseContext(object) caplet::give_back(clReleaseContext, object)
 #define clReleaseDevice(object) caplet::give_back(clReleaseDevice, object)

@@ -59,7 +59,7 @@ void replace_topology() {
       "/sys/devices/system/cpu is not there: PoCL finds neither processors nor memory without it, and is told of {} and {} MB; "
       "mount /sys (in a container: do not leave it out)",
       processors, memory / 1'000'000);
-  // https://www.open-mpi.org/projects/hwloc/doc/ "Synthetic topologies"
+  // See https://www.open-mpi.org/projects/hwloc/doc/ "Synthetic topologies".
   ::setenv("HWLOC_SYNTHETIC", fmt::format("pack:1 [numa(memory={})] core:{} pu:1", memory, processors).c_str(), 1);
 }
 

@@ -31,7 +31,7 @@ std::string cache_key(const DeviceInfo& info, const std::string& options, const 
   return key;
 }
 
-/// A program from a cached binary; nothing when the driver refuses it.
+/// Makes a program from a cached binary; returns nothing when the driver refuses it.
 std::optional<cl::Program> from_binary(const Device& device, const Binary& binary, const std::string& options) {
   try {
     cl::Program program(device.context(), {device.handle()}, {binary});
@@ -59,7 +59,7 @@ cl::Program from_text(const Device& device, const std::string& name, const std::
   return program;
 }
 
-/// The device's binary; empty when the driver gives none.
+/// Returns the device's binary; it is empty when the driver returns none.
 Binary binary_of(const cl::Program& program) {
   try {
     const std::vector<Binary> binaries = program.getInfo<CL_PROGRAM_BINARIES>();
@@ -73,8 +73,8 @@ std::string kernel_name(const Device& device, const cl::Kernel& kernel) {
   return cl_call("a kernel's name", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
 }
 
-/// Null for pointers, zero for scalars and vectors. Which is which is found by trying: the query of argument types needs an
-/// option that would change the program.
+/// Sets null for pointers, zero for scalars and vectors. Which is which is found by trying: the
+/// query of argument types needs an option that would change the program.
 void set_null_arguments(const Device& device, cl::Kernel& kernel) {
   const cl_uint count = cl_call("a kernel's arguments", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_NUM_ARGS>(); });
   constexpr unsigned char zeros[128] = {};
@@ -180,7 +180,8 @@ std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::
 }
 
 std::size_t share_count(const Device& device, std::size_t count) {
-  // A share is long enough to keep a pool of rays full, and short enough that units which are done early find others.
+  // A share is long enough to keep a pool of rays full, and short enough that units which finish
+  // early find other shares.
   constexpr std::size_t most_items = 1024, least_items = 128, shares_a_unit = 8;
   const std::size_t wanted = std::max(count / most_items, std::size_t{device.info().compute_units} * shares_a_unit);
   return std::max<std::size_t>(1, std::min(wanted, count / least_items));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which kinds of things a program is built for.
+// Says which kinds of things a program is built for.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace caplet {
 
-/// Rows of lists in kernels/shared that a program has, by the list's name: bit n of the mask of "shapes" is row n of shapes.def.
-/// Of a list that is not named it has all. Kernels see the mask as CAPLET_SHAPES.
+/// These are the rows of lists in kernels/shared that a program has, by the list's name: bit n of
+/// the mask of "shapes" is row n of shapes.def. A list that is not named has all rows. Kernels see
+/// the mask as CAPLET_SHAPES.
 using RowMasks = std::map<std::string, std::uint64_t, std::less<>>;
 
 }  // namespace caplet

@@ -34,7 +34,7 @@ enum State : int { off, guarded, second, ending };
 std::atomic<int> state{off};
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
-// What the signal handler needs, prepared since it may not allocate.
+// The signal handler needs these; they are prepared because it may not allocate.
 struct sigaction before[std::size(signals)];
 char** program_arguments = nullptr;
 bool is_second = false;
@@ -53,7 +53,7 @@ std::string variable_of_process(const std::string& name) {
   return value ? value : "";
 }
 
-/// Replaces the process; returns when that fails. Safe in handlers of signals.
+/// Replaces the process; returns when that fails. It is safe in signal handlers.
 void run_again(int number) {
   signal_digits[0] = static_cast<char>('0' + number / 10);
   signal_digits[1] = static_cast<char>('0' + number % 10);
@@ -107,7 +107,8 @@ void prepare(const Device& device) {
   ::sigprocmask(SIG_SETMASK, nullptr, &mask);
 }
 
-/// Errors that PoCL gives for files of its cache that hold no program, or not this one.
+/// Returns whether PoCL may report this error for files of its cache that hold no program, or not
+/// this one.
 bool may_be_the_cache(cl_int code) {
   switch (code) {
     case CL_INVALID_KERNEL_NAME:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// PoCL loads compiled kernels from its cache into the process: damaged ones end it with SIGABRT, SIGBUS or SIGSEGV, or are CL
-// errors. The program then runs itself again, once, with a fresh cache folder, and names the one to delete.
+// PoCL loads compiled kernels from its cache into the process. Damaged ones end the process with
+// SIGABRT, SIGBUS or SIGSEGV, or cause CL errors. The program then runs itself again, once, with a
+// fresh cache folder, and names the one to delete.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@
 
 namespace caplet {
 
-/// A folder of its own for PoCL's cache for as long as the object lives: POCL_CACHE_DIR names it. To be made before any OpenCL
-/// call of the process.
+/// FreshPoclCache is a separate folder for PoCL's cache for as long as the object lives:
+/// POCL_CACHE_DIR names it. Make it before any OpenCL call of the process.
 class FreshPoclCache {
  public:
   /// Throws RunError when no folder can be made.
@@ -29,10 +30,10 @@ class FreshPoclCache {
   std::optional<std::string> before_;
 };
 
-/// To be made in main before anything else, for as long as the program runs.
+/// Make a SecondTry in main before anything else, for as long as the program runs.
 class SecondTry {
  public:
-  /// `arguments` as main has them. In the second process: makes the fresh cache folder.
+  /// Takes `arguments` as main has them. In the second process it makes the fresh cache folder.
   explicit SecondTry(char** arguments);
   ~SecondTry();
   SecondTry(const SecondTry&) = delete;
@@ -41,11 +42,11 @@ class SecondTry {
   /// From this call to driver_works() a crash of PoCL starts the second process, whatever signal handlers PoCL has set.
   /// Does nothing on other platforms, and without a SecondTry.
   static void guard(const Device& device);
-  /// To be called once the driver has run the kernels: later crashes are not its cache's fault. In the second process: says which
-  /// folder to delete.
+  /// Call this once the driver has run the kernels: later crashes are not caused by its cache. In
+  /// the second process it says which folder to delete.
   static void driver_works();
-  /// Starts the second process in place of this one if the driver is guarded and its error may come of its cache. Returns
-  /// otherwise.
+  /// Starts the second process in place of this one if the driver is guarded and its cache may have
+  /// caused the error. Returns otherwise.
   static void after(const DriverError& error);
 
  private:

@@ -24,13 +24,14 @@ using Devices = std::vector<DeviceInfo>;
   throw UnknownDevice(fmt::format("{}; the devices are {}", message, list));
 }
 
-/// devices.size() when there is none.
+/// Returns devices.size() when there is none.
 std::size_t first_of_type(const Devices& devices, const std::string& type) {
   const auto at = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& info) { return info.type == type; });
   return static_cast<std::size_t>(at - devices.begin());
 }
 
-/// Those with a name: the whole of it if there is one, else a part; of the machine's devices if there is one.
+/// Returns the devices with a name: those whose whole name it is if there is one, else those with
+/// it as a part; the machine's devices if there is one.
 std::vector<std::size_t> matches_of(const Devices& devices, const std::string& wanted) {
   for (const bool bundled : {false, true}) {
     std::vector<std::size_t> whole, part;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which of some devices a choice means.
+// Finds the devices that a choice means.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,13 @@
 
 namespace caplet {
 
-/// The number of the chosen device in `devices`; rules and errors as Device::choose.
+/// Returns the number of the chosen device in `devices`; rules and errors as Device::choose.
 std::size_t select_device(const std::vector<DeviceInfo>& devices, const std::string& choice);
-/// Those of a list, as Device::choose_several.
+/// Returns the numbers of a list of choices, as Device::choose_several.
 std::vector<std::size_t> select_devices(const std::vector<DeviceInfo>& devices, const std::string& choice);
-/// What select_devices, or select_device if not `several`, gives for `machine` with any bundled devices behind it, where that
-/// does not depend on them; none where it does, so that they must be looked for.
+/// Returns what select_devices, or select_device if not `several`, returns for `machine` with any
+/// bundled devices behind it, if that does not depend on the bundled ones. Returns nothing if it
+/// does; then they must be searched for.
 std::optional<std::vector<std::size_t>> select_machine_devices(const std::vector<DeviceInfo>& machine, const std::string& choice,
                                                                bool several);
 

@@ -41,13 +41,14 @@ class Failures {
 
 bool may_be_flushed(float x) { return std::fpclassify(x) == FP_SUBNORMAL; }
 
-/// |seen - exact| in units of the last place of the exact result (its binary32 neighbour's distance).
+/// Returns |seen - exact| in units of the last place of the exact result (its binary32 neighbour's
+/// distance).
 double error_in_ulp(float seen, double exact) {
   const double ulp = std::ldexp(1.0, std::max(std::ilogb(exact), -126) - 23);
   return std::abs(static_cast<double>(seen) - exact) / ulp;
 }
 
-/// Pairs of ordinary numbers over many scales, then every pair of the special ones.
+/// Returns pairs of ordinary numbers over many scales, then every pair of the special ones.
 std::vector<float> float_pairs() {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float specials[] = {0.0f,     -0.0f,       1.0f,
@@ -80,7 +81,7 @@ void check_value(Failures& failures, const std::string& what, float a, float b, 
   if (!same) failures.add(what, fmt::format("with a = {}, b = {} the device gives {}, not {}", a, b, seen, expected));
 }
 
-/// Like check_value, but finite results may be off by `bound` ulp of `exact`.
+/// Does the same as check_value, but finite results may be off by `bound` ulp of `exact`.
 void check_rounded(Failures& failures, const std::string& what, float a, float b, float seen, double exact, double bound) {
   const auto rounded = static_cast<float>(exact);
   if (may_be_flushed(rounded)) return;
@@ -111,7 +112,7 @@ void check_arithmetic(const Device& device, const Program& program, Failures& fa
     exact("a * b", row[2], a * b);
     check_rounded(failures, "a / b", a, b, row[3], static_cast<double>(a) / b, 2.5);
     check_rounded(failures, "sqrt(a)", a, b, row[4], std::sqrt(static_cast<double>(a)), 3.0);
-    // libclc makes -0 of fma(-0, 0, +0); kernels take no sign of a zero from fma.
+    // libclc computes -0 for fma(-0, 0, +0); kernels do not use the sign of a zero from fma.
     if (const float sum = std::fma(a, b, -a); !may_be_flushed(sum))
       check_value(failures, "fma(a, b, -a)", a, b, row[5], sum, true);
     check_value(failures, "fmin(a, b)", a, b, row[6], std::fmin(a, b), true);
@@ -227,7 +228,8 @@ void check_groups(const Device& device, const Program& program, Failures& failur
   }
 }
 
-/// $CAPLET_SELF_TEST: "0" never, "1" always, else when it has not passed before.
+/// $CAPLET_SELF_TEST is "0" for never, "1" for always, else the test runs when it has not passed
+/// before.
 enum class When { never, unless_passed, always };
 
 When when_to_test() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bytes of a device's buffers, shared by its copies.
+// Counts the bytes of a device's buffers; copies of the device share the count.
 #pragma once
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The kernel files as they were at build; the table itself is generated.
+// This table holds the kernel files as they were at build; it is generated.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// Their paths are from kernels/, as #include names them.
+/// Returns the files. Their paths are from kernels/, as #include names them.
 std::span<const EmbeddedFile> embedded_kernels();
 
 }  // namespace caplet

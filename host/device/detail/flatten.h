@@ -12,24 +12,24 @@
 
 namespace caplet {
 
-/// The text of the file of that path (from kernels/), or nothing when there is none.
+/// Returns the text of the file of that path (from kernels/), or nothing when there is none.
 using FileReader = std::function<std::optional<std::string>(const std::string& path)>;
 
-/// Replaces every `#include "path"` line of `text` by the flattened text of that file, as often as it is named; files with an
-/// include guard (their first directives are #ifndef NAME, #define NAME) once, as their guard would have it. `#line` marks name
-/// `label` and "kernels/path", so build logs point at the files. Angle includes stay; quoted includes under `#ifdef __cplusplus`
-/// become empty lines.
+/// Replaces every `#include "path"` line of `text` by the flattened text of that file, as often as it
+/// is named; files with an include guard (their first directives are #ifndef NAME, #define NAME) once,
+/// as their guard would have it. `#line` marks name `label` and "kernels/path", so build logs point at
+/// the files. Angle includes stay; quoted includes under `#ifdef __cplusplus` become empty lines.
 ///
-/// Two kinds of paths stand for rows of a list of shared/, those that `rows` has of it:
-///   "shapes/{shapes}.cl"   for every row of shared/shapes.def the file with its name in place of {shapes}: shapes/capsule.cl.
-///   Rows that
-///                          begin with COMPOUND have none
-///   "rows/shapes.def"   shared/shapes.def itself without the other rows
-/// A row is a line that begins with a name in capitals and a bracket; FIELD and names that end in _END continue it. For each list
-/// of `rows` of which the text speaks (CAPLET_SHAPES), its mask is defined above everything else.
+/// Two kinds of paths stand for the rows of a list of shared/ that `rows` has:
+///   "shapes/{shapes}.cl"   for every row of shared/shapes.def the file with its name in place of
+///                          {shapes}: shapes/capsule.cl. Rows that begin with COMPOUND have none
+///   "rows/shapes.def"      shared/shapes.def itself without the other rows
+/// A row is a line that begins with a name in capitals and a bracket; FIELD and names that end in _END
+/// continue it. For each list of `rows` that the text names (CAPLET_SHAPES), its mask is defined above
+/// everything else.
 ///
-/// Throws std::logic_error with the place for a file that does not exist, a malformed include, a list of more than 64 rows, and
-/// files that include each other in a circle.
+/// Throws std::logic_error with the place for a file that does not exist, a malformed include, a list
+/// of more than 64 rows, and files that include each other in a circle.
 std::string flatten(const std::string& text, const std::string& label, const FileReader& read, const RowMasks& rows = {});
 
 }  // namespace caplet

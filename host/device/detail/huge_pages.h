@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Large buffers of processors in pages of 2 MiB, where the system has such: rays that go through a tree at random otherwise miss
-// the processor's table of pages at nearly every node.
+// Puts large buffers of CPUs into pages of 2 MiB, where the system has them: otherwise rays that
+// traverse a tree at random miss the TLB at nearly every node.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,9 @@
 
 namespace caplet {
 
-/// A buffer of `size` bytes in huge pages; an empty handle where these are not to be had or would not pay: on devices that are no
-/// processors, on systems without, for buffers smaller than such a page. $CAPLET_HUGE_PAGES=0: never. Throws cl::Error.
+/// Returns a buffer of `size` bytes in huge pages. The handle is empty where these cannot be had or
+/// would not pay: on devices that are not CPUs, on systems without huge pages, for buffers smaller
+/// than such a page. $CAPLET_HUGE_PAGES=0: never. Throws cl::Error.
 cl::Buffer on_huge_pages(const Device& device, bool read_only, std::size_t size);
 
 }  // namespace caplet

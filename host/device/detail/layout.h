@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The records of records.def as the host and a device lay them out.
+// Compares the layout of the records of records.def on the host and on a device.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +23,14 @@ struct RecordLayout {
   std::vector<FieldLayout> fields;
 };
 
-/// Sizes and offsets of every record in C++, in the order of records.def.
+/// Returns sizes and offsets of every record in C++, in the order of records.def.
 std::vector<RecordLayout> host_layout();
 
-/// One line for each size or offset in which the device differs from `expected`; empty when they agree. Runs
-/// kernels/probe/layout.cl. Throws RunError when it does not build or run.
+/// Returns one line for each size or offset in which the device differs from `expected`; it is
+/// empty when they agree. Runs kernels/probe/layout.cl. Throws RunError when it does not build or
+/// run.
 std::vector<std::string> compare_layout(const Device& device, const std::vector<RecordLayout>& expected);
-/// Against the host.
+/// Compares with the host.
 std::vector<std::string> compare_layout(const Device& device);
 
 }  // namespace caplet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What was compiled for a device, shared by its copies.
+// Holds the programs that were compiled for a device; copies of the device share them.
 #pragma once
 
 #include <map>
