@@ -19,7 +19,8 @@ std::size_t floats_per_path(Layers layers) {
   return layout.floats_per_path();
 }
 
-/// Elements of a path's buffers that each path has, by their access (groups.h).
+/// PathPlaces counts the elements of a path's buffers that each path has, by their access
+/// (groups.h).
 struct PathPlaces {
   explicit PathPlaces(const PathNeeds& needs)
       : of_STATE_LAYERS(floats_per_path(needs.layers)),
@@ -40,10 +41,10 @@ std::span<const T> contents(const T& record) {
 
 // Changes nearer to each other than this are sent as one: a call costs more than so many bytes.
 constexpr std::size_t joined_bytes = 256;
-// What a grown buffer has beyond its contents: a quarter of them, and this at most.
+// A grown buffer has this much beyond its contents at most, else a quarter of them.
 constexpr std::size_t most_spare_bytes = std::size_t{1} << 20;
 
-/// Returns the bytes sent.
+/// Sends what changed; returns the bytes sent.
 template <class T>
 std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRanges& changed, bool all, Buffer<T>& to) {
   if (now.size() > to.size()) {
@@ -66,7 +67,7 @@ std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRa
   return bytes;
 }
 
-/// The same for nodes that are sent packed.
+/// Does the same for nodes that are sent packed.
 std::uint64_t send_packed(const Device& device, std::span<const float> nodes, const ChangedRanges& changed, bool all,
                           Buffer<float>& to) {
   constexpr std::size_t from_each = CAPLET_NODE_FLOATS, to_each = CAPLET_PACKED_NODE_FLOATS;
@@ -81,7 +82,8 @@ std::uint64_t send_packed(const Device& device, std::span<const float> nodes, co
   return bytes;
 }
 
-/// What devices are sent of an array of a scene: itself, but of nodes that are to be packed.
+/// Returns what devices are sent of an array of a scene: the array itself, except for nodes that
+/// must be packed.
 template <class T>
 const T& sent_of(const T& values, const FlatScene&, const std::vector<float>&) {
   return values;
@@ -90,7 +92,7 @@ const std::vector<float>& sent_of(const std::vector<float>& values, const FlatSc
   return &values == &flat.nodes && !packed.empty() ? packed : values;
 }
 
-/// Throws RunError that names what is too large.
+/// Throws RunError that names the buffer that is too large.
 void require_fit(const Device& device, const FlatScene& flat, const std::vector<float>& packed) {
   const DeviceInfo& info = device.info();
   constexpr double megabytes = 1e-6;
@@ -118,7 +120,7 @@ void require_fit(const Device& device, const FlatScene& flat, const std::vector<
       static_cast<double>(left) * megabytes, static_cast<double>(info.max_allocation_bytes) * megabytes));
 }
 
-/// What each buffer of the paths holds of one path, in bytes; ONE: nothing.
+/// Returns the bytes of one path in each buffer of the paths; ONE: nothing.
 std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   std::vector<std::uint64_t> out;
 #define GROUP_BEGIN(Type, group)

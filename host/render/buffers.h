@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The groups of shared/groups.h as buffers of a device: TreeBuffers, SurfacesBuffers, ...
+// These are the groups of shared/groups.h as buffers of a device: TreeBuffers, SurfacesBuffers, ...
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ ALL_GROUPS
 #undef BUFFER
 #undef GROUP_END
 
-/// The buffers that a kernel is run with, one pointer a group: `bindings.tree`, `bindings.surfaces`, ... Groups that it does not
-/// take may be null.
+/// Bindings are the buffers that a kernel runs with, one pointer a group: `bindings.tree`,
+/// `bindings.surfaces`, ... Groups that it does not take may be null.
 struct Bindings {
 #define GROUP_BEGIN(Type, group) const Type##Buffers* group = nullptr;
 #define BUFFER(name, type, access)
@@ -43,14 +43,15 @@ struct Bindings {
 #define BUFFER(name, type, access)
 #define GROUP_END(Type)
 
-/// The groups of a scene.
+/// SceneBuffers are the groups of a scene.
 struct SceneBuffers {
   SCENE_GROUPS
 
-  /// `encoding`: what the nodes are for; automatic: the device's. Throws RunError, before anything is allocated, when it does not
-  /// fit.
+  /// Allocates and sends. `encoding`: what the nodes are for; automatic: the device's. Throws
+  /// RunError, before anything is allocated, when it does not fit.
   SceneBuffers(const Device& device, const FlatScene& scene, Encoding encoding = Encoding::automatic);
-  /// Sends what has changed, and returns its bytes. Buffers that have grown are made anew, with some room to grow on.
+  /// Sends what has changed, and returns its bytes. Buffers that have grown are allocated again,
+  /// with some room to grow.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
   void bind(Bindings& bindings) const;
 
@@ -58,7 +59,7 @@ struct SceneBuffers {
   Encoding encoding_;
 };
 
-/// The groups of a view.
+/// SensorBuffers are the groups of a view.
 struct SensorBuffers {
   VIEW_GROUPS
 
@@ -67,7 +68,7 @@ struct SensorBuffers {
   void bind(Bindings& bindings) const;
 };
 
-/// What paths carry beside what all do.
+/// PathNeeds is the state of paths that only some scenes or films need.
 struct PathNeeds {
   Layers layers;
   bool cones = false;  // of textured scenes
@@ -75,15 +76,16 @@ struct PathNeeds {
   bool media = false;  // of scenes with media
 };
 
-/// Those of paths under way, which have `paths` places and `sort_bins` bins and sums of them.
+/// PathBuffers are the groups of paths under way, with room for `paths` paths and for `sort_bins`
+/// bins and their sums.
 struct PathBuffers {
   PATH_GROUPS
 
   PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, const PathNeeds& needs);
-  /// Makes those anew that are too short for so many paths with such needs.
+  /// Allocates again the buffers that are too short for so many paths with such needs.
   void provide(const Device& device, std::size_t paths, const PathNeeds& needs);
   void bind(Bindings& bindings) const;
-  /// Bytes on the device of each path, in all buffers or in the largest one.
+  /// These are the bytes on the device of each path, in all buffers or in the largest one.
   static std::uint64_t bytes_per_path(const PathNeeds& needs);
   static std::uint64_t largest_bytes_per_path(const PathNeeds& needs);
 };

@@ -76,7 +76,7 @@ void Crew::run(double patience, const std::function<void(std::size_t, Lock&)>& w
     while (!finished()) {
       changed_.wait_for(lock, std::chrono::duration<double>(tick_seconds));
       const auto now = std::chrono::steady_clock::now();
-      // Time in which this process was stopped is no device's silence.
+      // Time in which this process was stopped does not count as silence of a device.
       const double passed = std::min(std::chrono::duration<double>(now - before).count(), 2 * tick_seconds);
       before = now;
       for (std::size_t i = 0; i < members_.size(); ++i) {

@@ -8,8 +8,9 @@ namespace caplet {
 
 namespace {
 
-// 2^18 paths: enough rays for sorting to find neighbours, and few launches of nearly empty rounds; 60 MB of state
-// (decision 26). One work-item at a time suits PoCL's tracing; a processor adds up its bins one after the other.
+// 2^18 paths are enough rays for sorting to find neighbours, and few launches of nearly empty
+// rounds; they take 60 MB of state (decision 26). One work-item at a time suits PoCL's tracing; a
+// CPU adds up its bins one after the other.
 constexpr Drive of_cpus{.batch_paths = std::size_t{1} << 18,
                         .local_size = 64,
                         .counts_on_device = false,
@@ -17,7 +18,7 @@ constexpr Drive of_cpus{.batch_paths = std::size_t{1} << 18,
                         .layers_apart = false,
                         .sort_fan = 1u << 31,
                         .first_chunk = 0};
-// GPUs need whole wavefronts, and a question from the host stops all of them.
+// GPUs need whole wavefronts, and a query from the host stops all of them.
 constexpr Drive of_gpus{.batch_paths = std::size_t{1} << 20,
                         .local_size = 64,
                         .counts_on_device = true,

@@ -24,7 +24,7 @@ constexpr const char* stage_names[] = {
 #undef STAGE
 };
 
-/// Their groups, by name.
+/// These are the groups of each stage, by name.
 constexpr const char* stage_groups[] = {
 #define STAGE(name, groups) #groups,
 #include "shared/queries.def"
@@ -32,7 +32,7 @@ constexpr const char* stage_groups[] = {
 #undef STAGE
 };
 
-/// Whether they do a share of the items at a time, in the wide encoding.
+/// These say whether each stage does a share of the items at a time, in the wide encoding.
 constexpr bool stage_shares[] = {
 #define STAGE(name, groups) false,
 #define SHARING_STAGE(name, groups) true,

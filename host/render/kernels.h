@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The stages of stages.def and queries.def as kernels of a device.
+// Makes kernels of a device from the stages of stages.def and queries.def.
 #pragma once
 
 #include <array>
@@ -24,41 +24,44 @@ enum class Stage {
   count
 };
 
-/// The stages of a render: those of stages.def.
+/// Returns the stages of a render: those of stages.def.
 std::span<const Stage> render_stages();
 
-/// Number of buffers that the stage's kernel takes.
+/// Returns the number of buffers that the stage's kernel takes.
 std::size_t buffer_count(Stage stage);
 
-/// What stages are built for.
+/// StageOptions is what stages are built for.
 struct StageOptions {
   std::string compiler;  // its options: how traversal is shaped (Device::encoding)
   RowMasks rows;         // the kinds of shapes, materials, textures and lights that there are
 
   bool operator==(const StageOptions&) const = default;
-  /// Options for these and `others`: kernels that were built for more kinds than there are do as well.
+  /// Returns options for these and `others`: kernels that were built for more kinds than there are
+  /// also work.
   StageOptions together_with(const StageOptions& others) const;
 };
 StageOptions stage_options(const FlatScene& scene, const Device& device);
 
-/// The OpenCL C of a stage, without `#include`s.
+/// Returns the OpenCL C of a stage, without `#include`s.
 std::string stage_source(Stage stage, const RowMasks& rows = {});
 
 class Kernels {
  public:
-  /// `options`: see stage_options.
+  /// Takes `options` as stage_options returns them.
   Kernels(const Device& device, StageOptions options);
 
-  /// Compiles those that are not compiled yet, for launches of at most `most` work-items. Throws RunError.
+  /// Compiles the stages that are not compiled yet, for launches of at most `most` work-items.
+  /// Throws RunError.
   void compile(std::span<const Stage> stages, std::size_t most);
-  /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`: of these, where `counter` is the number of one
-  /// (limits.h), as many as it says. With timing on, waits for it and adds its seconds.
+  /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`; if `counter` is
+  /// the number of a counter (limits.h), only over as many of these as it says. With timing on,
+  /// waits for it and adds its seconds.
   void run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first = 0, cl_uint counter = ~cl_uint{0});
-  /// Most work-items of one launch, of stages that take one item each; 0: any number.
+  /// Limits the work-items of one launch, for stages that take one item each; 0: any number.
   void set_chunk(std::size_t chunk) { chunk_ = chunk; }
 
   void time_stages(bool on) { timed_ = on; }
-  /// Seconds that each stage took so far, when timing is on.
+  /// Returns the seconds that each stage took so far, when timing is on.
   std::vector<std::pair<std::string, double>> seconds_by_stage() const;
   double compile_seconds() const { return compile_seconds_; }
   const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const { return compile_seconds_by_stage_; }

@@ -25,12 +25,13 @@ namespace caplet {
 
 namespace {
 
-// Coordinates are at most 100 and directions at least 0.2 long: positions, rounded to 2^-24 of 100 a few times over and seen at
-// 17 degrees or more (and stretched by 2 at most), move t by some 1e-4. Anything larger is a fault, and faults are: this test is
-// of wrong code, not of rounding.
+// Coordinates are at most 100 and directions at least 0.2 long: positions, rounded to 2^-24 of 100
+// a few times over and seen at 17 degrees or more (and stretched by 2 at most), move t by some
+// 1e-4. Anything larger is a fault, and faults are larger: this tests for wrong code, not for
+// rounding.
 constexpr double t_tolerance = 2e-3;
 
-/// Wrong rays by check and shape.
+/// Tally counts wrong rays by check and shape.
 class Tally {
  public:
   explicit Tally(const std::vector<KnownRay>& rays) {
@@ -60,7 +61,7 @@ class Tally {
   std::map<std::pair<int, std::string>, Wrong> wrong_;
 };
 
-/// What any of the kernels says of a crossing.
+/// Seen is what any of the kernels reports of a crossing.
 struct Seen {
   bool hit = false;
   double t = 0;
@@ -73,7 +74,7 @@ std::string text_of(const KnownRay& ray) {
   return fmt::format("t = {:.6g}", ray.crossings.front().t);
 }
 
-/// Empty when it is right.
+/// Returns the difference; it is empty when the kernel is right.
 std::string difference(const KnownRay& ray, const Seen& seen, std::size_t which) {
   if (which >= ray.crossings.size()) return seen.hit ? fmt::format("finds t = {:.6g}, not nothing", seen.t) : "";
   const KnownCrossing& known = ray.crossings[which];
@@ -97,7 +98,8 @@ Seen seen_of(const FlatScene& flat, const HitRecord& hit) {
   return out;
 }
 
-/// The normal of a crossing is a unit vector against the ray, and its point lies on the ray.
+/// Checks that the normal of a crossing is a unit vector against the ray, and that its point lies
+/// on the ray.
 std::string record_fault(const RayRecord& ray, const PickRecord& pick) {
   const std::array<double, 3> o{ray.ox, ray.oy, ray.oz}, d{ray.dx, ray.dy, ray.dz};
   double off = 0, dd = 0, nn = 0, dn = 0;
@@ -119,7 +121,7 @@ Seen seen_of(const PickRecord& pick) {
   return {std::isfinite(pick.t), static_cast<double>(pick.t), pick.object, pick.leaving != 0};
 }
 
-/// What the stages of a render say of rays.
+/// TracedPaths is what the stages of a render find for rays.
 struct TracedPaths {
   std::vector<HitRecord> hits;         // of each ray
   std::vector<HitRecord> camera_hits;  // the same by extend_camera; none where there is no such stage
@@ -165,7 +167,8 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
 void check_render(const KnownScene& known, const FlatScene& flat, const Device& device, Tally& tally) {
   const std::size_t count = known.rays.size();
   DeviceScene scene(device, flat);
-  // Every ray just before its first crossing and just behind it; where there is none, twice to its end.
+  // Each shadow ray ends just before its ray's first crossing and just behind it; where there is
+  // none, twice at its end.
   std::vector<RayRecord> rays, shadows;
   for (const KnownRay& ray : known.rays) {
     rays.push_back(ray.ray);
@@ -219,7 +222,7 @@ std::string key_of(const Trial& trial) {
   return fmt::format("known answers {:x} {:d}{:d}{:d}", shapes_on_trial(trial.shapes), trial.render, trial.nearest, trial.lists);
 }
 
-/// What a trial's result depends on beside the device: its kernels and how they are built.
+/// Returns what a trial's result depends on beside the device: its kernels and how they are built.
 std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
   std::vector<std::string> out{key_of(trial), name_of(device.encoding()), kernel_source("probe/self_test.cl"),
                                kernel_source("probe/layout.cl")};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The second half of a device's self-test: the kernels that a command is about to use find, on some thousand rays whose crossings
-// are known (known_rays.h), what they should. Arithmetic can be right on a device whose compiler gets functions of vectors wrong.
+// This is the second half of a device's self-test. It checks that the kernels that a command is
+// about to use find the right crossings of some thousand rays whose crossings are known
+// (known_rays.h). Arithmetic can be right on a device whose compiler gets functions of vectors
+// wrong.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +15,30 @@
 
 namespace caplet {
 
-/// What a command is about to ask of a device.
+/// Trial is what a command is about to use on a device.
 struct Trial {
   std::uint64_t shapes = ~std::uint64_t{0};             // kernels built for scenes of these (FlatScene::shapes)
   bool render = false, nearest = false, lists = false;  // extend and connect; pick; pick_all and pick_list
 };
 
-/// Every kernel, for all shapes.
+/// This trial has every kernel, for all shapes.
 inline constexpr Trial whole_trial{~std::uint64_t{0}, true, true, true};
 
-/// One line for each stage and kind of shape that is wrong, like "capsule: nearest crossing: 12 of 144 rays are wrong; ...".
-/// Builds the programs of the device's encoding. Throws RunError when they do not build or run.
+/// Returns one line for each stage and kind of shape that is wrong, like "capsule: nearest
+/// crossing: 12 of 144 rays are wrong; ...". Builds the programs of the device's encoding. Throws
+/// RunError when they do not build or run.
 std::vector<std::string> known_answer_failures(const Device& device, const Trial& trial);
 
-/// Whether try_device has something to do: $CAPLET_SELF_TEST is 1, or unset and the device has not passed this trial before with
-/// this driver and these kernels.
+/// Returns whether try_device has something to do: $CAPLET_SELF_TEST is 1, or unset and the device
+/// has not passed this trial before with this driver and these kernels.
 bool needs_trial(const Device& device, const Trial& trial);
 
-/// self_test(), then known_answer_failures(); remembered when all is well, so that the next needs_trial() says no. Throws
-/// WrongDevice that says what is wrong. A driver may end the process here: see host/cli/trial.h.
+/// Runs self_test(), then known_answer_failures(). A pass is remembered, so that the next
+/// needs_trial() returns false. Throws WrongDevice with the failures. A driver may end the process
+/// here: see host/cli/trial.h.
 void try_device(const Device& device, const Trial& trial);
 
-/// Keeps in the cache that the device has passed; a cache that cannot be used is warned of.
+/// Stores in the cache that the device has passed; a cache that cannot be used is warned of.
 void remember_trial(const Device& device, const Trial& trial);
 
 }  // namespace caplet

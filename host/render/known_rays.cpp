@@ -25,8 +25,8 @@ using Side = KnownCrossing::Side;
 
 constexpr int copies = 12;
 constexpr int cells_a_side = 7, middle_cell = cells_a_side / 2;
-// Shapes reach 1.3 from the middle of their cell before they are scaled by 1.5 at most, and rays, at most three times a shape's
-// width long, 8.
+// Shapes reach 1.3 from the middle of their cell before they are scaled by 1.5 at most; rays, at
+// most three times a shape's width long, reach 8.
 constexpr double cell_width = 24;
 
 class Random {
@@ -37,7 +37,7 @@ class Random {
     const double z = uniform(-1, 1), phi = uniform(0, full_turn), r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
   }
-  /// Unit, across `axis`.
+  /// Returns a unit vector across `axis`.
   dvec3 across(const dvec3& axis) {
     for (;;) {
       const dvec3 tried = direction(), out = tried - axis * (glm::dot(tried, axis) / glm::dot(axis, axis));
@@ -49,7 +49,8 @@ class Random {
   std::mt19937 engine_{11};
 };
 
-/// A point of a surface, the outward unit normal there, and whether the surface is there: open shapes miss parts.
+/// SurfacePoint is a point of a surface, the outward unit normal there, and whether the surface is
+/// there: open shapes miss parts.
 struct SurfacePoint {
   dvec3 p, n;
   bool present = true;
@@ -60,10 +61,10 @@ double dot_of(const SurfacePoint& point, const dvec3& direction) { return glm::d
 
 class Maker {
  public:
-  /// `stretches`: there may be instances, which every shape becomes that is stretched or one-sided.
+  /// `stretches`: there may be instances; every shape that is stretched or one-sided becomes one.
   explicit Maker(bool stretches) : stretches_(stretches) {}
 
-  /// A convex solid whose surface `sample` draws points of, under `sized`.
+  /// Adds a convex solid for which `sample` draws points of the surface, under `sized`.
   void solid(int kind, const Geometry& geometry, const Sampler& sample, const dmat4& sized = dmat4(1)) {
     keep_first(
         geometry, [=, this] { rays_of_solid(sample, false); }, sized);
@@ -74,7 +75,8 @@ class Maker {
     }
   }
 
-  /// The part of a convex surface that is there. Points are at least a little way from its rims.
+  /// Adds the part of a convex surface that is there. Points are at least a little away from its
+  /// rims.
   void open(int kind, const Geometry& geometry, const Sampler& sample) {
     keep_first(geometry, [=, this] { rays_of_open(sample); });
     for (int copy = 0; copy < copies; ++copy) {
@@ -83,7 +85,8 @@ class Maker {
     }
   }
 
-  /// A sheet over the plane z = 0 that is nowhere steeper than 1/2. `sample`: points on it, or beside it.
+  /// Adds a sheet over the plane z = 0 that is nowhere steeper than 1/2. `sample`: points on it, or
+  /// beside it.
   void sheet(int kind, const Geometry& geometry, const Sampler& sample) {
     keep_first(geometry, [=, this] { rays_of_sheet(sample); });
     for (int copy = 0; copy < copies; ++copy) {
@@ -92,7 +95,8 @@ class Maker {
     }
   }
 
-  /// Box [-1, 1]^3 and a ball of radius 0.6 around (0, 0, 1), combined, along lines that are parallel to z.
+  /// Adds the box [-1, 1]^3 and a ball of radius 0.6 around (0, 0, 1), combined, along lines that
+  /// are parallel to z.
   void csg() {
     const auto box = std::make_shared<Shape>(), ball = std::make_shared<Shape>();
     box->geometry = BoxShape{dvec3(-1), dvec3(1)};
@@ -103,7 +107,7 @@ class Maker {
       begin(shape_csg, CsgShape{operation, {box, ball}}, copy, false);
       for (int i = 0; i < 8; ++i) {
         const double rho = random_.uniform(0, 0.5), phi = random_.uniform(0, full_turn), half = std::sqrt(0.36 - rho * rho);
-        // From z = 3 downwards: the ball's ends, the box's.
+        // Distances are from z = 3 downwards: the ball's ends, the box's.
         double enter = 2, leave = 4;
         if (operation == CsgShape::Operation::set_union) enter = 2 - half;
         if (operation == CsgShape::Operation::set_intersection) leave = 2 + half;
@@ -114,7 +118,7 @@ class Maker {
     }
   }
 
-  /// Objects of one shape, placed: the innermost kind does not matter, and is the first.
+  /// Adds placed objects of one shape: the innermost kind does not matter, and is the first.
   void instances() {
     Object object;
     Shape shape;
@@ -149,7 +153,8 @@ class Maker {
     rays_of_first_ = rays;
   }
 
-  /// Every second one is a similarity; the others may be stretched, and half of these mirrored.
+  /// Every second placement is a similarity; the others may be stretched, and half of these
+  /// mirrored.
   dmat4 placement(int copy) {
     const int cell = cell_++;
     const dvec3 place(cell % cells_a_side, cell / cells_a_side % cells_a_side, cell / (cells_a_side * cells_a_side));
@@ -172,7 +177,8 @@ class Maker {
     out_.scene.shapes.push_back(shape);
   }
 
-  /// Two points of a convex surface whose connection goes through the inside, at 17 degrees or more to the surface at both.
+  /// Returns two points of a convex surface whose connection goes through the inside, at 17 degrees
+  /// or more to the surface at both.
   std::pair<SurfacePoint, SurfacePoint> chord(const Sampler& sample) {
     for (;;) {
       const SurfacePoint a = sample(random_), b = sample(random_);
@@ -220,7 +226,7 @@ class Maker {
     }
   }
 
-  /// A ray of the shape's own space; nothing is known of it beyond `t_end`.
+  /// Adds a ray in the shape's own space; nothing is known of it beyond `t_end`.
   void add(const dvec3& origin, const dvec3& direction, std::vector<KnownCrossing> crossings, double t_end) {
     const dvec3 o(matrix_ * glm::dvec4(origin, 1)), d(matrix_ * glm::dvec4(direction, 0));
     const auto f = [](double x) { return static_cast<float>(x); };
@@ -244,7 +250,8 @@ dvec3 lerp(const dvec3& a, const dvec3& b, double s) { return a + s * (b - a); }
 
 // --- Surfaces ---
 
-/// The hull of two balls: its ends, and its side, along which the normal leans by the difference of the radii.
+/// Samples the hull of two balls: its ends, and its side, along which the normal leans by the
+/// difference of the radii.
 Sampler hull_of_balls(const dvec3& p0, const dvec3& p1, double r0, double r1) {
   return [=](Random& random) {
     const dvec3 axis = p1 - p0;
@@ -258,7 +265,7 @@ Sampler hull_of_balls(const dvec3& p0, const dvec3& p1, double r0, double r1) {
   };
 }
 
-/// A frustum; `round`: a ball of radius r0 around p0 as well (r0 = r1).
+/// Samples a frustum; `round`: a ball of radius r0 around p0 as well (r0 = r1).
 Sampler frustum(const dvec3& p0, const dvec3& p1, double r0, double r1, bool round) {
   return [=](Random& random) {
     const dvec3 axis = p1 - p0, unit = glm::normalize(axis), out = random.across(axis);
@@ -275,7 +282,7 @@ Sampler frustum(const dvec3& p0, const dvec3& p1, double r0, double r1, bool rou
   };
 }
 
-/// Takes the ball around a solid's bounds to the unit ball.
+/// Returns the matrix that takes the ball around a solid's bounds to the unit ball.
 template <FacedSolid Solid>
 dmat4 to_unit_size(const Solid& solid) {
   const Bounds box = bounds_under(solid, dmat4(1));
@@ -283,7 +290,7 @@ dmat4 to_unit_size(const Solid& solid) {
   return glm::translate(glm::scale(dmat4(1), dvec3(1 / radius)), -0.5 * (box.min + box.max));
 }
 
-/// The deepest of a lattice of points.
+/// Returns the deepest of a lattice of points.
 template <FacedSolid Solid>
 dvec3 point_inside(const Solid& solid) {
   const Bounds box = bounds_under(solid, dmat4(1));
@@ -298,7 +305,8 @@ dvec3 point_inside(const Solid& solid) {
   return best;
 }
 
-/// Along rays from the inside, where one surface alone is met: the others are still a little away.
+/// Samples along rays from the inside, where only one surface is met: the others are still a little
+/// away.
 template <FacedSolid Solid>
 Sampler surface_of(const Solid& solid) {
   const dmat4 sized = to_unit_size(solid), own = glm::inverse(sized);
@@ -335,7 +343,7 @@ Geometry capsule(const dvec3& p0, const dvec3& p1, double r0, double r1) {
   return out;
 }
 
-/// Within `margin` of neither end of [low, high].
+/// Returns whether x is not within `margin` of either end of [low, high].
 bool clear_of(double x, double low, double high, double margin) {
   return std::abs(x - low) > margin && std::abs(x - high) > margin;
 }
@@ -363,7 +371,7 @@ void known_if(int kind, Maker& make) {
   }
 }
 
-/// Convex solids that the model tells by their surfaces are tried by their files alone.
+/// Tests convex solids that the model describes by their surfaces, by their files alone.
 template <class Kind>
 void known(Kind, Maker& make) {
   constexpr bool is_told = false
@@ -396,7 +404,7 @@ void known(tapered_capsule_kind, Maker& make) {
 void known(triangle_kind, Maker& make) {
   const glm::vec3 a(-1, -0.75f, 0), b(1, -0.5f, 0), c(0.25f, 1, 0);
   make.sheet(shape_triangle, TriangleMeshShape{{a, b, c}, {{0, 1, 2}}, {}, {}}, [=](Random& random) {
-    // Barycentric coordinates: all positive on it, the last one negative beside it.
+    // Barycentric coordinates are all positive on it, and the last one is negative beside it.
     const bool on = random.uniform(0, 1) < 0.7;
     const double w = on ? random.uniform(0.05, 0.9) : random.uniform(-0.5, -0.05), v = random.uniform(0.05, 0.95) * (1 - w);
     const double u = 1 - w - v;
@@ -421,7 +429,7 @@ void known(cone_kind, Maker& make) {
 }
 
 void known(polyhedron_kind, Maker& make) {
-  // The octahedron with corners at 1 on the axes: a face is the hull of three of them.
+  // This is the octahedron with corners at 1 on the axes: a face is the hull of three of them.
   PolyhedronShape octahedron;
   for (int i = 0; i < 8; ++i) {
     octahedron.points.emplace_back(i & 1 ? 1 : -1, 0, 0);
@@ -467,7 +475,8 @@ void known(partial_disk_kind, Maker& make) {
 }
 
 void known(bilinear_kind, Maker& make) {
-  // Over the square [-1, 1]^2, with slopes of at most 0.25 along x and along y: 0.36 in all.
+  // The patch lies over the square [-1, 1]^2, with slopes of at most 0.25 along x and along y: 0.36
+  // in all.
   const std::vector<glm::vec3> corners{{-1, -1, 0.125f}, {1, -1, -0.125f}, {-1, 1, -0.25f}, {1, 1, 0.25f}};
   make.sheet(shape_bilinear, BilinearMeshShape{corners, {{0, 1, 2, 3}}, {}, {}}, [=](Random& random) {
     const auto at = [&](double u, double v) {

@@ -11,7 +11,8 @@ namespace caplet {
 
 namespace {
 
-// PoCL compiles a kernel a second time for 65536 work-items or more: a single question should not wait for that.
+// PoCL compiles a kernel a second time for 65536 work-items or more: a single query should not wait
+// for that.
 constexpr std::size_t cpu_batch_rays = 65536 - 64;
 constexpr std::size_t gpu_batch_rays = std::size_t{1} << 20;
 constexpr std::size_t batch_hits = std::size_t{1} << 22;  // 64 MB

@@ -49,7 +49,7 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
     return more == samples;
   };
   if (options.look) {
-    // As many samples at a time as take so long.
+    // A pass has as many samples as take about the time between two looks.
     for (std::uint32_t samples = 1; done < total;) {
       const Clock::time_point begin = Clock::now();
       if (!pass(std::min(samples, total - done)) || (options.time_limit && seconds_since(start) >= *options.time_limit)) break;

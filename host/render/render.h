@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Renders a lowered scene: the wavefront path tracer's host side.
+// Renders a lowered scene: this is the host side of the wavefront path tracer.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,8 @@ struct RenderOptions {
   bool film_on_device = false;       // RenderResult::device_film in place of film, where it is on one device
   double patience = 60;              // SessionOptions::patience
   Layers layers = Layers::all();     // of the film
-  // Called between passes, about once in so many seconds, with the film as it then is; the film at the end does not depend on it.
+  // This is called between passes, about once in so many seconds, with the current film; the final
+  // film does not depend on it.
   std::function<void(const Film&)> look = {};
   double look_seconds = 1;
 };
@@ -57,10 +58,11 @@ RenderResult render(const FlatScene& scene, const FlatView& view, std::span<cons
 RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 
-/// Those of a session for renders with these options, for pictures that follow each other.
+/// Returns the options of a session for renders with these options, for pictures that follow each
+/// other.
 SessionOptions session_options(const RenderOptions& options);
-/// A picture of what such a session shows, whose film is empty (Session::update). The counts of rays, and what
-/// devices have done, are those of the session from its beginning.
+/// Renders a picture of a session's view, whose film is empty (Session::update). The counts of
+/// rays, and the work of devices, are those of the session from its beginning.
 RenderResult render(Session& session, std::span<const Device> devices, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 

@@ -16,16 +16,17 @@ namespace caplet {
 
 namespace {
 
-// A tree of fewer nodes (224 bytes each) and their leaves stays in a processor's cache however rays are ordered.
+// A tree of fewer nodes (224 bytes each) and their leaves stays in a CPU's cache however rays are
+// ordered.
 constexpr std::uint64_t sorting_pays_from_nodes = 1024;
 
-/// Morton bits per axis so that a bin holds a few rays on average.
+/// Returns Morton bits per axis so that a bin holds a few rays on average.
 uint sort_bits_for(std::size_t rays) {
   const double bits = (std::log2(static_cast<double>(std::max<std::size_t>(rays, 1))) - 3 - 2) / 3;
   return static_cast<uint>(std::clamp(static_cast<int>(bits), 0, 6));
 }
 
-/// CAPLET_NONE: sorting does not pay.
+/// Returns CAPLET_NONE if sorting does not pay.
 uint sort_bits_of(const DeviceScene& scene, std::size_t batch_paths) {
   return scene.bvh_nodes() >= sorting_pays_from_nodes ? sort_bits_for(batch_paths) : CAPLET_NONE;
 }
@@ -36,12 +37,13 @@ Window window_of(const ViewRecord& view) {
   return {narrow<int>(view.crop_x), narrow<int>(view.crop_y), narrow<int>(view.crop_width), narrow<int>(view.crop_height)};
 }
 
-/// The exponent of the power of two above |x|, within what sums have room for; 0 of what has none.
+/// Returns the exponent of the power of two above |x|, within the range that sums have room for; 0
+/// if there is none.
 int exponent_of(double x) {
   return x > 0 && std::isfinite(x) ? std::clamp(std::ilogb(x) + 1, -largest_film_exponent, largest_film_exponent) : 0;
 }
 
-/// Of the whole scene and the camera, as seen from the world's origin.
+/// Returns the extent of the whole scene and the camera, as seen from the world's origin.
 double extent_of(const WorldRecord& world, const CameraRecord& camera) {
   double at = 0;
   for (const int k : {3, 7, 11}) at += std::abs(double{camera.world_from_camera[k]});
@@ -53,7 +55,7 @@ PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
   return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media()};
 }
 
-/// The stages of a round, of which scenes have one or the other.
+/// RoundStages are the stages of a round; which ones depends on the scene.
 struct RoundStages {
   Stage first, later;  // that trace camera rays, and all others
   Stage shade, connect;
@@ -67,7 +69,7 @@ RoundStages round_stages(const DeviceScene& scene) {
   }
   return out;
 }
-/// Whether such a scene's renders have no use for a stage.
+/// Returns whether renders of such a scene do not use a stage.
 bool is_idle(Stage stage, const DeviceScene& scene) {
   if (stage == Stage::immerse || stage == Stage::settle || stage == Stage::travel) return !scene.has_media();
   constexpr std::array choices{Stage::extend,      Stage::extend_camera, Stage::extend_alpha,  Stage::shade,
@@ -87,14 +89,15 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, c
   const std::uint64_t film =
       std::uint64_t{view.view.crop_width} * view.view.crop_height * layout.words_per_pixel() * sizeof(ulong);
   const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), drive.sort_fan) * sizeof(uint);
-  // Drivers keep some for themselves: what kernels hold privately, for one.
+  // Drivers keep some memory for themselves, for example for private memory of kernels.
   const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
   const PathNeeds needs = needs_of(scene, options.layers);
   return fitting_batch(wanted, PathBuffers::bytes_per_path(needs), PathBuffers::largest_bytes_per_path(needs),
                        all - std::min(all, taken), device.info().max_allocation_bytes);
 }
 
-/// Of `paths` paths, or of fewer where the device turns out to have less memory than it says.
+/// Allocates buffers for `paths` paths, or for fewer where the device turns out to have less memory
+/// than it says.
 PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
@@ -165,7 +168,7 @@ void Renderer::reset(const FlatView& view) {
   scene_.kernels().compile(stages, batch_paths_);
 }
 
-// Megabytes: left to the first pass where that goes over all of it.
+// Clearing takes megabytes: it is left to the first pass if that covers the whole film.
 void Renderer::clear_film() const {
   if (is_old_) film_.words.clear();
   is_old_ = false;
@@ -213,7 +216,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   }
 }
 
-// The algorithm: see kernels/stages/path.cl.
+// kernels/stages/path.cl describes the algorithm.
 void Renderer::batch(const BatchRecord& record) {
   Kernels& kernels = scene_.kernels();
   const Drive& drive = drive_of(scene_.device().profile());
@@ -304,7 +307,7 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
   }
 }
 
-/// queue_next into queue.
+/// Sorts queue_next into queue.
 void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter) {
   Kernels& kernels = scene_.kernels();
   const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), drive_of(scene_.device().profile()).sort_fan);

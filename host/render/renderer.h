@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The wavefront path tracer's host side: passes over windows and samples of a view, into a film on the device.
+// This is the host side of the wavefront path tracer: it renders passes over windows and samples of
+// a view into a film on the device.
 #pragma once
 
 #include <atomic>
@@ -18,19 +19,19 @@
 
 namespace caplet {
 
-/// What a renderer has done so far.
+/// RayCounts counts what a renderer has done so far.
 struct RayCounts {
   std::uint64_t camera = 0, bounce = 0, shadow = 0;
   std::uint64_t not_finite = 0;  // samples that count as black, as their radiance was not a number
 };
 
-/// A film in a device's memory, which copies share.
+/// DeviceFilm is a film in a device's memory, which copies share.
 struct DeviceFilm {
   Buffer<ulong> words;
   FilmLayout layout;
   std::vector<FilmPart> parts;
 
-  /// All of it, or `rows` of its rows from `first` on. Throws RunError.
+  /// Returns all of it, or `rows` of its rows from `first` on. Throws RunError.
   Film read() const { return read(0, layout.window.height); }
   Film read(int first, int rows) const;
 };
@@ -43,10 +44,12 @@ struct RendererOptions {
 
 class Renderer {
  public:
-  /// Renders `scene`, which must outlive this, as `view` shows it. Compiles what is not compiled yet. Throws RunError.
+  /// Renders `scene`, which must outlive this, as `view` shows it. Compiles the stages that are not
+  /// compiled yet. Throws RunError.
   Renderer(DeviceScene& scene, const FlatView& view, const RendererOptions& options = {});
 
-  /// Another view of the scene as it now is (DeviceScene::update); the film is empty again. Compiles what is not compiled yet.
+  /// Switches to another view of the scene as it now is (DeviceScene::update); the film is empty
+  /// again. Compiles the stages that are not compiled yet.
   void reset(const FlatView& view);
 
   /// Adds samples [sample_begin, sample_begin + sample_count) of every pixel of `window`, which lies within the film's.
@@ -55,17 +58,19 @@ class Renderer {
   void pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 
-  /// What has been added up so far. Valid until the next pass or reset.
+  /// Returns the film so far. It is valid until the next pass or reset.
   const DeviceFilm& film() const;
   const FilmLayout& layout() const { return film_.layout; }
   std::size_t batch_paths() const { return batch_paths_; }
   const RayCounts& rays() const { return rays_; }
-  /// A number that grows whenever the device has answered in a pass. From any thread.
+  /// Returns a number that grows whenever the device has answered in a pass. It may be called from
+  /// any thread.
   std::uint64_t beats() const { return beats_; }
 
  private:
   void batch(const BatchRecord& record);
-  /// Its rounds, until no path is left: asked about by the host in each, or launched several at a time for the most there may be.
+  /// These render the rounds of a batch until no path is left: the host queries the number in each
+  /// round, or launches several rounds at a time for the most paths there may be.
   void rounds_by_host(Bindings& bindings, std::size_t paths);
   void rounds_on_device(Bindings& bindings, std::size_t paths);
   void sort(const Bindings& bindings, std::size_t paths, cl_uint counter);
@@ -85,7 +90,8 @@ class Renderer {
   std::atomic<std::uint64_t> beats_{0};
 };
 
-/// Bytes of the state of the smallest batch of paths, with all layers, that a render takes on a device without room for more.
+/// Returns the bytes of the state of the smallest batch of paths, with all layers, that a render
+/// takes on a device without room for more.
 std::uint64_t least_batch_bytes();
 
 }  // namespace caplet

@@ -83,7 +83,7 @@ namespace {
 struct PassGivenUp {};
 }  // namespace
 
-/// One undertaking of all workers, which those that hang keep alive.
+/// Run is one task of all workers; workers that hang keep it alive.
 struct Session::Run {
   Run(Workers of, Shares of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
 
@@ -188,7 +188,8 @@ void Session::clear() {
   first_ = next_ = options_.sample_begin;
 }
 
-/// Leaves them out, but for the last one there is: its failure is thrown, and it may be asked again.
+/// Leaves these workers out, except for the last one there is: its failure is thrown, and it may be
+/// used again.
 void Session::part_with(const Workers& gone, const std::exception_ptr& last_failure) {
   const std::shared_ptr<Worker> last = gone.size() == workers_.size() && !gone.empty() ? gone.back() : nullptr;
   for (const auto& worker : gone) {
@@ -313,7 +314,7 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
   return run->shares.samples();
 }
 
-/// The sum of the workers' films; nothing when one of them could not be read.
+/// Returns the sum of the workers' films; nothing when one of them could not be read.
 std::optional<Film> Session::gather() {
   const auto run = std::make_shared<Run>(workers_, Shares(layout().window, next_, 0, {}, {}));
   run->films.resize(workers_.size());
@@ -334,7 +335,8 @@ std::optional<Film> Session::gather() {
   if (!run->gone.empty()) return {};
   Film out = std::move(*run->films.front());
   for (std::size_t i = 1; i < run->films.size(); ++i) out.add(*run->films[i]);
-  // Whoever rendered what, it is all samples of the window, though its parts may not have been such as join.
+  // Whatever worker rendered what, it is all samples of the window, though its parts may not be
+  // such that join.
   if (out.parts().size() < 2) return out;
   return Film(out.layout(), {out.words().begin(), out.words().end()}, {{out.layout().window, first_, next_ - first_}});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One film from one or several devices, of a scene that may change.
+// A session renders one film on one or several devices, of a scene that may change.
 #pragma once
 
 #include <atomic>
@@ -39,7 +39,7 @@ struct SessionProgress {
   double samples_per_second = 0;   // of all pixels
 };
 
-/// What a device of a session has done.
+/// DeviceWork is what a device of a session has done.
 struct DeviceWork {
   std::string name, driver, platform;
   double paths = 0, paths_a_second = 0;  // in the film; lately
@@ -48,18 +48,19 @@ struct DeviceWork {
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;
 
-/// Devices take samples from a common list until there are no more, by the speed that they show, so that all are done at the same
-/// time. What comes out does not depend on which device did what, on their number or on their speed, as long as they compute
-/// alike (devices of one kind do). One that fails, or gives no answer for `patience` seconds, is left out with a warning, and its
-/// work, which is lost with its film, is done again by the others; the last one's failure is the session's.
+/// Devices take samples from a common list until there are no more, by their measured speed, so
+/// that all finish at the same time. The result does not depend on which device did what, on their
+/// number or on their speed, as long as they compute alike (devices of one kind do). A device that
+/// fails, or gives no answer for `patience` seconds, is left out with a warning. Its work, which is
+/// lost with its film, is done again by the others; the last one's failure is the session's.
 class Session {
  public:
   /// Sends the scene to every device and compiles. Throws RunError when no device can do it.
   Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options);
   ~Session();
 
-  /// The scene as it now is, which differs from the last one in `changes`, and how it is looked at. The film is empty again, and
-  /// begins at the first sample. Throws RunError.
+  /// Switches to the scene as it now is, which differs from the last one in `changes`, and to a
+  /// view of it. The film is empty again, and begins at the first sample. Throws RunError.
   void update(const FlatScene& scene, const SceneChanges& changes, const FlatView& view);
 
   /// Begins with the samples of `film`, and goes on after the last of them. Throws InputError when it is not of this scene's
@@ -74,23 +75,27 @@ class Session {
   std::uint32_t render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress = {},
                        std::optional<double> time_limit = {});
 
-  /// All that was added up. A device that fails now is left out as well, and what it had done is rendered again. Throws RunError.
+  /// Returns the sum of all films. A device that fails now is left out as well, and its work is
+  /// rendered again. Throws RunError.
   Film film();
-  /// The same where it lies on one device as a whole: nothing when there are others, or what it was resumed with.
+  /// Returns the same if it lies on one device as a whole: nothing when there are others, or
+  /// samples that it was resumed with.
   std::optional<DeviceFilm> film_on_device() const;
   FilmLayout layout() const;
 
-  /// The render under way finishes what it has begun and begins no more; where there is none, the next one does. From any thread,
-  /// a progress function included.
+  /// Stops the render under way after the samples that are begun; if there is none, stops the next
+  /// one. It may be called from any thread, and from a progress function.
   void cancel() { *cancelled_ = true; }
 
-  /// Of all devices that were there in the beginning; what follows, of those that there are now.
+  /// Returns the work of all devices that were there in the beginning; the functions below count
+  /// only those that are there now.
   std::vector<DeviceWork> work() const;
   RayCounts rays() const;
   double compile_seconds() const;
   StageSeconds compile_seconds_by_stage() const, seconds_by_stage() const;
 
-  /// The devices that there are now, and the scene on them, for queries while nothing is rendered.
+  /// These are the devices that are there now, and the scene on them, for queries while nothing is
+  /// rendered.
   std::size_t device_count() const { return workers_.size(); }
   const Device& device(std::size_t number) const;
   std::shared_ptr<DeviceScene> scene_on(std::size_t device) const;
@@ -114,8 +119,9 @@ class Session {
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-/// Whether a thread of a session that hangs in a driver was given up, and has not come back: a program then ends without the
-/// destructors of static objects, which such a thread may still use.
+/// Returns whether a thread of a session that hangs in a driver was abandoned, and has not come
+/// back: a program then ends without the destructors of static objects, which such a thread may
+/// still use.
 bool any_thread_given_up();
 
 }  // namespace caplet

@@ -10,7 +10,7 @@ namespace caplet {
 
 namespace {
 
-// Camera rays go through the picture in tiles of 8 x 8 pixels (kernels/stages/path.cl).
+// Camera rays are numbered in tiles of 8 x 8 pixels (kernels/stages/path.cl).
 constexpr int tile_rows = 8;
 
 double paths_of(const FilmPart& part) { return static_cast<double>(part.window.pixels()) * part.sample_count; }
@@ -78,10 +78,10 @@ std::optional<FilmPart> Shares::take(std::size_t worker) {
       }
     const double speed = to.speed.paths_a_second();
     if (speed > 0) {
-      // Those whose speed is not known count as the mean of the others.
+      // Workers whose speed is not known count as the mean of the others.
       const double all = known / there * static_cast<double>(workers_there());
       paths = part_paths(open_paths(), speed, all);
-      // One that is so slow that the others would be done before it had a row.
+      // A worker gets nothing if it is so slow that the others would finish before it had one row.
       const double least = from.window.width;
       if (speed < fastest && least / speed > open_paths() / (known - speed) + least_part_seconds) return {};
     } else {

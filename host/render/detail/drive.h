@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How devices of a kind are kept busy: the sizes of batches and launches, and what is left to the device.
+// These settings keep devices of a kind busy: the sizes of batches and launches, and the work that
+// is left to the device.
 #pragma once
 
 #include <cstddef>
@@ -24,30 +25,32 @@ struct Drive {
 };
 const Drive& drive_of(Profile profile);
 
-/// Rounds of a batch that are launched between two questions for the number of paths left.
+/// This many rounds of a batch are launched between two queries for the number of paths left.
 inline constexpr int rounds_unasked = 4;
 
 /// No batch is made smaller than this to fit a device.
 inline constexpr std::size_t least_batch_paths = std::size_t{1} << 12;
 
-/// `wanted` paths, or as often half of them as it takes for their state to fit: `bytes` a path in all and `largest_bytes` in one
-/// buffer, with `left` bytes left in all and `most` in one buffer. Not below least_batch_paths (or `wanted`).
+/// Returns `wanted` paths, or half of them as many times as needed for their state to fit: `bytes`
+/// a path in all and `largest_bytes` in one buffer, with `left` bytes left in all and `most` in one
+/// buffer. It is not below least_batch_paths (or `wanted`).
 std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes, std::uint64_t left,
                           std::uint64_t most);
 
-/// Drivers of displays end kernels that run for seconds. The work-items of one launch are twice as many after rounds that show
-/// that these would do within least_chunk_seconds, and half as many after such as may have had a launch of most_chunk_seconds:
-/// `launched`, of one stage in a round, took at most `seconds` with all the other stages.
+/// Display drivers end kernels that run for seconds. The work-items of one launch are doubled after
+/// rounds which show that these would take at most least_chunk_seconds, and halved after rounds
+/// which may have had a launch of most_chunk_seconds: `launched` work-items of one stage in a round
+/// took at most `seconds` with all the other stages.
 inline constexpr double least_chunk_seconds = 0.1, most_chunk_seconds = 0.5;
 std::size_t next_chunk(std::size_t chunk, std::size_t launched, double seconds);
 
-/// Blocks of `fan` sort bins, blocks of `fan` of their sums, and so on until there is one: items [first, first + count) of
-/// sort_sums and sort_prefix, level by level.
+/// The levels are blocks of `fan` sort bins, blocks of `fan` of their sums, and so on until there
+/// is one: items [first, first + count) of sort_sums and sort_prefix, level by level.
 struct SortLevel {
   std::size_t first = 0, count = 0;
 };
 std::vector<SortLevel> sort_levels(std::size_t bins, std::size_t fan);
-/// What the bins and the sums of blocks take together.
+/// Returns the places that the bins and the sums of blocks need together.
 std::size_t sort_places(std::size_t bins, std::size_t fan);
 
 }  // namespace caplet

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Rays whose crossings are known from how the rays are made. A line through two points of a convex solid's surface crosses it in
-// these two alone; a line that is steeper than a sheet is anywhere crosses it once; one in a plane clear of a solid's supporting
-// plane misses it. No formula of intersection is needed, and so none can be shared with the kernels.
+// These are rays whose crossings are known by construction. A line through two points of a convex
+// solid's surface crosses it in these two alone; a line that is steeper than a sheet is anywhere
+// crosses it once; one in a plane clear of a solid's supporting plane misses it. No intersection
+// formula is needed, so none can be shared with the kernels.
 #pragma once
 
 #include <cstdint>
@@ -28,19 +29,21 @@ struct KnownRay {
   std::vector<KnownCrossing> crossings;  // in order; at least a tenth of a direction's length apart
 };
 
-/// The kinds (bit k: kind k) of a scene that tries kernels for scenes of `shapes`, and what they are built for: these; with csg
-/// shapes the operands of known ones; and with kinds that only instances can turn, instances.
+/// Returns the kinds (bit k: kind k) of a scene that tests kernels for scenes of `shapes`, and what
+/// they are built for: these; with csg shapes the operands of known ones; and with kinds that only
+/// instances can rotate, instances.
 std::uint64_t shapes_on_trial(std::uint64_t shapes);
 
 struct KnownScene {
   Scene scene;
   std::vector<KnownRay> rays;
 };
-/// Shapes of every kind of shapes_on_trial(shapes), each turned, and, where there are instances, some stretched, mirrored or
-/// one-sided; far enough from each other that no ray meets two of them.
+/// Returns shapes of every kind of shapes_on_trial(shapes), each rotated, and, where there are
+/// instances, some stretched, mirrored or one-sided. They are far enough from each other that no
+/// ray meets two of them.
 KnownScene known_scene(std::uint64_t shapes);
 
-/// "sphere" for shape_sphere.
+/// Returns "sphere" for shape_sphere.
 const char* shape_name(int kind);
 
 }  // namespace caplet
