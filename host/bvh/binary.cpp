@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Top-down binned surface area heuristic (Wald 2007). Of many references the upper levels are found over the cells of a grid that
-// the references are sorted into first, as if each cell were one reference; only below are references looked at one by one.
-// Parallel over subtrees and, near the root, over ranges; minima, maxima and counts do not depend on the order they are taken in,
-// and partitions are stable, so neither does the tree.
+// Builds a binary tree top-down by the binned surface area heuristic (Wald 2007). With many
+// references the upper levels are built over the cells of a grid that the references are sorted
+// into first, as if each cell were one reference; only below are references used one by one. The
+// build is parallel over subtrees and, near the root, over ranges. Minima, maxima and counts do not
+// depend on the order they are taken in, and partitions are stable, so the tree does not depend on
+// it either.
 #include "bvh/detail/binary.h"
 
 #include <tbb/blocked_range.h>
@@ -27,21 +29,21 @@ constexpr std::uint32_t chunk = 16384;              // references a task near th
 constexpr std::uint32_t grid_pays_from = 65536;     // references
 constexpr int max_cell_bits = 6;                    // an axis
 
-/// How far the grid of large trees goes.
+/// Cells is the range over which large trees use the grid.
 struct Cells {
   std::uint32_t references;  // a cell, roughly
   std::size_t least;         // a subtree of fewer cells is split by its references
 };
 constexpr Cells cells_of(Effort effort) { return effort == Effort::full ? Cells{32, 64} : Cells{8, 8}; }
 
-// x, y, z and a fourth lane of no account, which instructions of four lanes have anyway.
+// The lanes are x, y, z and an unused fourth one, which instructions of four lanes have anyway.
 typedef float Float4 __attribute__((vector_size(16)));
 typedef std::int32_t Int4 __attribute__((vector_size(16)));
 
 Float4 least(Float4 a, Float4 b) { return b < a ? b : a; }
 Float4 greatest(Float4 a, Float4 b) { return a < b ? b : a; }
 
-/// The fourth lane is 0: as a number what stands there may be one that processors are slow with.
+/// The fourth lane is 0: other bits there might be a number that CPUs are slow with.
 Float4 corner(const float* at) {
   const Int4 mask = {-1, -1, -1, 0};
   Int4 bits;
@@ -50,7 +52,7 @@ Float4 corner(const float* at) {
   return std::bit_cast<Float4>(bits);
 }
 
-/// A Box in lanes.
+/// LaneBox is a Box in lanes.
 struct LaneBox {
   Float4 min = {Box::inf, Box::inf, Box::inf, Box::inf}, max = -min;
 
@@ -64,7 +66,7 @@ struct LaneBox {
 
 Float4 centroid(Float4 low, Float4 high) { return 0.5f * low + 0.5f * high; }
 
-/// Of some references: their box and that of their centroids.
+/// Bounds holds the box of some references and that of their centroids.
 struct Bounds {
   LaneBox box, centroids;
   bool mixed = false;  // of several groups
@@ -80,7 +82,7 @@ struct Bins {
   std::array<std::array<Float4, max_bins>, 3> min, max;
   std::array<std::array<std::uint32_t, max_bins>, 3> count;
 
-  /// Empties the first `bins` of each axis; what is in the others is not looked at.
+  /// Empties the first `bins` of each axis; the others are not used.
   explicit Bins(std::size_t bins) {
     const LaneBox nothing;
     for (std::size_t axis = 0; axis < 3; axis++)
@@ -114,7 +116,7 @@ struct Binning {
       scale[k] = extent > 0 && std::isfinite(per) && per > 0 ? per : 0;
     }
   }
-  /// Of all axes; that of an axis without extent is some bin.
+  /// Returns the bins along all axes; along an axis without extent it is some bin.
   Int4 bin(Float4 center) const {
     const float last = static_cast<float>(bins) - 0.5f;
     const Float4 x = (center - origin) * scale, most = {last, last, last, last};
@@ -122,8 +124,9 @@ struct Binning {
   }
 };
 
-/// Leaf blocks that `count` references will probably fill: a block costs the same however many of its lanes are used, and leaves
-/// of a finished tree are about three quarters full.
+/// Returns the number of leaf blocks that `count` references will probably fill: a block costs the
+/// same however many of its lanes are used, and leaves of a finished tree are about three quarters
+/// full.
 double blocks(std::uint32_t count) { return count <= width ? 1.0 : static_cast<double>(count) / (0.75 * width); }
 
 struct Split {
@@ -226,13 +229,13 @@ class Builder {
     return best;
   }
 
-  /// How many went left, and the bounds of both sides' centroids: left, right.
+  /// Halves says how many went left, and the bounds of both sides' centroids: left, right.
   struct Halves {
     std::uint32_t left = 0;
     std::array<LaneBox, 2> centroids;
   };
 
-  /// Stable.
+  /// The partition is stable.
   template <class Left>
   Halves partition(std::uint32_t first, std::uint32_t count, const Left& left) {
     const auto range = items(first, count);
@@ -242,7 +245,8 @@ class Builder {
     if (count < 4 * chunk) {
       std::uint32_t kept = 0;
       for (std::uint32_t i = 0; i < count; i++) {
-        // Written to both sides and kept on one: no processor guesses which.
+        // Each reference is written to both sides and kept on one, so that there is no branch to
+        // mispredict.
         const Reference r = range[i];
         const std::uint32_t is_left = left(r) ? 1 : 0;
         const Float4 center = center_of(r);
@@ -292,7 +296,8 @@ class Builder {
     std::uint32_t left = 0;
     std::array<Bounds, 2> sides;
     bool bounded = false;  // `sides` are known
-    // A median split needs log2(count) levels below; with groups apart, one more. The heuristic may use what is beyond that.
+    // A median split needs log2(count) levels below; with separate groups, one more. The heuristic
+    // may use the levels beyond that.
     const int needed = static_cast<int>(std::bit_width(count)) + 2;
     if (depth + needed < max_depth) {
       if (count <= width && b.mixed) {
@@ -334,13 +339,13 @@ class Builder {
 
   // --- The upper levels of large trees ---
 
-  /// References whose centroids lie in one cell of the grid.
+  /// A Cell holds the references whose centroids lie in one cell of the grid.
   struct Cell {
     LaneBox box;
     Float4 center;                       // of its centroids
     std::uint32_t first = 0, count = 0;  // of the references as they are sorted by cells
   };
-  /// A node over cells whose own levels are found by references.
+  /// A Top is a node over cells whose own levels are built from references.
   struct Top {
     std::uint32_t node, first, count;
     int depth;
@@ -351,7 +356,7 @@ class Builder {
     cell_order_.resize(cells_.size());
     std::iota(cell_order_.begin(), cell_order_.end(), 0u);
     build_over_cells(0, 0, static_cast<std::uint32_t>(cells_.size()), 0, 0);
-    // In the order that their splits have brought the cells into.
+    // The order is that into which the splits have brought the cells.
     std::vector<std::uint32_t> to(cells_.size() + 1, 0);
     for (std::size_t i = 0; i < cells_.size(); i++) to[i + 1] = to[i] + cells_[cell_order_[i]].count;
     tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
@@ -364,7 +369,7 @@ class Builder {
     });
   }
 
-  /// Into scratch_, stable within a cell; those that are empty are left out of cells_.
+  /// Sorts into scratch_, stable within a cell; empty cells are left out of cells_.
   void sort_into_cells(std::span<const Reference> references, const Bounds& all) {
     const std::uint32_t count = tree_.count;
     const int bits = std::clamp(static_cast<int>(std::bit_width(count / cell_size_.references) - 1) / 3, 1, max_cell_bits);
@@ -379,7 +384,8 @@ class Builder {
       std::uint32_t* counts = &places[std::size_t{p} * cell_count];
       for (std::uint32_t i = part_begin(p); i < part_begin(p + 1); i++) {
         const Int4 at = grid.bin(centroid(corner(references[i].min), corner(references[i].max)));
-        // Cells that are close in space are so in memory, nearly: the bits of the axes interleaved would be closer, and slower.
+        // Cells that are close in space are nearly so in memory: interleaving the bits of the axes
+        // would be closer, and slower.
         keys[i] = static_cast<std::uint32_t>((at[2] << bits | at[1]) << bits | at[0]);
         counts[keys[i]]++;
       }
@@ -410,7 +416,8 @@ class Builder {
     });
   }
 
-  /// The node over cells [begin, end) of cell_order_, whose references begin at `first` of the items.
+  /// Builds the node over cells [begin, end) of cell_order_, whose references begin at `first` of
+  /// the items.
   void build_over_cells(std::uint32_t index, std::uint32_t begin, std::uint32_t end, std::uint32_t first, int depth) {
     LaneBox box, centers;
     std::uint32_t count = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parallel binned-SAH bounding volume hierarchy over boxes, collapsed to eight children a node. Knows no shape.
-// Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007; Wald, Benthin and Boulos,
-// "Getting rid of packets", 2008 (collapse to wide nodes).
+// Builds binned-SAH bounding volume hierarchies over boxes in parallel, collapsed to eight children
+// a node. It does not depend on shapes. Wald, "On fast construction of SAH-based bounding volume
+// hierarchies", 2007; Wald, Benthin and Boulos, "Getting rid of packets", 2008 (collapse to wide
+// nodes).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace caplet::bvh {
 
-/// A box with the primitive's opaque group: a leaf holds primitives of one group only.
+/// Reference is a box with the primitive's opaque group: a leaf holds primitives of one group only.
 struct Reference {
   float min[3];
   std::uint32_t primitive;
@@ -23,7 +24,8 @@ static_assert(sizeof(Reference) == 32);
 
 inline constexpr int width = 8;
 
-/// child[i] >= 0: node index; < 0: leaf ~child[i]; empty slots have min > max and child = 0x7fffffff.
+/// child[i] >= 0 is a node index; < 0 is leaf ~child[i]; empty slots have min > max and child =
+/// 0x7fffffff.
 struct Node {
   float min[3][width];
   float max[3][width];
@@ -45,16 +47,18 @@ struct Tree {
   double sah = 0;                    // expected node visits + leaf visits of a random line through the root box
 };
 
-/// No path of a tree is longer than this, whatever the boxes: the builder splits at the median once the surface area heuristic
-/// has used up its share, so that the levels left always suffice. Holds for up to 2^31 references.
+/// No path of a tree is longer than this, whatever the boxes: the builder splits at the median once
+/// the surface area heuristic has used up its share, so that the levels left always suffice. This
+/// holds for up to 2^31 references.
 inline constexpr int max_depth = 40;
 
-/// Of 65,536 and more references, `quick` looks at smaller cells of a grid, and farther down, before it looks at references one
-/// by one: a fifth less processor time for 0.4 to 0.8 % more area (1 M boxes). Fewer give the same tree.
+/// With 65,536 and more references, `quick` uses smaller cells of a grid, and uses them farther
+/// down, before it uses references one by one: a fifth less processor time for 0.4 to 0.8 % more
+/// area (1 M boxes). Fewer references give the same tree.
 enum class Effort { full, quick };
 
-/// Same tree for any number of threads. Boxes are finite with min <= max. References of group `single_group` get a leaf each. Of
-/// no references the tree is a root without children.
+/// Builds the same tree for any number of threads. Boxes are finite with min <= max. References of
+/// group `single_group` get a leaf each. Without references the tree is a root without children.
 Tree build(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu, Effort effort = Effort::full);
 
 }  // namespace caplet::bvh

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which binary nodes become wide ones: least expected cost by dynamic programming over "this subtree as at most i children"
-// (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", HPG 2017).
+// Chooses which binary nodes become wide ones: least expected cost by dynamic programming over
+// "this subtree as at most i children" (Ylitie, Karras and Laine, "Efficient incoherent ray
+// traversal on GPUs through compressed wide BVHs", HPG 2017).
 #include <tbb/parallel_invoke.h>
 
 #include "base/check.h"
@@ -15,8 +16,8 @@ constexpr double node_cost = 1.0, leaf_cost = 1.0;
 constexpr std::uint32_t no_root = 0xffffffff;
 constexpr std::uint32_t parallel_nodes = 4096;
 
-/// cost[i]: least cost of the subtree as at most i + 1 roots (each a wide node or a leaf). left[i]: how many of these the left
-/// child gets; 0: the subtree stays one root.
+/// cost[i] is the least cost of the subtree as at most i + 1 roots (each a wide node or a leaf).
+/// left[i] is how many of these the left child gets; 0: the subtree stays one root.
 struct Choice {
   std::array<float, width> cost;
   std::array<std::uint8_t, width> left;
@@ -68,7 +69,8 @@ class Collapser {
     opened_cost(choice, area);
   }
 
-  /// One root: a wide node over the best eight. With more allowed it is still possible to stay one root.
+  /// Computes the cost as one root: a wide node over the best eight. With more roots allowed it is
+  /// still possible to stay one root.
   static void opened_cost(Choice& choice, float area) {
     choice.left[0] = 0;
     choice.cost[0] = area * static_cast<float>(node_cost) + choice.cost[width - 1];
@@ -91,9 +93,10 @@ class Collapser {
     gather(node.right, allowed - left, false, roots);
   }
 
-  /// The roots in the order of slots: the best pairs first of a root and a slot whose number's bits tell the octant of the node
-  /// that the root lies in (bit k: towards larger values along axis k). A ray meets the slots in the order of slot ^ octant of
-  /// its direction, nearly (Ylitie et al. 2017, section 3.3).
+  /// Returns the roots in the order of slots. Pairs of a root and a slot are chosen best first, by
+  /// how well the slot number's bits match the octant of the node that the root lies in (bit k:
+  /// towards larger values along axis k). A ray meets the slots nearly in the order of slot ^
+  /// octant of its direction (Ylitie et al. 2017, section 3.3).
   std::array<std::uint32_t, width> placed(std::uint32_t index, const std::vector<std::uint32_t>& roots) const {
     std::array<std::uint32_t, width> slots;
     slots.fill(no_root);

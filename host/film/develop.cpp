@@ -26,13 +26,13 @@ Vector operator*(const std::array<double, 9>& m, const Vector& v) {
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-/// Rounded to the float that is no further from 0.
+/// Rounds to the nearest float that is no further from 0.
 float towards_zero(double value) {
   const auto rounded = static_cast<float>(value);
   return std::abs(double{rounded}) > std::abs(value) ? std::nextafter(rounded, 0.0f) : rounded;
 }
 
-/// Beyond the range of a float: infinity.
+/// Returns infinity beyond the range of a float.
 float to_float(double value) {
   if (std::abs(value) > double{std::numeric_limits<float>::max()}) return std::numeric_limits<float>::infinity();
   return static_cast<float>(value);
@@ -58,7 +58,7 @@ LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers laye
   return image;
 }
 
-/// One pixel of a film.
+/// Develops one pixel of a film.
 class Developer {
  public:
   Developer(const Film& film, const Scene& scene)
@@ -77,7 +77,7 @@ class Developer {
     rgb_ = picture_from_xyz_ * (per_sample_ * sums(Layer::color));
   }
 
-  /// The channels of a layer that is no number.
+  /// Returns the channels of a layer that is not a number.
   Vector values(Layer layer) const {
     switch (row_of(layer).how) {
       case LayerHow::picture:
@@ -101,7 +101,8 @@ class Developer {
         const Vector square = per_sample_ * sums(layer);
         Vector of_mean{};
         for (std::size_t c = 0; c < 3; ++c) {
-          // A mean of squares is not below the mean's square, but where the squares were too large for their sum.
+          // A mean of squares is not below the mean's square, except where the squares were too
+          // large for their sum.
           const double least = rgb_[c] * rgb_[c];
           const bool unknown = least > brightest_ * brightest_ && square[c] < 0.5 * least;
           of_mean[c] = unknown ? std::numeric_limits<double>::infinity()
@@ -131,7 +132,8 @@ class Developer {
   Vector rgb_{};
 };
 
-/// R G B are coverage's share of the shapes' light already: a backdrop fills the rest.
+/// Puts the backdrop under the picture. R G B already have coverage's share of the shapes' light,
+/// so the backdrop fills the rest.
 void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
   image.backdrop = backdrop;
   if (!backdrop || backdrop->kind == Backdrop::Kind::transparent) return;
@@ -149,7 +151,7 @@ void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
     }
 }
 
-/// What is written where a value is infinite or not a number.
+/// Returns what is written where a value is infinite or not a number.
 float instead_of(LayerHow how) { return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f; }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The film's sums as picture layers.
+// Turns the film's sums into picture layers.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,11 @@
 
 namespace caplet {
 
-/// Z of pixels whose camera rays all missed: Blender's value. Infinity would poison filters and normalising nodes.
+/// This is Z of pixels whose camera rays all missed: Blender's value. Infinity would spoil filters
+/// and normalising nodes.
 inline constexpr float depth_of_nothing = 1e10f;
 
-/// Developed pixels that are beyond the range of a float.
+/// NotFinite counts developed pixels that are beyond the range of a float.
 struct NotFinite {
   std::size_t count = 0, of = 0;  // `of`: how many were developed
   std::size_t x = 0, y = 0;       // the first one
@@ -25,19 +26,23 @@ struct NotFinite {
   void warn() const;
 };
 
-/// R G B A and the layers asked for (docs/output.md), which the film has, of all its pixels, times the exposure of `scene`:
-/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over the film's backdrop, by A
+/// Returns R G B A and the requested layers (docs/output.md) that the film has, for all its pixels,
+/// times the exposure of `scene`:
+/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over the
+///           film's backdrop, by A
 /// A         coverage: share of the camera rays that hit something
-/// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1 is white in any light
-/// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1 long), world position, distance;
-///           0, 0 and depth_of_nothing without hits
+/// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1
+///           is white in any light
+/// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1 long),
+///           world position, distance; 0, 0 and depth_of_nothing without hits
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
-/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two samples
-/// Nothing that is written is infinite or not a number: where the exposure goes beyond a float, R G B are black and the variance
-/// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
+/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two
+///           samples
+/// All values are finite: where the exposure goes beyond a float, R G B are black and the variance is
+/// the greatest float (other layers: 0), and `not_finite` counts those pixels.
 LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
-/// The same, with the warning.
+/// Does the same and warns.
 LayeredImage develop(const Film& film, const Scene& scene, Layers layers);
 
 }  // namespace caplet

@@ -33,7 +33,7 @@ bool in_common(const FilmPart& a, const FilmPart& b) {
          b.sample_begin < std::uint64_t{a.sample_begin} + a.sample_count;
 }
 
-/// Makes `a` both when they are next to each other.
+/// Extends `a` by `b` when they are next to each other; returns whether they are.
 bool join(FilmPart& a, const FilmPart& b) {
   if (a.window == b.window) {
     if (std::uint64_t{a.sample_begin} + a.sample_count == b.sample_begin) {
@@ -70,7 +70,7 @@ std::string text_of(const std::vector<FilmPart>& parts) {
   return out;
 }
 
-/// The next whole number of `text`, which is taken from it with the space or comma behind.
+/// Takes the next whole number from `text`, with the space or comma behind it.
 bool take_number(std::string_view& text, std::int64_t low, std::int64_t high, std::int64_t& out) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (error != std::errc() || out < low || out > high) return false;
@@ -147,7 +147,8 @@ double value_of_words(const std::uint64_t* sum, int words, double unit) {
   double value = 0;
   std::uint64_t carry = negative ? 1 : 0;
   for (int w = 0; w < words; ++w) {
-    // The magnitude, from its least word on: each addition rounds by half a unit in the last place at most.
+    // The magnitude is summed from its least word on: each addition rounds by half a unit in the
+    // last place at most.
     const std::uint64_t flipped = negative ? ~sum[w] : sum[w], word = flipped + carry;
     carry = word < flipped ? 1 : 0;
     value += static_cast<double>(word) * unit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Images as importers want them: linear RGB.
+// Reads images as importers need them: linear RGB.
 #include "film/image.h"
 
 #include <fmt/format.h>
@@ -24,8 +24,8 @@ namespace {
 
 bool is_exr(const fs::path& path) { return lower_case(path.extension().string()) == ".exr"; }
 
-/// The channels that stand for red, green and blue: the main layer's, else luminance, else the first layer with all three, else a
-/// single channel.
+/// Returns the channels for red, green and blue: the main layer's, else luminance, else the first
+/// layer with all three, else a single channel.
 std::array<const Channel*, 3> color_channels(const fs::path& path, const LayeredImage& image) {
   const auto triple = [&](const std::string& prefix) {
     return std::array{image.find(prefix + "R"), image.find(prefix + "G"), image.find(prefix + "B")};
@@ -83,7 +83,7 @@ EnvironmentImage rgb_of(const image_files::Pixels& pixels) {
   return out;
 }
 
-/// Radiance is finite and not negative.
+/// Checks that radiance is finite and not negative.
 void check_values(const fs::path& path, EnvironmentImage& image) {
   std::size_t negative = 0;
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
@@ -100,7 +100,8 @@ void check_values(const fs::path& path, EnvironmentImage& image) {
   if (negative > 0) log::warn("{}: {} negative values taken as 0", path.string(), negative);
 }
 
-/// The channels of a texture: grey, three, or four where alpha is not 1 everywhere. `one` is what stands for 1.
+/// Returns the channels of a texture: grey, three, or four where alpha is not 1 everywhere. `one`
+/// is the value for 1.
 template <class Value>
 std::vector<Value> texture_channels(const std::vector<Value>& from, int channels, int alpha, Value one, int& kept) {
   const auto step = static_cast<std::size_t>(channels);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Images in memory and on disk. EXR goes through OpenEXR, PNG through libpng; every other file type through OpenImageIO, a module
-// that is loaded when it is needed.
+// This file holds images in memory and on disk. OpenEXR reads and writes EXR, libpng PNG, and
+// OpenImageIO every other file type, in a module that is loaded when it is needed.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@
 
 namespace caplet {
 
-/// One channel of a layered image: 32-bit floats or unsigned integers, row-major from the top, of the data window's size.
+/// Channel is one channel of a layered image: 32-bit floats or unsigned integers, row-major from
+/// the top, of the data window's size.
 struct Channel {
   std::string name;                  // "R", "albedo.R", "N.X", "Z", "object.id"
   std::vector<float> floats;         // either
@@ -37,39 +38,43 @@ struct LayeredImage {
   std::vector<std::string> views = {};           // of a multi-view picture, the one by default first (name_in_view)
   std::optional<Backdrop> backdrop = {};         // that lies under R G B by A
 
-  /// The channel of that name, or null.
+  /// Returns the channel of that name, or null.
   const Channel* find(const std::string& name) const;
 };
 
-/// What a channel of one view is called among those of all `views`, by the rules of multi-view OpenEXR: plain channels of the
-/// first have their own names, and in all others the view's name is put before the last part ("right.R", "albedo.left.R").
+/// Returns the name of a channel of one view among those of all `views`, by the rules of multi-view
+/// OpenEXR: plain channels of the first have their own names, and in all others the view's name is
+/// put before the last part ("right.R", "albedo.left.R").
 std::string name_in_view(const std::string& channel, const std::vector<std::string>& views, std::size_t view);
 
-/// A picture that is made in bands of whole rows, so that it is never in memory as a whole.
+/// BandedImage is a picture that is made in bands of whole rows, so that it is never in memory as a
+/// whole.
 struct BandedImage {
   LayeredImage whole;  // windows, space and metadata; no channels
   int rows = 1;        // of a band; the last one may have fewer
-  /// The rows from `first` on, counted from the data window's top, with the same channels each time. Asked for once each, in
-  /// order.
+  /// Returns the rows from `first` on, counted from the data window's top, with the same channels
+  /// each time. It is called once for each band, in order.
   std::function<LayeredImage(int first, int rows)> band;
 };
 
-/// Both are without loss. Of 32-bit float layers of noisy pictures ZIP leaves a half, and takes ten times as long as RLE, which
-/// leaves 1.2 to 1.3 times as much as ZIP (docs/output.md).
+/// Both are lossless. ZIP halves 32-bit float layers of noisy pictures, and takes ten times as long
+/// as RLE, whose files are 1.2 to 1.3 times as large as ZIP's (docs/output.md).
 enum class ExrCompression { zip, rle };
 
-/// ZIP where it takes at most a tenth of `seconds`, what the picture itself took, on this machine's cores; else RLE.
-/// `bytes`: of all layers.
+/// Returns ZIP where it takes at most a tenth of `seconds`, the time of the picture itself, on this
+/// machine's cores; else RLE. `bytes`: of all layers.
 ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores);
 
 /// Writes a scanline EXR (chromaticities, metadata as attributes) as write_atomically does. Throws RunError.
 void write_exr(const std::filesystem::path& path, const LayeredImage& image, ExrCompression compression = ExrCompression::zip);
 void write_exr(const std::filesystem::path& path, const BandedImage& image, ExrCompression compression = ExrCompression::zip);
-/// A good BandedImage::rows for that many 32-bit layers: some 32 MiB, and for each core one of the 16 rows that ZIP packs.
+/// Returns a good BandedImage::rows for that many 32-bit layers: some 32 MiB, and for each core one
+/// of the 16 rows that ZIP packs.
 int band_rows(int width, std::size_t channels);
 /// Throws InputError naming `flag` when no EXR of `channels` 32-bit layers can have a data window of that size.
 void check_exr_size(int width, int height, std::size_t channels, const std::string& flag);
-/// Throws InputError when missing or broken. Half and float channels come as floats, uint as uints.
+/// Reads an EXR. Throws InputError when missing or broken. Half and float channels are returned as
+/// floats, uint as uints.
 LayeredImage read_exr(const std::filesystem::path& path);
 
 struct Shown;  // film/preview.h
@@ -78,7 +83,7 @@ struct Shown;  // film/preview.h
 /// extension, atomically; before a transparent backdrop with alpha. Throws RunError or InputError.
 void write_preview(const std::filesystem::path& path, const LayeredImage& image);
 void write_preview(const std::filesystem::path& path, const Shown& shown);
-/// The same from bytes as bytes_of (film/preview.h) makes them, 3 or 4 a pixel.
+/// Does the same from bytes as bytes_of (film/preview.h) makes them, 3 or 4 a pixel.
 void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& bytes);
 /// Throws InputError naming `flag` when files of that extension have no alpha.
 void check_preview_alpha(const std::filesystem::path& path, const std::string& flag);
@@ -86,7 +91,7 @@ void check_preview_alpha(const std::filesystem::path& path, const std::string& f
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);
 /// Throws InputError naming `flag` when that format cannot hold a picture of this size.
 void check_preview_size(const std::filesystem::path& path, int width, int height, const std::string& flag);
-/// True when the build has the module of OpenImageIO.
+/// Returns true when the build has the module of OpenImageIO.
 bool has_image_io();
 
 /// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO. Files of integers are linearised
@@ -96,8 +101,9 @@ bool has_image_io();
 class FileImageReader : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override;
-  /// Of files that hold bytes, bytes; of all others floats. `encoding` is that of whole numbers. One channel, or one and alpha,
-  /// is grey; alpha of colours is kept unless it is 1 everywhere. Negative values stay.
+  /// Returns bytes for files that hold bytes, floats for all others. `encoding` is that of
+  /// integers. One channel, or one and alpha, is grey; alpha of colours is kept unless it is 1
+  /// everywhere. Negative values stay.
   TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override;
 };
 

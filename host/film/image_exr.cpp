@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Layered images as OpenEXR files.
+// Reads and writes layered images as OpenEXR files.
 #include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
@@ -66,7 +66,8 @@ Chromaticities from_imf(const Imf::Chromaticities& c) {
   return {a(c.red), a(c.green), a(c.blue), a(c.white)};
 }
 
-/// The slice of a channel stored row-major over a data window whose corner is (x, y): OpenEXR addresses pixels absolutely.
+/// Returns the slice of a channel stored row-major over a data window whose corner is (x, y):
+/// OpenEXR addresses pixels absolutely.
 template <class T>
 Imf::Slice slice(Imf::PixelType type, T* data, std::int64_t x, std::int64_t y, std::int64_t width) {
   const std::int64_t corner = y * width + x;
@@ -82,7 +83,7 @@ std::string attribute_text(const Imf::Attribute& attribute) {
   return {};
 }
 
-/// Whether a codec can shrink smooth data further than zlib's 1:1032 allows.
+/// Returns whether a codec can shrink smooth data further than zlib's 1:1032 allows.
 bool is_lossy_block_codec(Imf::Compression compression) {
   return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION || compression == Imf::B44A_COMPRESSION;
 }
@@ -141,10 +142,11 @@ LayeredImage read_part(const fs::path& path, std::uintmax_t file_bytes, Imf::Mul
   return image;
 }
 
-/// A file that reports every failure to write: OpenEXR's own stream drops those of its last bytes and of its table of rows.
+/// CheckedFile reports every failure to write: OpenEXR's own stream ignores those of its last bytes
+/// and of its table of rows.
 class CheckedFile : public Imf::OStream {
  public:
-  /// `name`: for messages.
+  /// Opens a file. `name`: for messages.
   CheckedFile(const fs::path& path, const fs::path& name)
       : Imf::OStream(path.c_str()), name_(name), file_(std::fopen(path.c_str(), "wb")) {
     if (!file_) fail(errno);
@@ -167,7 +169,7 @@ class CheckedFile : public Imf::OStream {
   void seekp(std::uint64_t to) override {
     if (std::fseek(file_, static_cast<long>(to), SEEK_SET) != 0) fail(errno);
   }
-  /// Throws for this and for any earlier failure, whoever caught it.
+  /// Closes the file. Throws for this and for any earlier failure, even one that was caught.
   void close() {
     if (std::fclose(std::exchange(file_, nullptr)) != 0 && failure_ == 0) fail(errno);
     if (failure_ != 0) fail(failure_);
@@ -203,7 +205,7 @@ Imf::Header header_of(const LayeredImage& whole, const std::vector<Channel>& cha
   return header;
 }
 
-/// A band whose first row is `y` of the picture.
+/// Returns the frame buffer of a band whose first row is `y` of the picture.
 Imf::FrameBuffer frame_of(const LayeredImage& whole, const std::vector<Channel>& channels, std::int64_t y) {
   Imf::FrameBuffer frame;
   // OpenEXR's slices are not const; writing only reads them.
@@ -258,7 +260,8 @@ int band_rows(int width, std::size_t channels) {
 }
 
 void check_exr_size(int width, int height, std::size_t channels, const std::string& flag) {
-  // OpenEXR counts the bytes of ZIP's 16 rows in an int; and no picture is written that read_exr would not read.
+  // OpenEXR counts the bytes of ZIP's 16 rows in an int, and no picture is written that read_exr
+  // would not read.
   const std::uint64_t block_bytes = static_cast<std::uint64_t>(width) * channels * sizeof(float) * 16;
   if (width > max_image_side || height > max_image_side || block_bytes > std::numeric_limits<int>::max())
     throw InputError(SourceLocation{flag},

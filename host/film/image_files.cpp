@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which library reads or writes an image file.
+// Chooses which library reads or writes an image file.
 #include "film/detail/image_files.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 
 bool is_named_png(const fs::path& path) { return lower_case(path.extension().string()) == ".png"; }
 
-/// Reads by libpng what begins as a PNG file does, and by the module what does not.
+/// Reads by libpng a file that begins as a PNG file does, and others by the module.
 template <class Out>
 Out read(const fs::path& path, std::string (*Module::*from_module)(const fs::path&, const SizeCheck&, Out&),
          std::string (*from_png)(const fs::path&, const SizeCheck&, Out&)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// No module of image files: a build without OpenImageIO.
+// This is a build without OpenImageIO: there is no module of image files.
 #include <fmt/format.h>
 
 #include "base/error.h"

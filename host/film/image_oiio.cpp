@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The module of image files (film/detail/image_module.h): OpenImageIO, which this file alone knows. It links no room.
+// This is the module of image files (film/detail/image_module.h). Only this file uses OpenImageIO.
+// It links no room.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ using image_files::Pixels;
 using image_files::SizeCheck;
 using image_files::StoredPixels;
 
-/// The exponent that linearises a file's values: 0 stands for the sRGB curve, 1 for none.
+/// Returns the exponent that linearises a file's values: 0 stands for the sRGB curve, 1 for none.
 float decoding_exponent(const OIIO::ImageSpec& spec) {
   const std::string space = spec.get_string_attribute("oiio:ColorSpace");
   if (space.rfind("Gamma", 0) == 0) {
@@ -37,12 +38,13 @@ float decoding_exponent(const OIIO::ImageSpec& spec) {
   return spec.format.is_floating_point() ? 1.0f : 0.0f;
 }
 
-/// Thrown within the module, and returned as a text by all that it exports.
+/// Failure is thrown within the module, and returned as a text by all that it exports.
 struct Failure {
   std::string why;
 };
 
-/// A file in memory: the libraries of image formats write files by name, and not all of them tell that a disk is full.
+/// MemoryFile is a file in memory: the libraries of image formats write files by name, and not all
+/// of them report that a disk is full.
 class MemoryFile {
  public:
   MemoryFile() : number_(::memfd_create("caplet picture", MFD_CLOEXEC)) {
@@ -67,8 +69,9 @@ class MemoryFile {
   int number_;
 };
 
-/// Sides that a format's library refuses only when the picture is written, libjpeg by ending the program: JPEG_MAX_DIMENSION,
-/// PNG_USER_WIDTH_MAX, WEBP_MAX_DIMENSION, and the 16 bits that the other formats have for them.
+/// These formats' libraries refuse larger sides only when the picture is written, libjpeg by ending
+/// the program: JPEG_MAX_DIMENSION, PNG_USER_WIDTH_MAX, WEBP_MAX_DIMENSION, and the 16 bits that
+/// the other formats have for them.
 struct Limit {
   std::string_view extension;
   int side;
@@ -94,7 +97,7 @@ std::string lower_case_extension(const std::filesystem::path& path) {
   return out;
 }
 
-/// Alpha is asked for as it is.
+/// Opens a file and requests alpha unassociated.
 std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
   OIIO::attribute("limits:imagesize_MB", 1 << 12);  // 2^28 pixels of 16 bytes: the caller's own limit (film/detail/limits.h)
   OIIO::ImageSpec wanted;
@@ -109,8 +112,8 @@ std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
   return input;
 }
 
-/// The size of `out`, its channels, at most four, and which of these is alpha. `check` throws where that is too large with so
-/// many bytes a value.
+/// Sets the size of `out`, its channels, at most four, and which of these is alpha. `check` throws
+/// where that is too large with so many bytes a value.
 template <class Out>
 void measure(const OIIO::ImageSpec& spec, std::uint64_t value_bytes, const SizeCheck& check, Out& out) {
   out.channels = std::min(spec.nchannels, 4);
@@ -160,7 +163,7 @@ Pixels read_linear(const std::filesystem::path& path, const SizeCheck& check) {
   const std::size_t channels = static_cast<std::size_t>(out.channels);
   for (std::size_t i = 0; i < out.values.size(); ++i)
     if (static_cast<int>(i % channels) != out.alpha) out.values[i] = linear_from(out.values[i], exponent);
-  // Associated alpha is in the values already.
+  // Associated alpha is already in the values.
   if (out.alpha >= 0 && premultiplied)
     for (std::size_t i = static_cast<std::size_t>(out.alpha); i < out.values.size(); i += channels) out.values[i] = 1;
   return out;
@@ -177,7 +180,8 @@ bool can_hold(const std::filesystem::path& path, int width, int height) {
   const std::string extension = lower_case_extension(path);
   for (const Limit& limit : limits)
     if (limit.extension == extension) return width <= limit.side && height <= limit.side;
-  // The other formats say so when a file is begun. PNG's writer must not be asked so: it prints an error when nothing follows.
+  // The other formats report this when a file is begun. PNG's writer cannot be tested so: it prints
+  // an error when nothing follows.
   const MemoryFile file;
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
   const bool opened = output && output->open(file.path(), spec_of_8bit(width, height));

@@ -27,12 +27,12 @@ struct Closer {
 };
 using File = std::unique_ptr<std::FILE, Closer>;
 
-/// What went wrong, thrown by this file's own functions.
+/// Failure holds the error that this file's own functions throw.
 struct Failure {
   std::string why;
 };
 
-/// libpng's last words; it leaves a function that failed by longjmp.
+/// Errors holds libpng's last message; libpng leaves a function that failed by longjmp.
 struct Errors {
   char text[128] = "";
 };
@@ -44,7 +44,8 @@ struct Errors {
 }
 void warn(png_structp, png_const_charp) {}
 
-/// Calls a function that calls libpng, and throws what it says where it fails. The function holds nothing that has a destructor.
+/// Calls a function that calls libpng, and throws libpng's message where it fails. The function
+/// holds nothing that has a destructor.
 template <class Function>
 void guarded(png_structp png, const Errors& errors, const Function& function) {
   if (setjmp(png_jmpbuf(png)) != 0) throw Failure{errors.text};
@@ -56,7 +57,7 @@ struct Reader {
     if (png != nullptr) info = png_create_info_struct(png);
     if (info == nullptr) throw Failure{"libpng has no memory"};
     png_init_io(png, file);
-    // The caller's own limits hold (film/detail/limits.h).
+    // The caller's own limits apply (film/detail/limits.h).
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   }
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -89,7 +90,8 @@ struct Decoded {
   std::vector<std::uint8_t> bytes;  // native order
 };
 
-/// The exponent by which a file's values are linear: 1 over gAMA, to two places, unless the file says sRGB or nothing (0).
+/// Returns the exponent by which a file's values are linear: 1 over gAMA, to two places, unless the
+/// file says sRGB or nothing (0).
 float exponent_of(const Reader& reader) {
   int intent = 0;
   double gamma = 0;
@@ -97,7 +99,7 @@ float exponent_of(const Reader& reader) {
   return gamma > 0 ? static_cast<float>(std::round(100 / gamma) / 100) : 0;
 }
 
-/// Palettes, keys of transparency and fewer than eight bits become plain channels.
+/// Turns palettes, keys of transparency and fewer than eight bits into plain channels.
 void ask_for_channels(const Reader& reader, Decoded& out) {
   png_structp png = reader.png;
   const png_byte type = png_get_color_type(png, reader.info), depth = png_get_bit_depth(png, reader.info);

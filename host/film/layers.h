@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The layers of a film and of a picture: shared/layers.def.
+// This file holds the layers of a film and of a picture: shared/layers.def.
 #pragma once
 
 #include <array>
@@ -22,13 +22,13 @@ enum class Layer {
 #undef ID_LAYER
 };
 
-/// What a layer's values are, in the film.
+/// LayerKind says what a layer's values are, in the film.
 enum class LayerKind { radiance, hit, id };
 
-/// How they become channels (develop.cpp).
+/// LayerHow says how they become channels (develop.cpp).
 enum class LayerHow { picture, share, distance, reflectance, direction, mean, variance, number };
 
-/// A row of layers.def.
+/// LayerRow is a row of layers.def.
 struct LayerRow {
   LayerKind kind;
   const char* option;    // as the command line calls it; "": every picture has it
@@ -61,19 +61,19 @@ inline constexpr std::array<LayerRow, layer_count> layer_rows{{
 
 constexpr const LayerRow& row_of(Layer layer) { return layer_rows[static_cast<std::size_t>(layer)]; }
 
-/// A set of layers, R G B A (color and coverage) always among them.
+/// Layers is a set of layers; R G B A (color and coverage) are always among them.
 class Layers {
  public:
-  /// R G B A alone.
+  /// Returns R G B A alone.
   static constexpr Layers none() { return {}; }
   static constexpr Layers all() {
     Layers layers;
     layers.bits_ = (1u << layer_count) - 1;
     return layers;
   }
-  /// All but the variance.
+  /// Returns all but the variance.
   static constexpr Layers usual() { return all().without(Layer::variance); }
-  /// Of bits 1 << layer_color, ...
+  /// Returns the layers of bits 1 << layer_color, ...
   static constexpr Layers of_bits(std::uint32_t bits) {
     Layers layers = all();
     layers.bits_ &= bits | none().bits_;
@@ -92,9 +92,9 @@ class Layers {
     out.bits_ &= ~bit(layer) | none().bits_;
     return out;
   }
-  /// Whether all of `others` are among these.
+  /// Returns whether all of `others` are among these.
   constexpr bool has_all(Layers others) const { return (others.bits_ & ~bits_) == 0; }
-  /// 32-bit channels of a picture with these layers.
+  /// Returns the number of 32-bit channels of a picture with these layers.
   constexpr std::size_t channels() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < layer_rows.size(); ++i)

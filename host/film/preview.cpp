@@ -65,7 +65,7 @@ Shown shown(const LayeredImage& image) {
       out.rgb[i] = tone_map(rgb);
       continue;
     }
-    // What noise of the filter's negative lobes leaves outside is nothing.
+    // Noise of the filter's negative lobes may leave coverage outside [0, 1]; it is clamped.
     const float a = std::clamp(coverage->floats[i], 0.0f, 1.0f);
     const auto width = static_cast<std::size_t>(image.data_width);
     const std::array<float, 3> behind = under(*image.backdrop, image.width, image.height, image.x + static_cast<int>(i % width),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Tone mapping of previews.
+// Tone-maps previews.
 #pragma once
 
 #include <array>
@@ -12,14 +12,15 @@
 
 namespace caplet {
 
-/// Displayable linear sRGB in 0..1 from linear sRGB of any size. With m the largest component: up to the knee of 1/2 nothing
-/// changes; above it m becomes 1 - exp(-(2 m - 1)) / 2, a shoulder of equal slope at the knee that approaches 1. All components
-/// scale alike, so hue and saturation stay; only beyond that light goes towards white, by 1 - 1 / (1 + (m - mapped m) / 8), as
-/// film and eyes do. Negative and NaN components are 0, infinite ones white.
+/// Returns displayable linear sRGB in 0..1 from linear sRGB of any size. With m the largest
+/// component: up to the knee of 1/2 nothing changes; above it m becomes 1 - exp(-(2 m - 1)) / 2, a
+/// shoulder of equal slope at the knee that approaches 1. All components scale alike, so hue and
+/// saturation stay; only beyond that light goes towards white, by 1 - 1 / (1 + (m - mapped m) / 8),
+/// as film and eyes do. Negative and NaN components are 0, infinite ones white.
 std::array<float, 3> tone_map(const std::array<float, 3>& rgb);
 
-/// What is shown of an image's data window: linear sRGB from 0 to 1. `alpha` is empty where all is opaque; else colours are of
-/// what is there, not multiplied by it.
+/// Shown is the displayed data window of an image: linear sRGB from 0 to 1. `alpha` is empty where
+/// all is opaque; otherwise colours are not multiplied by it.
 struct Shown {
   int width = 0, height = 0;
   std::vector<std::array<float, 3>> rgb;
@@ -28,14 +29,15 @@ struct Shown {
   bool has_alpha() const { return !alpha.empty(); }
 };
 
-/// The image's R G B, converted to sRGB primaries, tone-mapped. Where it lies over a backdrop, the shapes' light is tone-mapped
-/// alone and the backdrop is as bright as it is. Throws std::logic_error when there are no R G B channels (with a backdrop, A).
+/// Returns the image's R G B, converted to sRGB primaries and tone-mapped. Over a backdrop only the
+/// shapes' light is tone-mapped and the backdrop keeps its brightness. Throws std::logic_error when
+/// there are no R G B channels (with a backdrop, A).
 Shown shown(const LayeredImage& image);
 
-/// With the sRGB transfer: 3 bytes a pixel, 4 where there is alpha.
+/// Applies the sRGB transfer: 3 bytes a pixel, 4 where there is alpha.
 std::vector<std::uint8_t> bytes_of(const Shown& shown);
 
-/// 3 bytes a pixel: what is transparent lies over black.
+/// Returns 3 bytes a pixel; transparent parts lie over black.
 std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image);
 
 }  // namespace caplet

@@ -10,10 +10,10 @@ namespace caplet {
 namespace {
 
 std::array<float, 3> of_image(const EnvironmentImage& image, int width, int height, int x, int y) {
-  // As large as covers the film.
+  // The image is scaled so that it just covers the film.
   const double texels = std::min(static_cast<double>(image.width) / width, static_cast<double>(image.height) / height);
   const double left = 0.5 * (image.width - texels * width), top = 0.5 * (image.height - texels * height);
-  // The middle of the pixel, or of each of its parts no larger than a texel.
+  // The sample is the middle of the pixel, or of each of its parts no larger than a texel.
   const int parts = static_cast<int>(std::clamp(std::ceil(texels), 1.0, 16.0));
   std::array<double, 3> sum{};
   for (int part = 0; part < parts * parts; ++part) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A backdrop, pixel by pixel.
+// Evaluates a backdrop, pixel by pixel.
 #pragma once
 
 #include <array>
@@ -11,11 +11,12 @@
 
 namespace caplet {
 
-/// What lies under the pixel (x, y) of a film of that size, from the top left: displayed, linear sRGB, from 0 to 1. Transparent:
-/// 0. Images are filtered bilinearly, over as many texels as a pixel covers.
+/// Returns the backdrop under the pixel (x, y) of a film of that size, from the top left:
+/// displayed, linear sRGB, from 0 to 1. Transparent: 0. Images are filtered bilinearly, over as
+/// many texels as a pixel covers.
 std::array<float, 3> under(const Backdrop& backdrop, int width, int height, int x, int y);
 
-/// The same in linear RGB of a colour space.
+/// Does the same in linear RGB of a colour space.
 std::array<float, 3> under(const Backdrop& backdrop, int width, int height, int x, int y, ColorSpace space);
 
 }  // namespace caplet

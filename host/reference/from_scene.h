@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shapes of the scene as the witness's primitives.
+// Converts shapes of the scene to the reference implementation's primitives.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace caplet::reference {
 
-/// A shape's primitives, in order, in its object space (world_from_object is not applied).
+/// Returns a shape's primitives, in order, in its object space (world_from_object is not applied).
 std::vector<Primitive> primitives_of(const Shape& shape);
 
 }  // namespace caplet::reference

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Each question goes to the shape's own file; what only some shapes answer has an answer here for the others.
+// Each function calls that of the shape's own file; functions that only some shapes have return a
+// default here for the others.
 #include "reference/primitive.h"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A loop over all groups of primitives; a ray that passes a group's ball, or a primitive's, does not look closer.
+// This loops over all groups of primitives; a ray that misses the ball of a group, or of a
+// primitive, is not tested further.
 #include "reference/scene_witness.h"
 
 #include <tbb/parallel_for.h>
@@ -23,7 +24,8 @@ namespace {
 
 using glm::dvec3;
 
-// False only when the line surely passes the ball: its distance from the centre, by the cross product, exceeds the radius.
+// Returns false only when the line surely misses the ball: its distance from the centre, by the
+// cross product, exceeds the radius.
 bool may_touch(const Ball& ball, const Ray& ray) {
   const dvec3 to_center = ball.center - ray.origin;
   const dvec3 moment = glm::cross(ray.direction, to_center);
@@ -31,7 +33,7 @@ bool may_touch(const Ball& ball, const Ray& ray) {
   return glm::dot(moment, moment) <= (ball.radius * ball.radius + slack) * glm::dot(ray.direction, ray.direction);
 }
 
-/// The material of each surface; empty when all have the shape's own.
+/// Returns the material of each surface; empty when all have the shape's own.
 std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
   const auto* csg = std::get_if<CsgShape>(&shape.geometry);
   if (!csg) return shape.materials;
@@ -44,7 +46,8 @@ std::vector<std::uint32_t> materials_by_surface(const Shape& shape) {
   return out;
 }
 
-/// The uvs at the corners of each triangle (the first three entries) or patch; empty when the mesh has none.
+/// Returns the uvs at the corners of each triangle (the first three entries) or patch; empty when
+/// the mesh has none.
 std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
   std::vector<std::array<glm::dvec2, 4>> out;
   const auto add = [&](const auto& faces, const std::vector<glm::vec2>& uvs) {
@@ -59,8 +62,9 @@ std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
   return out;
 }
 
-/// Faces that a mesh's normals turn over, pbrt's rule: where a mesh has normals they say which side is out, not the winding.
-/// Judged in the shape's outer space. Empty for what has none.
+/// Returns the faces that a mesh's normals turn over by pbrt's rule: where a mesh has normals they
+/// say which side is out, not the winding. They are judged in the shape's outer space. It is empty
+/// for meshes without normals.
 std::vector<bool> turned_faces(const Shape& shape) {
   std::vector<bool> out;
   const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(shape.world_from_object)));
@@ -146,7 +150,8 @@ void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, c
     Placed placed{primitive, bounding_ball(primitive), identity, static_cast<std::uint32_t>(object_from_world_.size() - 1)};
     placed.identity.primitive = index;
     placed.identity.material = capsules && !capsules->materials.empty() ? capsules->materials[index] : shape.material;
-    // From behind an open shape's normal, as ReverseOrientation leaves it; from inside a solid.
+    // A one-sided shape is not seen from behind an open shape's normal, as ReverseOrientation
+    // leaves it, or from inside a solid.
     if (shape.one_sided) (is_solid(primitive) || !shape.reverse_orientation ? placed.sees_leaving : placed.sees_entering) = false;
     placed.reversed = shape.reverse_orientation;
     placed.turned = !turned.empty() && turned[index];
@@ -181,7 +186,7 @@ void SceneWitness::group(std::uint32_t begin, std::uint32_t end, const glm::dmat
     const Ball& own = placed_[grouped_[i]].ball;
     ball.radius = std::max(ball.radius, glm::length(own.center - ball.center) + own.radius);
   }
-  // No direction is stretched by more than the square root of the sum of all entries' squares.
+  // The square root of the sum of all entries' squares is at least the stretch of every direction.
   double squares = 0;
   for (int c = 0; c < 3; ++c) squares += glm::dot(dvec3(world_from_shape[c]), dvec3(world_from_shape[c]));
   groups_.push_back({{dvec3(world_from_shape * glm::dvec4(ball.center, 1)), std::sqrt(squares) * ball.radius}, begin, end});

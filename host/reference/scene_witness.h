@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness of a whole scene: every ray against every primitive, without a tree: primitives are only passed over in groups
-// whose common ball the ray misses. Primitives stay in their object space; rays go there through matrices inverted in double,
-// unnormalised, so that t is the same in all spaces.
+// SceneWitness is the reference implementation of a whole scene. It tests every ray against every
+// primitive, without a tree: primitives are only skipped in groups whose common ball the ray
+// misses. Primitives stay in their object space; rays are transformed there by matrices inverted in
+// double, not normalised, so that t is the same in all spaces.
 #pragma once
 
 #include <array>
@@ -35,25 +36,29 @@ inline constexpr std::uint32_t no_instance = 0xffffffffu;
 class SceneWitness {
  public:
   explicit SceneWitness(const Scene& scene);
-  /// The nearest hit with t_min < t < t_max over all primitives; the first in scene order among equals.
+  /// Returns the nearest hit with t_min < t < t_max over all primitives; the first in scene order
+  /// among equals.
   std::optional<SceneHit> closest(const Ray& ray) const;
-  /// Every crossing with t_min < t < t_max in order; at the same t those that leave come first, then the first in scene order. No
-  /// more than `limit`.
+  /// Returns every crossing with t_min < t < t_max in order; at the same t those that leave come
+  /// first, then the first in scene order. There are no more than `limit`.
   std::vector<SceneHit> all(const Ray& ray, std::size_t limit = std::numeric_limits<std::size_t>::max()) const;
-  /// The same, and the indices of all primitives whose balls the line goes through.
+  /// Does the same, and returns the indices of all primitives whose balls the line goes through.
   std::vector<SceneHit> all(const Ray& ray, std::vector<std::uint32_t>& near) const;
-  /// Unit normal in the world at a point on (or within 1e-7 of its size from) the primitive of a hit: outward of solids, by
-  /// winding or as given of open shapes, turned by ReverseOrientation. By differences of the implicit function over 1e-6 of the
-  /// primitive's size: no meaning that close to an edge.
+  /// Returns the unit normal in the world at a point on (or within 1e-7 of its size from) the
+  /// primitive of a hit: outward of solids, by winding or as given of open shapes, turned by
+  /// ReverseOrientation. It uses differences of the implicit function over 1e-6 of the primitive's
+  /// size, so it has no meaning that close to an edge.
   glm::dvec3 normal(const SceneHit& hit, const glm::dvec3& point) const;
-  /// (u, v) at a point of the world on (or next to) the surface of a hit of a ray in this direction: uv_at of the point in the
-  /// primitive's own space, interpolated in the uvs of meshes that have some.
+  /// Returns (u, v) at a point of the world on (or next to) the surface of a hit of a ray in this
+  /// direction: uv_at of the point in the primitive's own space, interpolated in the uvs of meshes
+  /// that have some.
   glm::dvec2 uv(const SceneHit& hit, const glm::dvec3& point, const glm::dvec3& direction) const;
-  /// closest() for many rays, in parallel.
+  /// Does closest() for many rays, in parallel.
   std::vector<std::optional<SceneHit>> closest(std::span<const Ray> rays) const;
   std::size_t size() const { return placed_.size(); }
 
-  /// A primitive of the scene, instances expanded. References last as long as the witness.
+  /// PlacedPrimitive is a primitive of the scene, instances expanded. References last as long as
+  /// the witness.
   struct PlacedPrimitive {
     const Primitive& primitive;
     const Ball& ball;  // object space
@@ -61,10 +66,11 @@ class SceneWitness {
     const SceneHit& identity;  // instance, object, shape, primitive, index
   };
   PlacedPrimitive placed(std::size_t index) const;
-  /// The material of a primitive's surface: an index into Scene::materials.
+  /// Returns the material of a primitive's surface: an index into Scene::materials.
   std::uint32_t material(std::size_t index, std::uint32_t surface) const;
   bool is_reversed(std::size_t index) const { return placed_.at(index).reversed; }  // by ReverseOrientation
-  /// Its index by the numbers of SceneHit; none when there is no such primitive.
+  /// Returns the primitive's index from the numbers of SceneHit; none when there is no such
+  /// primitive.
   std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const;
 
  private:

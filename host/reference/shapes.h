@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness's shapes, in double precision: what a shape is, stated from its definition. Solids are the set where an implicit
-// function is <= 0; open surfaces are part of a solid's boundary or of a plane, and the predicate that clips it. No formula here
-// solves for a ray: solver.h does, the same way for every shape.
+// These are the reference implementation's shapes, in double precision, each stated from its
+// definition. Solids are the set where an implicit function is <= 0; open surfaces are part of a
+// solid's boundary or of a plane, with the predicate that clips it. No formula here solves for a
+// ray: solver.h does, the same way for every shape.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ struct Sphere {
   glm::dvec3 center{0};
   double radius = 1;
 };
-/// The union of the balls whose centre and radius go linearly from (p0, radius0) to (p1, radius1): the convex hull of two
-/// spheres.
+/// A Capsule is the union of the balls whose centre and radius go linearly from (p0, radius0) to
+/// (p1, radius1): the convex hull of two spheres.
 struct Capsule {
   glm::dvec3 p0{0}, p1{0, 0, 1};
   double radius0 = 1, radius1 = 1;
@@ -42,9 +43,10 @@ struct Disk {
   double radius = 1;
 };
 
-/// Cylinders and cones: the convex hull of two ends, each a disk across the axis or a ball. Surfaces: 0 the side, which touches
-/// both ends; 1 and 2 what belongs to the end at p0 or p1 alone. `open`: that surface is not there, and the shape is no solid.
-/// Made by make_spool.
+/// A Spool is a cylinder or cone: the convex hull of two ends, each a disk across the axis or a
+/// ball. Surfaces: 0 the side, which touches both ends; 1 and 2 the points that belong to the end
+/// at p0 or p1 alone. `open`: that surface is not there, and the shape is no solid. make_spool
+/// makes it.
 struct Spool {
   struct End {
     double radius = 1;
@@ -52,7 +54,8 @@ struct Spool {
   };
   glm::dvec3 p0{0}, p1{0, 0, 1};
   std::array<End, 2> ends;
-  // Made from the above: the axis, and the normals (along the axis, outward) of the planes that touch both ends.
+  // These are made from the above: the axis, and the normals (along the axis, outward) of the
+  // planes that touch both ends.
   glm::dvec3 axis{0, 0, 1};
   double length = 1;
   std::array<glm::dvec2, 2> side_normals;
@@ -60,14 +63,16 @@ struct Spool {
 };
 Spool make_spool(const glm::dvec3& p0, const glm::dvec3& p1, const Spool::End& end0, const Spool::End& end1);
 
-/// A convex solid as the model's own surfaces bound it (caplet::FacedSolid): what no shape of this room's own has to say.
+/// Solid is a convex solid as the model's own surfaces bound it (caplet::FacedSolid), for kinds
+/// that have no shape of their own here.
 template <class Model>
 struct Solid {
   Model shape;
 };
 using Box = Solid<BoxShape>;
 
-/// normals[i] . (x - center) <= offsets[i] for all i; surface i lies in plane i. Made by make_polyhedron.
+/// A Polyhedron is normals[i] . (x - center) <= offsets[i] for all i; surface i lies in plane i.
+/// make_polyhedron makes it.
 struct Polyhedron {
   glm::dvec3 center{0};
   std::vector<glm::dvec3> normals;  // unit
@@ -76,28 +81,31 @@ struct Polyhedron {
   glm::dvec3 ball_center{0};        // of a ball that holds them
   double ball_radius = 0;
 };
-/// The normals may be of any length (offsets along with them). Unbounded or empty sets have no corners and a ball of no meaning.
+/// Makes a polyhedron. The normals may be of any length (offsets along with them). Unbounded or
+/// empty sets have no corners and a ball of no meaning.
 Polyhedron make_polyhedron(const glm::dvec3& center, std::span<const glm::dvec3> normals, std::span<const double> offsets);
 
-// Open shapes around the z axis, as pbrt's: of the sphere of `radius`, the tube or the disk what has z_min <= z <= z_max and an
-// angle from +x towards +y of at most phi_max.
+// These are open shapes around the z axis, as pbrt's: the part of the sphere of `radius`, of the
+// tube or of the disk with z_min <= z <= z_max and an angle from +x towards +y of at most phi_max.
 struct PartialSphere {
   double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
 };
 struct OpenCylinder {
   double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
 };
-/// Normal +z.
+/// Its normal is +z.
 struct PartialDisk {
   double height = 0, radius = 1, inner_radius = 0, phi_max = full_turn;
 };
 
-/// (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11, 0 <= u, v <= 1. Normal: dp/du x dp/dv.
+/// The patch is (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11, 0 <= u, v <= 1. Its normal is
+/// dp/du x dp/dv.
 struct Bilinear {
   glm::dvec3 p00, p10, p01, p11;
 };
 
-/// Solids combined, nested to any depth. Surface numbers of the operands follow each other. Made by make_csg.
+/// A Csg combines solids, nested to any depth. Surface numbers of the operands follow each other.
+/// make_csg makes it.
 struct CsgBody;
 struct Csg {
   enum class Operation { set_union, set_intersection, set_difference } operation = Operation::set_union;
@@ -124,22 +132,22 @@ struct CsgPart {
   Primitive primitive;
   glm::dmat4 csg_from_operand{1};
 };
-/// At least one part, all solids.
+/// Makes a csg shape of at least one part, all solids.
 Csg make_csg(Csg::Operation operation, std::span<const CsgPart> parts);
 
-/// The surface that a point on (or next to) a solid's boundary belongs to, and how far (at least) one may go from there before it
-/// is another one.
+/// SurfaceAt is the surface that a point on (or next to) a solid's boundary belongs to, and how far
+/// (at least) one may go from there before it is another one.
 struct SurfaceAt {
   int surface = 0;
   double margin = 0;
 };
-/// A ball that holds the shape.
+/// Ball is a ball that holds the shape.
 struct Ball {
   glm::dvec3 center;
   double radius;
 };
 
-/// A curve in space, over [0, 1].
+/// Curve is a curve in space, over [0, 1].
 struct Curve {
   enum class Kind { segment, arc } kind = Kind::segment;
   glm::dvec3 p,

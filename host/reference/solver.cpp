@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The solver. Only open surfaces have code for single shapes.
+// Solves for crossings. Only open surfaces have code for single shapes.
 #include "reference/solver.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool usable(const Ray& ray) {
   return ray.direction != dvec3(0);
 }
 
-// The line, measured in lengths from its point nearest to the shape's ball.
+// Line is the ray's line, measured in lengths from its point nearest to the shape's ball.
 struct Line {
   dvec3 foot, unit;
   double t_foot, speed, reach;  // the shape lies within [-reach, reach] of the foot
@@ -35,7 +35,7 @@ struct Line {
 Line line_near(const Primitive& primitive, const Ray& ray) {
   const Ball ball = bounding_ball(primitive);
   Line line;
-  // Scaled first, so that no direction's square overflows or vanishes.
+  // The direction is scaled first, so that no direction's square overflows or vanishes.
   const double largest = std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
   const dvec3 scaled = ray.direction / largest;
   line.unit = scaled / glm::length(scaled);
@@ -50,8 +50,8 @@ Line line_near(const Primitive& primitive, const Ray& ray) {
   return line;
 }
 
-// Halves the bracket around the least value until that is <= `enough`, cannot be (the Lipschitz bound), or the bracket cannot be
-// narrowed. Returns where, and the value there.
+// Halves the bracket around the least value until that is <= `enough`, cannot be (the Lipschitz
+// bound), or the bracket cannot be narrowed. Returns the place and the value there.
 std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough, double low, double high) {
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
   double middle = 0.5 * (low + high), at_middle = f(middle);
@@ -74,13 +74,13 @@ std::pair<double, double> descend(const Primitive& primitive, const Line& line, 
   return {middle, at_middle};
 }
 
-// The least value along the line.
+// Returns the least value along the line.
 double least_on(const Primitive& primitive, const Line& line) {
   return descend(primitive, line, -HUGE_VAL, -line.reach, line.reach).second;
 }
 
-// Where the value changes sign between `outside` (> 0) and `inside` (<= 0), to 2^-52 of the reach: bisection, helped by the
-// Illinois form of regula falsi in two steps of three.
+// Returns where the value changes sign between `outside` (> 0) and `inside` (<= 0), to 2^-52 of the
+// reach: bisection, helped by the Illinois form of regula falsi in two steps of three.
 double bisect(const Primitive& primitive, const Line& line, double outside, double inside) {
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
   double at_outside = f(outside), at_inside = f(inside);
@@ -102,7 +102,8 @@ double bisect(const Primitive& primitive, const Line& line, double outside, doub
 std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray) {
   const Line line = line_near(primitive, ray);
   if (line.miss_distance > 0) return {};
-  // By the Lipschitz bound no crossing is nearer to a point outside than the value there: both ends move inward by it first.
+  // By the Lipschitz bound no crossing is nearer to a point outside than the value there, so both
+  // ends move inward by it first.
   double low = -line.reach, high = line.reach;
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
   for (int i = 0; i < 4; ++i) {
@@ -125,7 +126,7 @@ std::vector<Crossing> solid_crossings(const Primitive& primitive, const Ray& ray
   return out;
 }
 
-// The crossings of open shapes that are part of a solid's boundary.
+// Returns the crossings of open shapes that are part of a solid's boundary.
 std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& ray) {
   const Primitive carrier = carrier_of(primitive);
   std::vector<Crossing> out;
@@ -138,7 +139,7 @@ std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& r
   return out;
 }
 
-// Six times the signed volume of the tetrahedron a b c and the origin.
+// Returns six times the signed volume of the tetrahedron a b c and the origin.
 double volume(const dvec3& a, const dvec3& b, const dvec3& c) { return glm::dot(a, glm::cross(b, c)); }
 
 std::vector<Crossing> triangle_crossings(const Triangle& triangle, const Ray& ray) {
@@ -149,7 +150,8 @@ std::vector<Crossing> triangle_crossings(const Triangle& triangle, const Ray& ra
   const bool positive = edge[0] >= 0 && edge[1] >= 0 && edge[2] >= 0;
   const bool negative = edge[0] <= 0 && edge[1] <= 0 && edge[2] <= 0;
   const double sum = edge[0] + edge[1] + edge[2];
-  // Seen edge-on as far as doubles can tell (each volume is a sum of six products of three rounded factors): no crossing.
+  // The triangle is seen edge-on as far as doubles can tell (each volume is a sum of six products
+  // of three rounded factors): there is no crossing.
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
   if (!(positive || negative) || std::abs(sum) <= 0x1p-49 * (la * lb + lb * lc + lc * la)) return {};
   return {{line.t_foot + volume(a, b, c) / sum / line.speed, glm::dot(glm::cross(b - a, c - a), line.unit) > 0, 0, HUGE_VAL}};
@@ -174,8 +176,8 @@ std::vector<Crossing> partial_disk_crossings(const PartialDisk& disk, const Ray&
 
 // --- Csg ---
 
-// Where the line goes through the boundaries of the solids a csg shape is made of, in lengths from line.foot; `inner` is the same
-// line in the space of `csg`.
+// Collects where the line crosses the boundaries of the solids of a csg shape, in lengths from
+// line.foot; `inner` is the same line in the space of `csg`.
 void collect_events(const Csg& csg, const Ray& inner, const Line& line, std::vector<double>& events) {
   for (const CsgOperand& operand : csg.body->operands) {
     const glm::dmat4& m = operand.operand_from_csg;
@@ -191,7 +193,7 @@ void collect_events(const Csg& csg, const Ray& inner, const Line& line, std::vec
 std::vector<Crossing> csg_crossings(const Csg& csg, const Ray& ray) {
   const Line line = line_near(csg, ray);
   if (line.miss_distance > 0) return {};
-  // In lengths from the foot.
+  // Events are in lengths from the foot.
   std::vector<double> events;
   collect_events(csg, {line.foot, line.unit}, line, events);
   std::sort(events.begin(), events.end());
@@ -218,7 +220,7 @@ std::vector<Crossing> csg_crossings(const Csg& csg, const Ray& ray) {
 struct Seen {
   dvec2 p00, p10, p01, p11;
   dvec2 at(double u, double v) const { return (1 - u) * ((1 - v) * p00 + v * p01) + u * ((1 - v) * p10 + v * p11); }
-  // Jacobian determinant: an affine function of u and v.
+  // This is the Jacobian determinant: an affine function of u and v.
   double turn(double u, double v) const {
     return cross((1 - v) * (p10 - p00) + v * (p11 - p01), (1 - u) * (p01 - p00) + u * (p11 - p10));
   }
@@ -231,7 +233,7 @@ Seen seen_along(const Line& line, const Bilinear& b) {
   return {flat(b.p00), flat(b.p10), flat(b.p01), flat(b.p11)};
 }
 
-// False only when all four lie strictly on one side of a line through the origin.
+// Returns false only when all four lie strictly on one side of a line through the origin.
 bool hull_has_origin(const dvec2 (&p)[4]) {
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j) {
@@ -247,11 +249,12 @@ bool hull_has_origin(const dvec2 (&p)[4]) {
   return true;
 }
 
-// The point of an unfolded cell that is seen at the origin: lines of constant u, and of constant v, stay lines.
+// Returns the point of an unfolded cell that is seen at the origin: lines of constant u, and of
+// constant v, stay lines.
 dvec2 locate(const Seen& seen, double u0, double u1, double v0, double v1) {
   const auto bisect_lines = [](double low, double high, const auto& side) {
-    // The origin is between both ends' lines; where rounding says otherwise it is at the line of the smaller value (which is
-    // noise where that line is a point).
+    // The origin is between both ends' lines; where rounding contradicts that it is at the line of
+    // the smaller value (which is noise where that line is a point).
     const double at_low = side(low), at_high = side(high);
     const bool rises = std::abs(at_high) >= std::abs(at_low) ? at_high > 0 : at_low < 0;
     for (;;) {
@@ -263,7 +266,8 @@ dvec2 locate(const Seen& seen, double u0, double u1, double v0, double v1) {
   const auto from_line = [](const dvec2& a, const dvec2& b) { return -Seen::cross(b - a, a); };
   const double u = bisect_lines(u0, u1, [&](double at) { return from_line(seen.at(at, v0), seen.at(at, v1)); });
   const double v = bisect_lines(v0, v1, [&](double at) { return from_line(seen.at(u0, at), seen.at(u1, at)); });
-  // On the cell's edges, and where one of them is a point, rounding or a vanishing line may have misled either.
+  // On the cell's edges, and where one of them is a point, rounding or a vanishing line may have
+  // misled either search.
   dvec2 best{u, v};
   for (const double a : {u, u0, u1})
     for (const double b : {v, v0, v1})
@@ -280,7 +284,7 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
   };
   std::vector<Cell> cells = {{0, 1, 0, 1}};
   std::vector<dvec2> found;
-  // Seen edge-on all cells fold: no crossing is reported then.
+  // A patch that is seen edge-on has only folded cells: no crossing is reported then.
   for (int work = 0; !cells.empty() && work < 20000; ++work) {
     const Cell c = cells.back();
     cells.pop_back();
@@ -314,9 +318,9 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
 
 constexpr double no_limit = -HUGE_VAL;
 
-// The least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows to hold nothing less than what is
-// known are passed over; the others are split, and split once more, and then searched by halving. With a limit, it is enough to
-// know whether the least is above it.
+// Returns the least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows
+// to hold nothing less than the known least are skipped; the others are split twice, and then
+// searched by halving. With a limit, it is enough to know whether the least is above it.
 double least_over(int samples, double steepness, double limit, const std::function<double(double)>& f) {
   double least = HUGE_VAL;
   const auto search = [&](const auto& self, double low, double high, int count, int level) -> void {
@@ -351,7 +355,7 @@ double distance_line_to_point(const Line& line, const dvec3& p) {
 
 double distance_line_to_curve(const Line& line, const Curve& curve, double limit) {
   if (curve.kind == Curve::Kind::segment) {
-    // Seen along the line, the segment is one in the plane and the line its origin.
+    // Seen along the line, the segment is one in the plane and the line is its origin.
     const dvec3 a = curve.p - line.foot, b = curve.q - line.foot;
     return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit, b - glm::dot(b, line.unit) * line.unit);
   }
@@ -359,10 +363,11 @@ double distance_line_to_curve(const Line& line, const Curve& curve, double limit
                     [&](double s) { return distance_line_to_point(line, curve.at(s)); });
 }
 
-// Distance between the line and the places where it would touch the patch: where the patch, seen along the line, folds.
+// Returns the distance between the line and the places where it would touch the patch: where the
+// patch, seen along the line, folds.
 double distance_to_fold(const Line& line, const Bilinear& patch, double limit) {
   const Seen seen = seen_along(line, patch);
-  // The zero line of an affine function, from where it enters the unit square to where it leaves.
+  // The ends are where the zero line of an affine function enters and leaves the unit square.
   std::vector<dvec2> ends;
   const dvec2 corners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   for (int i = 0; i < 4; ++i) {
@@ -407,7 +412,8 @@ std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray) {
 
 namespace {
 
-// For open surfaces: how far the line is from where its number of crossings changes. Beyond `limit` any number above it will do.
+// Returns, for open surfaces, how far the line is from where its number of crossings changes.
+// Beyond `limit` any number above it will do.
 double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
   const Line line = line_near(primitive, ray);
   double distance = HUGE_VAL;
@@ -443,7 +449,7 @@ Verdict referee(const Primitive& primitive, const Ray& ray, double tolerance) {
     return m > tolerance ? Verdict::hit : m < -tolerance ? Verdict::miss : Verdict::tangent;
   }
   const Line line = line_near(primitive, ray);
-  // Everywhere first, then ever closer around the least sample.
+  // Samples are everywhere first, then ever closer around the least one.
   double least = HUGE_VAL, where = 0, low = -line.reach, high = line.reach;
   for (const int samples : {2048, 64, 64, 64, 64, 64}) {
     const double step = (high - low) / samples;

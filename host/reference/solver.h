@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crossings of a ray with any shape of primitive.h, in double. Convex solids: interval subdivision of the implicit function along
-// the ray (it is convex there, and 1-Lipschitz), then bisection; open parts of them: the same, and the predicate that clips.
-// Triangles by signed volumes, disks by plane and radius, bilinear patches by subdivision until the patch, seen along the ray,
-// does not fold. Csg shapes: their boundary lies in the operands' boundaries, so between successive crossings of those the sign
-// of the value at one point says where the ray is.
+// Finds crossings of a ray with any shape of primitive.h, in double. Convex solids use interval
+// subdivision of the implicit function along the ray (it is convex there, and 1-Lipschitz), then
+// bisection; open parts of them use the same, and the predicate that clips. Triangles use signed
+// volumes, disks plane and radius, bilinear patches subdivision until the patch, seen along the
+// ray, does not fold. The boundary of csg shapes lies in the operands' boundaries, so between
+// successive crossings of those the sign of the value at one point says where the ray is.
 #pragma once
 
 #include <limits>
@@ -16,7 +17,7 @@
 
 namespace caplet::reference {
 
-/// Points origin + t * direction with t_min < t < t_max; `direction` of any length.
+/// Ray is the points origin + t * direction with t_min < t < t_max; `direction` of any length.
 struct Ray {
   glm::dvec3 origin{0}, direction{0, 0, 1};
   double t_min = 0, t_max = std::numeric_limits<double>::infinity();
@@ -29,26 +30,28 @@ struct Crossing {
   double surface_margin = 0;  // how far (at least) the crossing may be displaced before it lies on another surface
 };
 
-/// Every crossing of the whole line (all t) in order: two for a convex solid, entering and leaving in turn for csg shapes. Solids
-/// and gaps of csg shapes thinner than 1e-10 of the shape along the ray are not seen. Rays that are not finite or have no
-/// direction miss.
+/// Returns every crossing of the whole line (all t) in order: two for a convex solid, entering and
+/// leaving in turn for csg shapes. Solids and gaps of csg shapes thinner than 1e-10 of the shape
+/// along the ray are not seen. Rays that are not finite or have no direction miss.
 std::vector<Crossing> crossings(const Primitive& primitive, const Ray& ray);
 
-/// The first crossing with t_min < t < t_max.
+/// Returns the first crossing with t_min < t < t_max.
 std::optional<Crossing> closest(const Primitive& primitive, const Ray& ray);
 
-/// How far the line through the ray may be displaced before hitting becomes missing or the other way: > 0 the line hits, < 0 it
-/// misses. Solids: minus the least value() along the line. Open surfaces: the distance to where the number of crossings changes:
-/// between the line and the boundary curves, and to tangency.
+/// Returns how far the line through the ray may be displaced before a hit becomes a miss or the
+/// other way: > 0 the line hits, < 0 it misses. For solids it is minus the least value() along the
+/// line. For open surfaces it is the distance to where the number of crossings changes: between the
+/// line and the boundary curves, and to tangency.
 double margin(const Primitive& primitive, const Ray& ray);
 
-/// Whether margin() is within the tolerance of 0; faster than that for open surfaces.
+/// Returns whether margin() is within the tolerance of 0; faster than that for open surfaces.
 bool comes_within(const Primitive& primitive, const Ray& ray, double tolerance);
 
 enum class Verdict { hit, miss, tangent };
 
-/// Says by dense sampling of value() along the line, which assumes nothing of its shape, whether it enters the solid deeper than
-/// `tolerance`, stays further away than that, or neither. For open surfaces: by margin().
+/// Says by dense sampling of value() along the line, without assumptions on its shape, whether the
+/// line enters the solid deeper than `tolerance`, stays further away than that, or neither. For
+/// open surfaces it uses margin().
 Verdict referee(const Primitive& primitive, const Ray& ray, double tolerance);
 
 }  // namespace caplet::reference

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The binary tree between references and wide nodes; private to this room.
+// This is the binary tree between references and wide nodes; it is private to this room.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Box {
       max[k] = std::max(max[k], b.max[k]);
     }
   }
-  /// Half the surface area; 0 when empty. In double, so that no finite box overflows.
+  /// Returns half the surface area; 0 when empty. It is in double, so that no finite box overflows.
   double area() const {
     if (!(min[0] <= max[0])) return 0;
     const double x = double(max[0]) - double(min[0]), y = double(max[1]) - double(min[1]), z = double(max[2]) - double(min[2]);
@@ -49,10 +49,11 @@ struct BinaryTree {
   std::uint32_t node_count = 0;
 };
 
-/// Node 0 is the root. Numbers of the other nodes depend on timing; the tree's shape does not.
+/// Builds the tree. Node 0 is the root. Numbers of the other nodes depend on timing; the tree's
+/// shape does not.
 BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group, Effort effort);
 
-/// Wide nodes of least cost over the binary tree.
+/// Returns the wide nodes of least cost over the binary tree.
 Tree collapse(const BinaryTree& binary);
 
 }  // namespace caplet::bvh

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The interface of the module caplet_images.so, which reads and writes image files by OpenImageIO. It is loaded when the first
-// such file is met: OpenImageIO draws in some 250 shared libraries, which every start of the program would pay for.
+// This is the interface of the module caplet_images.so, which reads and writes image files by
+// OpenImageIO. It is loaded for the first such file: OpenImageIO depends on some 250 shared
+// libraries, which would slow every start of the program.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,9 @@
 
 namespace caplet::image_files {
 
-/// What the module's function caplet_image_module returns. Program and module are of one build (`version`). Functions that return
-/// a text return what went wrong, without the file's name, or nothing; they throw what `SizeCheck` throws and nothing else.
+/// The module's function caplet_image_module returns this. Program and module are of one build
+/// (`version`). Functions that return a text return the error, without the file's name, or nothing;
+/// they throw what `SizeCheck` throws and nothing else.
 struct Module {
   static constexpr std::uint32_t current = 1;
   std::uint32_t version;
@@ -28,10 +30,10 @@ struct Module {
                              const std::vector<std::uint8_t>& values, std::string& out);
 };
 
-/// Whether the build has the module: files other than EXR and PNG can be read and written.
+/// Returns whether the build has the module: files other than EXR and PNG can be read and written.
 bool available();
-/// The module, loaded at the first call. Throws RunError naming the file where it is missing, and InputError where the build is
-/// without OpenImageIO. Thread-safe.
+/// Returns the module, loaded at the first call. Throws RunError naming the file where it is
+/// missing, and InputError where the build is without OpenImageIO. It is thread-safe.
 const Module& module_for(const std::filesystem::path& path);
 
 }  // namespace caplet::image_files

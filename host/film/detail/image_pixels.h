@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Pixels as readers of image files give them.
+// This file holds pixels as readers of image files return them.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 
 namespace caplet::image_files {
 
-/// Pixels as the file holds them, made linear, before alpha is applied; row-major from the top, `channels` floats each.
+/// Pixels are as the file holds them, made linear, before alpha is applied; row-major from the top,
+/// `channels` floats each.
 struct Pixels {
   int width = 0, height = 0, channels = 0;
   int alpha = -1;  // channel, or none; not yet multiplied in
   std::vector<float> values;
 };
 
-/// Values as the file holds them, whole numbers from 0 to 1: bytes of a file of bytes, floats otherwise; of `is_whole` numbers.
-/// Alpha is not multiplied in.
+/// StoredPixels holds values as the file holds them, integers scaled to 0 to 1: bytes for a file of
+/// bytes, floats otherwise; is_whole: the file has integers. Alpha is not multiplied in.
 struct StoredPixels {
   int width = 0, height = 0, channels = 0;
   int alpha = -1;
@@ -27,7 +28,7 @@ struct StoredPixels {
   std::vector<float> floats;
 };
 
-/// Throws where an image of that width and height, with so many bytes a pixel, is refused.
+/// This throws where an image of that width and height, with so many bytes a pixel, is refused.
 using SizeCheck = std::function<void(int width, int height, std::uint64_t bytes_per_pixel)>;
 
 }  // namespace caplet::image_files

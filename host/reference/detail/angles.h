@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Texture coordinates by angles from a direction carried along by a rotation, and lengths along the profile that the support
-// function gives (spool.cpp).
+// Computes texture coordinates by angles from a direction that a rotation carries along, and
+// lengths along the profile that the support function gives (spool.cpp).
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ inline constexpr double pi = full_turn / 2;
 
 inline double share(double x, double whole) { return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0; }
 
-/// v turned by the rotation that takes the unit vector `from` to the unit vector `to`, not opposite to it, the short way
-/// (Rodrigues's formula).
+/// Returns v turned by the shortest rotation that takes the unit vector `from` to the unit vector
+/// `to`, not opposite to it (Rodrigues's formula).
 inline glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 moment = glm::cross(from, to);
   const double sine = glm::length(moment);
@@ -28,24 +28,25 @@ inline glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm:
   return std::cos(angle) * v + std::sin(angle) * glm::cross(axis, v) + (1 - std::cos(angle)) * glm::dot(axis, v) * axis;
 }
 
-/// Where angles around a unit vector begin.
+/// Returns where angles around a unit vector begin.
 inline glm::dvec3 beginning(const glm::dvec3& axis) { return turned({1, 0, 0}, {0, 0, axis.z >= -0.9 ? 1.0 : -1.0}, axis); }
 
-/// Angle in [0, 2 pi) around `axis` (unit), of w from somewhere on it.
+/// Returns the angle in [0, 2 pi) around `axis` (unit), of w from somewhere on it.
 inline double angle_around(const glm::dvec3& axis, const glm::dvec3& w) {
   const glm::dvec3 east = beginning(axis);
   const double angle = std::atan2(glm::dot(w, glm::cross(axis, east)), glm::dot(w, east));
   return angle < 0 ? angle + full_turn : angle;
 }
 
-/// angle_around z; beyond phi_max the nearer end of [0, phi_max].
+/// Returns angle_around z; beyond phi_max the nearer end of [0, phi_max].
 inline double angle_within(const glm::dvec3& x, double phi_max) {
   const double angle = angle_around({0, 0, 1}, x);
   if (angle <= phi_max) return angle;
   return angle - phi_max < full_turn - angle ? phi_max : 0;
 }
 
-/// A point relative to the hull of two ends: p, along and across the axis, and u, its turn around it.
+/// OnSpool is a point relative to the hull of two ends: p, along and across the axis, and u, its
+/// turn around it.
 struct OnSpool {
   glm::dvec2 p;
   double u;
@@ -56,10 +57,11 @@ inline OnSpool on_spool(const Spool& s, const glm::dvec3& x) {
   return {{along, glm::length(w - along * s.axis)}, share(angle_around(s.axis, w), full_turn)};
 }
 
-/// Angle of the half plane's vector w from the pole against the axis, in [0, pi].
+/// Returns the angle of the half plane's vector w from the pole against the axis, in [0, pi].
 inline double angle_from_pole(const glm::dvec2& w) { return std::atan2(w.y, -w.x); }
 
-/// Where on the segment from a to b the point nearest to p lies (0 to 1), and how far p is from it.
+/// Position says where on the segment from a to b the point nearest to p lies (0 to 1), and how far
+/// p is from it.
 struct Position {
   double share, away;
 };

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the file of each shape tells primitive.cpp: shapes/NAME.cpp. A function that one lacks does not link.
+// These are the functions of each shape's file, shapes/NAME.cpp, for primitive.cpp. A missing
+// function does not link.
 #pragma once
 
 #include "reference/shapes.h"
 
 namespace caplet::reference {
 
-// --- All of them ---
+// --- For all of them ---
 
 #define PRIMITIVE(Type)                                                  \
   double value_of(const Type& shape, const glm::dvec3& x);               \
@@ -18,7 +19,8 @@ namespace caplet::reference {
 #define SOLID(Model)
 #include "reference/primitives.def"
 
-// A geometry's primitives, in order, in its object space; of those that are told by their surfaces from_scene.cpp knows.
+// Returns a geometry's primitives, in order, in its object space; from_scene.cpp handles those that
+// are described by their surfaces.
 #define GEOMETRY(Type, name) std::vector<Primitive> witnesses_of(const Type& geometry);
 #include "scene/geometries.def"
 
@@ -27,7 +29,7 @@ namespace caplet::reference {
 glm::dvec2 chain_uv_of(const Capsule& capsule, const glm::dvec3& x, const glm::dvec3& direction);
 glm::dvec2 csg_uv_of(const Csg& csg, const glm::dvec3& x, int surface, const glm::dvec3& direction);
 
-// --- Of more than one kind; of more than one surface; csg shapes ---
+// --- For shapes of more than one kind, shapes of more than one surface, and csg shapes ---
 
 std::size_t which_kind(const Capsule& capsule);
 std::size_t which_kind(const Spool& spool);
@@ -65,9 +67,10 @@ std::vector<Curve> boundary_of(const Disk& disk);
 std::vector<Curve> boundary_of(const Triangle& triangle);
 std::vector<Curve> boundary_of(const Bilinear& patch);
 
-// --- Convex solids as the model tells them ---
+// --- Convex solids as the model describes them ---
 
-/// The greatest of the surfaces' values, which one, and how much less the others are: going d moves each by no more than d.
+/// Greatest keeps the greatest of the surfaces' values, which one it is, and how much less the
+/// others are: going d moves each by no more than d.
 struct Greatest {
   double value = -HUGE_VAL, second = -HUGE_VAL;
   int surface = 0;
@@ -130,7 +133,8 @@ inline Curve segment(const glm::dvec3& a, const glm::dvec3& b) { return {Curve::
 
 // spool.cpp
 double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if all ends were closed
-// Where the side of normal n (one of side_normals) touches an end: along and across the axis.
+// Returns where the side of normal n (one of side_normals) touches an end: along and across the
+// axis.
 glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
 
 // bilinear.cpp

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parts of spheres, tubes and disks around the z axis: predicates, and distances as those to the whole where its nearest point is
-// kept and to the rims where it is not.
+// These are parts of spheres, tubes and disks around the z axis. The distance is that to the whole
+// where its nearest point is kept, and to the rims where it is not.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -30,7 +30,8 @@ Curve circle(double radius, double height, double phi_max) {
   return {Curve::Kind::arc, height * up, east, north, radius, 0, std::min(phi_max, full_turn)};
 }
 
-// Distance to an arc: to its circle where the nearest point's angle is kept, else to an end.
+// Returns the distance to an arc: to its circle where the nearest point's angle is kept, else to an
+// end.
 double distance_to(const Curve& c, const dvec3& x) {
   if (c.kind == Curve::Kind::segment) return distance_to_segment(x, c.p, c.q);
   const dvec3 w = x - c.p;
@@ -118,7 +119,7 @@ dvec3 sheet_normal(const PartialDisk&, const dvec3&) { return {0, 0, 1}; }
 
 Primitive carrier_from(const PartialSphere& s) { return Sphere{dvec3(0), s.radius}; }
 Primitive carrier_from(const OpenCylinder& c) {
-  // Longer, so that its caps are never in question.
+  // The tube is longer, so that its caps never matter.
   const double more = c.radius + 0.5 * (c.z_max - c.z_min);
   return make_spool({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false}, {c.radius, false, false});
 }

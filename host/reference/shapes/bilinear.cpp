@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bilinear patches: the point nearest to x by the rulings of either family, each a segment.
+// Finds the point of a bilinear patch nearest to x by the rulings of either family, each a segment.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,7 +31,7 @@ Nearest nearest_on_ruling(const Bilinear& b, double u, const dvec3& x) {
   return {glm::length(x - (a + v * ruling)), {u, v}};
 }
 
-/// A polynomial of degree N, the constant first.
+/// Polynomial has degree N, the constant first.
 template <int N>
 using Polynomial = std::array<double, N + 1>;
 
@@ -42,7 +42,8 @@ double at(const Polynomial<N>& p, double x) {
   return out;
 }
 
-/// Where p changes sign within [0, 1], and where its derivatives do: between those p is monotone.
+/// Adds where p changes sign within [0, 1], and where its derivatives do: between those p is
+/// monotone.
 template <int N>
 void add_roots(const Polynomial<N>& p, std::vector<double>& out) {
   if constexpr (N > 1) {
@@ -65,9 +66,10 @@ void add_roots(const Polynomial<N>& p, std::vector<double>& out) {
   }
 }
 
-/// The nearest of those points that are nearest on the line of their ruling, and of the edges that are rulings. The squared
-/// distance from x to the line of a ruling is |(a - x) x r|^2 / |r|^2 with a and r linear in u, a quartic over a quadratic: its
-/// extremes are the roots of a quintic.
+/// Returns the nearest of two sets of points: those nearest on the line of their ruling, and those
+/// of the edges that are rulings. The squared distance from x to the line of a ruling is |(a - x) x
+/// r|^2 / |r|^2 with a and r linear in u, a quartic over a quadratic: its extremes are the roots of
+/// a quintic.
 Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   const dvec3 a0 = b.p00 - x, a1 = b.p10 - b.p00, r0 = b.p01 - b.p00, r1 = (b.p11 - b.p10) - r0;
   const dvec3 c0 = glm::cross(a0, r0), c1 = glm::cross(a0, r1) + glm::cross(a1, r0), c2 = glm::cross(a1, r1);
@@ -78,7 +80,7 @@ Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   for (std::size_t i = 0; i <= 4; ++i)
     for (std::size_t k = 0; k <= 2; ++k)
       if (i + k > 0) slope[i + k - 1] += (static_cast<double>(i) - static_cast<double>(k)) * n[i] * d[k];
-  // Where rounding makes two roots one, a root of the derivative is as near.
+  // Where rounding merges two roots, a root of the derivative is as near.
   std::vector<double> candidates;
   add_roots<5>(slope, candidates);
   candidates.push_back(0);
@@ -89,7 +91,8 @@ Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   return best;
 }
 
-/// The patch's point nearest to x. It lies on an edge, which is a ruling of one family, or is nearest on both its rulings.
+/// Returns the patch's point nearest to x. It lies on an edge, which is a ruling of one family, or
+/// is nearest on both its rulings.
 Nearest nearest_of(const Bilinear& b, const dvec3& x) {
   const Nearest by_u = nearest_by_u(b, x);
   const Nearest by_v = nearest_by_u({b.p00, b.p01, b.p10, b.p11}, x);
@@ -102,8 +105,8 @@ double value_of(const Bilinear& b, const dvec3& x) { return nearest_of(b, x).dis
 
 dvec2 parameters_of(const Bilinear& b, const dvec3& x) {
   dvec2 uv = nearest_of(b, x).uv;
-  // A search for a minimum finds parameters only to the square root of the distance's precision; two steps of Gauss and
-  // Newton bring the rest.
+  // A search for a minimum finds parameters only to the square root of the distance's precision;
+  // two Gauss-Newton steps find the rest.
   const dvec3 twist = b.p11 - b.p01 - b.p10 + b.p00;
   for (int i = 0; i < 2; ++i) {
     const dvec3 du = b.p10 - b.p00 + uv.y * twist, dv = b.p01 - b.p00 + uv.x * twist;

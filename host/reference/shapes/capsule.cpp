@@ -16,13 +16,14 @@ using glm::dvec3;
 bool has_inside(const Capsule&) { return true; }
 std::size_t which_kind(const Capsule& capsule) { return capsule.radius0 == capsule.radius1 ? 0 : 1; }
 
-// The least of |x - c(s)| - r(s) over the balls of the hull. With y along the axis and rho across it, that is convex in s and has
-// no slope where (s L - y) / |x - c(s)| = k, the growth of the radius by length: s L = y + rho k / sqrt(1 - k^2).
+// Returns the least of |x - c(s)| - r(s) over the balls of the hull. With y along the axis and rho
+// across it, that is convex in s and has no slope where (s L - y) / |x - c(s)| = k, the growth of
+// the radius by length: s L = y + rho k / sqrt(1 - k^2).
 double value_of(const Capsule& c, const dvec3& x) {
   const dvec3 axis = c.p1 - c.p0, w = x - c.p0;
   const double growth = c.radius1 - c.radius0, squared = glm::dot(axis, axis);
   const auto at = [&](double s) { return glm::length(w - s * axis) - (c.radius0 + s * growth); };
-  // One ball holds the other.
+  // Here one ball holds the other.
   if (growth * growth >= squared) return at(growth > 0 ? 1 : 0);
   const double along = glm::dot(w, axis) / squared;
   const double across = glm::length(w - along * axis);
@@ -31,7 +32,7 @@ double value_of(const Capsule& c, const dvec3& x) {
 
 Ball ball_of(const Capsule& c) { return {0.5 * (c.p0 + c.p1), 0.5 * glm::length(c.p1 - c.p0) + std::max(c.radius0, c.radius1)}; }
 
-// The hull of two balls: cap, side and cap, by arc length.
+// The hull of two balls has a cap, a side and a cap, by arc length.
 dvec2 uv_of(const Capsule& c, const dvec3& x, int) {
   const Spool s = make_spool(c.p0, c.p1, {c.radius0, true, false}, {c.radius1, true, false});
   const OnSpool at = on_spool(s, x);
@@ -56,8 +57,8 @@ dvec2 uv_of(const Capsule& c, const dvec3& x, int) {
   return {at.u, share(arc, first + side + last)};
 }
 
-// pbrt's curves: u as at the ball that touches the surface there, v by how far to the side of the axis the ray goes by, over how
-// far it may at that ball.
+// Returns the uv of pbrt's curves: u as at the ball that touches the surface there, v by how far to
+// the side of the axis the ray passes, over how far it may at that ball.
 dvec2 chain_uv_of(const Capsule& c, const dvec3& x, const dvec3& direction) {
   dvec3 axis = c.p1 - c.p0;
   const double length = glm::length(axis), growth = c.radius1 - c.radius0;

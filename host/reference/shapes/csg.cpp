@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Solids combined: union min, intersection max, complement minus, of the operands' values.
+// Combines solids by their values: union min, intersection max, complement minus.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -22,7 +22,7 @@ namespace {
 
 dvec3 apply(const glm::dmat4& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
 
-// The greatest singular value, by squaring A^T A until one direction is left; rounded up.
+// Returns the greatest singular value, by squaring A^T A until one direction is left; rounded up.
 double greatest_stretch(const glm::dmat4& matrix) {
   const glm::dmat3 a(matrix);
   glm::dmat3 power = glm::transpose(a) * a;
@@ -39,7 +39,7 @@ double greatest_stretch(const glm::dmat4& matrix) {
   return glm::length(a * glm::normalize(power[longest])) * (1 + 1e-12);
 }
 
-// What operand i contributes to the maximum (or minimum) at x: value and sign of its boundary.
+// Returns operand i's value at x for the maximum (or minimum).
 double operand_value(const CsgOperand& operand, const dvec3& x) {
   return value(operand.primitive, apply(operand.operand_from_csg, x)) / operand.stretch;
 }

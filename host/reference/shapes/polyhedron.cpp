@@ -57,7 +57,8 @@ Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, 
     out.normals.push_back(normals[i] / size);
     out.offsets.push_back(offsets[i] / size);
   }
-  // Corners are the ends of edges; an edge is what the other planes leave of the line of two of them.
+  // Corners are the ends of edges; an edge is the part of the line of two planes that the other
+  // planes leave.
   const std::size_t n = out.normals.size();
   dvec3 low(HUGE_VAL), high(-HUGE_VAL);
   for (std::size_t i = 0; i < n; ++i)

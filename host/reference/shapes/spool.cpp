@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The hull of two ends through its support function h(n) = max over both ends: the signed distance of x is the greatest
-// n . x - h(n) over unit normals n (exact in- and outside for any convex set). All is symmetric around the axis, so n and x lie
-// in one half plane: n = (along the axis, outward). Each end's part of h makes n . x - h(n) a single sinusoid; its greatest value
-// is at the peak of one of them, where both ends are touched, or along the axis.
+// Computes the hull of two ends through its support function h(n) = max over both ends: the signed
+// distance of x is the greatest n . x - h(n) over unit normals n (exact in- and outside for any
+// convex set). All is symmetric around the axis, so n and x lie in one half plane: n = (along the
+// axis, outward). Each end's part of h makes n . x - h(n) a single sinusoid; its greatest value is
+// at the peak of one of them, where both ends are touched, or along the axis.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -19,7 +20,7 @@ using glm::dvec3;
 
 namespace {
 
-// Support of an end whose centre lies `along` the axis.
+// Returns the support of an end whose centre lies `along` the axis.
 double support(const Spool::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
 
 struct Profile {
@@ -38,7 +39,7 @@ struct Values {
 
 Values values_at(const Spool& s, const Profile& x) {
   Values out;
-  // `which`: the end whose normal n is; in: the one it is where both are touched.
+  // `which` becomes the end whose normal n is; its old value is used where both are touched.
   const auto value_along = [&](const dvec2& n, std::size_t* which) {
     const double h0 = support(s.ends[0], 0, n), h1 = support(s.ends[1], s.length, n);
     if (which) *which = (*which == 0 ? h1 > h0 : h1 >= h0) ? 1 : 0;
@@ -108,7 +109,7 @@ double value_of(const Spool& s, const dvec3& x) {
   const Values values = values_at(s, profile);
   const double signed_distance = values.greatest();
   if (!s.ends[0].open && !s.ends[1].open) return signed_distance;
-  // The distance to the surfaces that are there, each by its own line in the half plane.
+  // This is the distance to the surfaces that are there, each by its own line in the half plane.
   const dvec2 p{profile.along, profile.across};
   double least = HUGE_VAL;
   for (int i = 0; i < s.side_count; ++i) {
@@ -230,7 +231,8 @@ dvec2 uv_of(const Spool& s, const dvec3& x, int surface) {
     const double part = share(w.y, s.ends[end].radius);
     return {at.u, end == 0 ? part : 1 - part};
   }
-  // From the pole to the circle that the side touches, or from there to the pole; whole spheres from pole to pole.
+  // v runs from the pole to the circle that the side touches, or from there to the pole; whole
+  // spheres run from pole to pole.
   if (s.side_count != 1) return {at.u, share(angle_from_pole(w), pi)};
   const double rim = angle_from_pole(s.side_normals[0]);
   return {at.u, end == 0 ? share(angle_from_pole(w), rim) : share(angle_from_pole(w) - rim, pi - rim)};
