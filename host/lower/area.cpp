@@ -22,7 +22,8 @@ using glm::dvec3;
 
 using std::numbers::pi;
 
-/// Nodes and weights of Gauss's rule of 2^k points on [-1, 1], by Newton's method on Legendre's polynomials.
+/// GaussRule holds nodes and weights of Gauss's rule of 2^k points on [-1, 1], by Newton's method
+/// on Legendre's polynomials.
 struct GaussRule {
   std::vector<double> x, w;
   explicit GaussRule(int n) {
@@ -55,8 +56,9 @@ const GaussRule& gauss_rule(int points) {
   return rules[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(points / least_points)))];
 }
 
-/// The image of a piece by `points` directions around the axis: trapezoids around the whole circle, whose error falls
-/// geometrically for periodic analytic functions, and Gauss's rule elsewhere.
+/// Returns the area of a piece's image by `points` directions around the axis: trapezoids around
+/// the whole circle, whose error falls geometrically for periodic analytic functions, and Gauss's
+/// rule elsewhere.
 double round_area(const Piece& piece, const glm::dmat3& cofactor, int points) {
   const dvec3 s = piece.start != dvec3(0)
                       ? piece.start
@@ -64,7 +66,7 @@ double round_area(const Piece& piece, const glm::dmat3& cofactor, int points) {
   const dvec3 axis = cofactor * piece.axis, x = cofactor * s, y = cofactor * glm::cross(piece.axis, s);
   const GaussRule& rule = gauss_rule(points);
   const double from = std::acos(piece.high), to = std::acos(piece.low);
-  // The integral over the piece's unit normals at phi, or their mean.
+  // Returns the integral over the piece's unit normals at phi, or their mean.
   const auto along = [&](const dvec3& across) {
     if (piece.kind == Piece::side) return glm::length(piece.low * axis + std::sqrt(1 - piece.low * piece.low) * across);
     double sum = 0;

@@ -21,7 +21,7 @@ double surface_of(const Bounds& box) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// A shape that parts media, and the geometries that it became.
+/// Parting is a shape that separates media, and the geometries that it became.
 struct Parting {
   BoundaryRecord record;
   double size;
@@ -40,7 +40,7 @@ class BoundaryLowering {
         if (instance.object == i) placed.push_back(instance.world_from_object);
       if (!placed.empty()) add(scene_.objects[i].shapes, geometry.objects[i], placed);
     }
-    // All open surfaces of the same media together: it takes several to bound something.
+    // All open surfaces of the same media count together, because several may bound one volume.
     std::map<std::pair<uint, uint>, double> whole;
     for (const Parting& one : all_)
       if (!is_closed(one.record)) whole[sides(one.record)] += one.size;

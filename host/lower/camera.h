@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The scene's camera and film window -> CameraRecord and the image fields of the uniforms.
+// Converts the scene's camera and film window to CameraRecord and the image fields of the uniforms.
 #pragma once
 
 #include "lower/flat_scene.h"
@@ -14,8 +14,9 @@ namespace caplet {
 /// validate().
 void lower_camera(const Scene& scene, FlatView& out);
 
-/// The ray through the middle of pixel (x, y) of the full image, from the top left, and the middle of the lens: world space, unit
-/// direction, t in (0, infinity). What kernels/camera/camera.cl makes of it, up to rounding.
+/// Returns the ray through the middle of pixel (x, y) of the full image, from the top left, and the
+/// middle of the lens: world space, unit direction, t in (0, infinity). It is the ray of
+/// kernels/camera/camera.cl, up to rounding.
 RayRecord ray_of_pixel(const Scene& scene, int x, int y);
 
 }  // namespace caplet

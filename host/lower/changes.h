@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which elements of which buffers of a FlatScene differ from what a device was sent.
+// Records which elements of which buffers of a FlatScene differ from what a device was sent.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 
 namespace caplet {
 
-/// Elements [begin, end).
+/// ChangedRange is elements [begin, end).
 struct ChangedRange {
   std::size_t begin = 0, end = 0;
 };
 
-/// Of one buffer.
+/// ChangedRanges holds the changes of one buffer.
 class ChangedRanges {
  public:
   void add(std::size_t begin, std::size_t count) {
     if (count > 0) ranges_.push_back({begin, begin + count});
   }
   bool empty() const { return ranges_.empty(); }
-  /// In order and apart; those with at most `gap` elements between them are one.
+  /// Returns the ranges in order and apart; those with at most `gap` elements between them are one.
   std::vector<ChangedRange> joined(std::size_t gap) const {
     std::vector<ChangedRange> sorted = ranges_, out;
     std::ranges::sort(sorted, {}, &ChangedRange::begin);
@@ -45,7 +45,7 @@ class ChangedRanges {
 #define GROUP_END(Type)
 #define BUFFER(name, type, access) ChangedRanges name;
 
-/// By the names of the groups' buffers.
+/// SceneChanges holds changes by the names of the groups' buffers.
 struct SceneChanges {
   SCENE_GROUPS
   bool all = false;  // everything, of another length perhaps

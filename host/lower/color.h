@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Values of spectra and colours (spectrum_color.cpp, spectrum_uplift.cpp).
+// Evaluates spectra and colours (spectrum_color.cpp, spectrum_uplift.cpp).
 #pragma once
 
 #include <array>
@@ -12,22 +12,24 @@
 
 namespace caplet {
 
-/// True when the value does not depend on wavelength (for the dispersive flag).
+/// Returns true when the value does not depend on wavelength (for the dispersive flag).
 bool is_constant(const Spectrum& spectrum);
 
-/// Value at `nm` of a spectrum that is not RGB.
+/// Returns the value at `nm` of a spectrum that is not RGB.
 double evaluate(const Spectrum& spectrum, double nm);
 
-/// The four floats of an environment texel (sigmoid coefficients and scale) for linear RGB >= 0; fast enough for millions of
-/// texels (a table of exact solutions built on first use, interpolated).
+/// Returns the four floats of an environment texel (sigmoid coefficients and scale) for linear RGB
+/// >= 0. It is fast enough for millions of texels (a table of exact solutions built on first use,
+/// interpolated).
 std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space);
 
-/// 3x3 row-major, linear RGB of `space` from XYZ and back.
+/// These are 3x3 row-major, linear RGB of `space` from XYZ and back.
 std::array<double, 9> rgb_from_xyz(ColorSpace space);
 std::array<double, 9> xyz_from_rgb(ColorSpace space);
 
-/// The same of a film's picture: with its white balance, by von Kries' rule in the space of Bradford's cones (as pbrt-v4). The
-/// white that is balanced is that of CIE daylight of that temperature, below 4000 K a black body's.
+/// Returns the same for a film's picture: with its white balance, by von Kries' rule in the space
+/// of Bradford's cones (as pbrt-v4). The balanced white is that of CIE daylight of that
+/// temperature, below 4000 K that of a black body.
 std::array<double, 9> picture_from_xyz(const FilmSettings& film);
 
 }  // namespace caplet

@@ -27,10 +27,11 @@ using glm::dvec3;
 
 // Covers are stated in this many parts of a cap's heights.
 constexpr int steps = 255;
-// Of many capsules that begin at one point these are looked at, the thickest first.
+// Only this many capsules that begin at one point are considered, the thickest first.
 constexpr std::size_t most_at_a_point = 32;
 
-/// A tapered capsule of which no end holds the other. Its surface is a cap where n . d <= s, a cone, and a cap where n . d >= s.
+/// Capsule is a tapered capsule of which no end holds the other. Its surface is a cap where n . d
+/// <= s, a cone, and a cap where n . d >= s.
 struct Capsule {
   std::array<dvec3, 2> p;
   std::array<double, 2> r;
@@ -38,7 +39,8 @@ struct Capsule {
   double length, s;
 };
 
-/// One end of a capsule, or a sphere. `into`: along the axis, into the capsule. The end's cap has the normals with n . into <= s.
+/// End is one end of a capsule, or a sphere. `into`: along the axis, into the capsule. The end's
+/// cap has the normals with n . into <= s.
 struct End {
   std::array<std::uint32_t, 3> key;
   float radius;
@@ -46,7 +48,7 @@ struct End {
   float s;  // a sphere: above 1
   std::uint32_t emitter, which;
 
-  /// By place, and at one place the thickest first.
+  /// Ends are ordered by place, and at one place the thickest comes first.
   friend bool operator<(const End& a, const End& b) {
     if (a.key != b.key) return a.key < b.key;
     if (a.radius != b.radius) return a.radius > b.radius;
@@ -98,14 +100,15 @@ std::array<std::uint32_t, 3> key_of(const dvec3& p) {
   return out;
 }
 
-/// Whether scattered rays find all that light samples leave out, and all is seen from outside.
+/// Returns whether scattered rays find everything that light samples leave out, and all is seen
+/// from outside.
 bool may_be_covered(const Emitter& emitter, const FlatScene& flat) {
   const GeometryRecord& geometry = flat.geometries[emitter.geometry];
   return !emitter.two_sided && !emitter.unseen && !emitter.by_ball && geometry.alpha == CAPLET_NONE &&
          (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) == 0;
 }
 
-/// What another capsule covers of an end.
+/// EndCover is the part of an end that another capsule covers.
 struct EndCover {
   double angle = 0;   // between its axis into the other capsule and the end's outward axis
   double s = -1;      // the other's End::s; -1: it covers nothing
@@ -113,9 +116,10 @@ struct EndCover {
 };
 using EndCovers = std::vector<std::array<EndCover, 2>>;  // by emitter
 
-/// The share of an end's heights that stays in the open. The other covers normals at less than acos(s) from its axis. What it
-/// covers by less than `rounding`, the error of hits, rays still find: on an end of radius r this is the last
-/// sqrt(2 rounding / r) of the angle, at which a sphere has left its tangent cone by r angle^2 / 2.
+/// Returns the share of an end's heights that stays uncovered. The other covers normals at less
+/// than acos(s) from its axis. Rays still find what it covers by less than `rounding`, the error of
+/// hits: on an end of radius r this is the last sqrt(2 rounding / r) of the angle, at which a
+/// sphere has left its tangent cone by r angle^2 / 2.
 double open_share(const EndCover& cover, double s, double radius, double rounding) {
   if (cover.s <= -1) return 1;
   if (cover.deeper > rounding) return 0;
@@ -124,7 +128,8 @@ double open_share(const EndCover& cover, double s, double radius, double roundin
   return std::clamp((highest + s) / (1 + s), 0.0, 1.0);
 }
 
-/// By which of the other ends at the same point (the thickest first) most of `end` is covered.
+/// Returns the cover by that one of the other ends at the same point (the thickest first) which
+/// covers most of `end`.
 EndCover best_cover(const End& end, std::span<const End> others) {
   EndCover best;
   double least = 2;
@@ -179,9 +184,10 @@ EndCovers covers_of_part(std::span<const Emitter> emitters, const FlatScene& fla
   return out;
 }
 
-/// Rounded up by a step or less.
+/// Returns the cover, rounded up by a step or less.
 LightCover cover_of(const Capsule& c, const std::array<EndCover, 2>& ends, double rounding) {
-  // Areas over 2 pi: a cap has r^2 times its heights, the cone the mean circumference of its ends times its slant.
+  // These are areas over 2 pi: a cap has r^2 times its heights, the cone the mean circumference of
+  // its ends times its slant.
   const double cone = 0.5 * (c.r[0] + c.r[1]) * (1 - c.s * c.s) * c.length;
   double whole = cone, left = cone;
   LightCover out;
@@ -197,8 +203,9 @@ LightCover cover_of(const Capsule& c, const std::array<EndCover, 2>& ends, doubl
   return out;
 }
 
-/// About how far apart, in the space of an emitter's instance, a ray across the scene may find surfaces that are at one place:
-/// four roundings of the largest coordinate and of the ray's length. The bound matters for noise alone.
+/// Returns about how far apart, in the space of an emitter's instance, a ray across the scene may
+/// find surfaces that are at one place: four roundings of the largest coordinate and of the ray's
+/// length. The bound matters for noise alone.
 double rounding_in(std::uint32_t instance, const FlatScene& flat) {
   const WorldRecord& world = flat.world;
   const double reach = std::abs(double{world.center_x}) + std::abs(double{world.center_y}) + std::abs(double{world.center_z}) +

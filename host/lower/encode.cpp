@@ -81,8 +81,9 @@ void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits) {
   if (nodes > max_nodes) throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
 }
 
-// The kernels' error is at most 16 eps (size + coordinates) for rays from nearby, eps = 2^-24, so 2^-20 of that is added. The
-// part that grows with the distance of a ray's origin is the slab test's (kernels/trace/trace.cl).
+// The kernels' error is at most 16 eps (size + coordinates) for rays from nearby, eps = 2^-24, so
+// 2^-20 of that is added. The slab test covers the part that grows with the distance of a ray's
+// origin (kernels/trace/trace.cl).
 ReferenceBox reference_box(const FlatPrimitive& p) {
   const ExactBox box = exact_box(p);
   double reach = 0;
@@ -108,7 +109,7 @@ void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
 
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves,
                         int kind_bits) {
-  // Rows at the very least, before anything is allocated.
+  // These are the least numbers of rows, before anything is allocated.
   const std::uint64_t node_base = nodes.size() / CAPLET_NODE_FLOATS, row_base = leaves.size() / 8;
   std::array<std::uint64_t, shape_count> counts{};
   for (const FlatPrimitive& p : primitives) {

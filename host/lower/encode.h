@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Primitives and their tree -> the flat node and leaf arrays (shared/kinds.h, shared/shapes.def).
+// Converts primitives and their tree to the flat node and leaf arrays (shared/kinds.h,
+// shared/shapes.def).
 #pragma once
 
 #include <cstdint>
@@ -21,19 +22,21 @@ struct EncodedTree {
   double sah = 0;
 };
 
-/// The exact box of a primitive in its tree's space: min, then max.
+/// Computes the exact box of a primitive in its tree's space: min, then max.
 void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
 
-/// What the tree's boxes are the unions of: the box of every point that the shape kernels may report, rounded outward.
+/// The tree's boxes are the unions of these: the box of every point that the shape kernels may
+/// report, rounded outward.
 struct ReferenceBox {
   float min[3], max[3];
 };
 ReferenceBox reference_box(const FlatPrimitive& p);
 
-/// Rows of leaf blocks that so many primitives of each kind (shapes.def) take at the very least.
+/// Returns the least number of rows of leaf blocks that so many primitives of each kind
+/// (shapes.def) need.
 std::uint64_t least_rows(std::span<const std::uint64_t> counts);
-/// Bits that leaf references need for these kinds (bit k: shape kind k), the program option CAPLET_LEAF_KIND_BITS: 4, and more
-/// where there are kinds from 16 up.
+/// Returns the bits that leaf references need for these kinds (bit k: shape kind k), the program
+/// option CAPLET_LEAF_KIND_BITS: 4, and more where there are kinds from 16 up.
 int leaf_kind_bits(std::uint64_t shapes);
 /// Throws InputError when there are more rows of leaf blocks or nodes than references have bits for: with 4 bits for the kind
 /// 2^27 rows, some 100 million capsules, and 2^31 nodes.

@@ -21,7 +21,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Luminances of the texels, with the neighbours that bilinear interpolation sees beyond the edges.
+/// Luminances holds luminances of the texels, with the neighbours that bilinear interpolation uses
+/// beyond the edges.
 class Luminances {
  public:
   explicit Luminances(const EnvironmentImage& image)
@@ -46,7 +47,8 @@ class Luminances {
     return values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
   }
 
-  /// Mean over the texel's cell of the bilinear interpolation: 1/8, 6/8, 1/8 of the neighbours along each axis.
+  /// Returns the mean over the texel's cell of the bilinear interpolation: 1/8, 6/8, 1/8 of the
+  /// neighbours along each axis.
   double cell_mean(int x, int y) const {
     const auto row = [&](int r) { return at(x - 1, r) + 6 * at(x, r) + at(x + 1, r); };
     return (row(y - 1) + 6 * row(y) + row(y + 1)) / 64;
@@ -58,7 +60,8 @@ class Luminances {
   std::vector<float> values_;
 };
 
-/// Running sums of `weights`, 0 to 1, as floats; zeros when there is nothing to sum. Returns the sum.
+/// Computes running sums of `weights`, 0 to 1, as floats; zeros when there is nothing to sum.
+/// Returns the sum.
 double running_sum(const std::vector<double>& weights, float* cdf) {
   double total = 0;
   for (const double w : weights) total += w;
@@ -152,7 +155,7 @@ EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene&
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
     std::vector<double> weights(width);
     for (std::size_t y = range.begin(); y < range.end(); ++y) {
-      // Solid angle of a cell of this row.
+      // `cell` is the solid angle of a cell of this row.
       const double top = pi * static_cast<double>(y) / static_cast<double>(height);
       const double bottom = pi * static_cast<double>(y + 1) / static_cast<double>(height);
       const double cell = image.equal_area ? 4 * pi / static_cast<double>(width * height)

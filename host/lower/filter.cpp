@@ -24,7 +24,7 @@ double sinc(double x) {
   return t == 0 ? 1 : std::sin(t) / t;
 }
 
-/// Right half of the nodes: 0, ..., radius. Zero crossings become nodes.
+/// Returns the right half of the nodes: 0, ..., radius. Zero crossings become nodes.
 std::vector<double> half_nodes(const PixelFilter& filter, double radius) {
   if (filter.kind == PixelFilter::Kind::triangle) return {0, radius};
   constexpr int cells = 64;
@@ -57,7 +57,8 @@ uint append_axis(const PixelFilter& filter, double radius, std::vector<float>& t
   }
   for (const double x : nodes) {
     const double value = filter_value(filter, x, radius);
-    // A node at a zero crossing is exact to bisection only: its value becomes 0, lest its cell have both signs.
+    // A node at a zero crossing is exact to bisection only: its value becomes 0, so that its cell
+    // does not have both signs.
     values.push_back(std::abs(value) < 1e-12 * std::abs(filter_value(filter, 0, radius)) ? 0 : value);
   }
   std::vector<double> running = {0};

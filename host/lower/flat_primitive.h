@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A primitive as its kernel reads it.
+// This is a primitive as its kernel reads it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace caplet {
 
-/// One primitive: its fields (shapes.def: p.data[capsule_at_r], capsule_r(p.data)), in the space of its tree. Kinds with
-/// trait_kept_box have their box (min 3, max 3) behind them.
+/// FlatPrimitive is one primitive: its fields (shapes.def: p.data[capsule_at_r],
+/// capsule_r(p.data)), in the space of its tree. Kinds with trait_kept_box have their box (min 3,
+/// max 3) behind them.
 struct FlatPrimitive {
   std::uint32_t shape;
   std::uint32_t id;  // global primitive id; for instances the index into FlatScene::instances

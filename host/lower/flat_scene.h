@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Flat arrays and records, by the names of the groups' buffers: what lowering makes of a scene and of a view of it.
+// These are flat arrays and records, by the names of the groups' buffers, which lowering makes of a
+// scene and of a view of it.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +13,19 @@
 
 namespace caplet {
 
-// Members by the names and types of the groups' buffers.
+// Members have the names and types of the groups' buffers.
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
 #define BUFFER(name, type, access) access(type) name{};
 #define ONE(type) type
 #define IN(type) std::vector<type>
 
-/// Everything that a device needs of a scene, whoever looks at it.
+/// FlatScene is everything that a device needs of a scene, whatever the view.
 struct FlatScene {
   SCENE_GROUPS
 
-  // What kernels are built for (stage_options): the kinds of shapes there are (bit k: kind k), operands of csg among them, and
-  // the bits of leaf references for them.
+  // Kernels are built for these (stage_options): the kinds of shapes there are (bit k: kind k),
+  // operands of csg among them, and the bits of leaf references for them.
   std::uint64_t shapes = ~std::uint64_t{0};
   std::uint64_t material_kinds() const;  // likewise, of `materials`, `textures` and `lights` as they are
   std::uint64_t texture_kinds() const;
@@ -36,7 +37,7 @@ struct FlatScene {
   bool sky_is_unseen = false;  // by camera rays: there is a backdrop
   bool has_chains = false;     // capsules with u at their ends, operands of csg among them
 
-  // For `info` and statistics.
+  // These are for `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;
   int bvh_depth = 0;
   double bvh_sah = 0;
@@ -45,7 +46,7 @@ struct FlatScene {
   std::uint64_t geometry_bytes() const;  // nodes, leaves, primitive_geometry, instances, mesh arrays
 };
 
-/// What is rendered of a scene: its camera, film and sampler.
+/// FlatView is what is rendered of a scene: its camera, film and sampler.
 struct FlatView {
   VIEW_GROUPS
 };

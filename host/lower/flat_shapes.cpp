@@ -29,8 +29,8 @@ double similarity_scale(const Matrix& m) {
   const glm::dmat3 a(m);
   const double x = glm::length(a[0]), y = glm::length(a[1]), z = glm::length(a[2]);
   const double s = (x + y + z) / 3;
-  // Scene files carry rotations to six or seven digits: an angle error of 1e-6 moves a surface by less than a float's rounding of
-  // it.
+  // Scene files state rotations to six or seven digits: an angle error of 1e-6 moves a surface by
+  // less than a float's rounding of it.
   const double slack = 2e-6 * s;
   const bool equal = std::abs(x - s) <= slack && std::abs(y - s) <= slack && std::abs(z - s) <= slack;
   const bool orthogonal = std::abs(glm::dot(a[0], a[1])) <= slack * s && std::abs(glm::dot(a[0], a[2])) <= slack * s &&

@@ -26,20 +26,20 @@ using glm::dvec3;
 std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) { return mesh.triangles; }
 std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) { return mesh.patches; }
 
-/// Room for `count` more; at least doubles what it allocates, so that many small additions move each element a bounded number of
-/// times.
+/// Reserves room for `count` more; at least doubles what it allocates, so that many small additions
+/// move each element a bounded number of times.
 template <class T>
 void reserve_more(std::vector<T>& values, std::size_t count) {
   if (values.capacity() - values.size() < count) values.reserve(std::max(values.size() + count, 2 * values.capacity()));
 }
 
-/// The same mesh, each corner of each face a vertex of its own, with the uvs that a mesh without any has. A face that is turned
-/// over keeps them.
+/// Returns the same mesh, with each corner of each face a vertex of its own, and with the uvs of a
+/// mesh without any. A face that is turned over keeps them.
 template <class Mesh>
 Mesh with_uvs(Mesh mesh) {
   Mesh out;
   for (auto& face : faces_of(mesh)) {
-    // (0 0) (1 0) (1 1), or (0 0) (1 0) (0 1) (1 1)
+    // The uvs are (0 0) (1 0) (1 1), or (0 0) (1 0) (0 1) (1 1).
     for (std::size_t k = 0; k < face.size(); ++k) {
       out.positions.push_back(mesh.positions[face[k]]);
       out.normals.push_back(mesh.normals[face[k]]);
@@ -58,7 +58,8 @@ bool turns_normals(const Shape& shape, const Matrix& m) {
   return shape.reverse_orientation != (wound && glm::determinant(glm::dmat3(m)) < 0);
 }
 
-/// InstanceRecord.flags that hide what a one-sided shape does not show. Open shapes are seen from where their normal points.
+/// Returns InstanceRecord.flags that hide the unseen sides of a one-sided shape. Open shapes are
+/// seen from where their normal points.
 uint unseen_sides(const Shape& shape, const Matrix& m) {
   if (!shape.one_sided) return 0;
   return !is_closed(shape) && turns_normals(shape, m) ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
@@ -138,7 +139,7 @@ class GeometryLowering {
   }
 
  private:
-  /// Counted before memory is taken for them: only capsules and meshes can have too many primitives.
+  /// Checks counts before memory is taken: only capsules and meshes can have too many primitives.
   void check_counts() const {
     std::array<std::uint64_t, shape_count> counts{};
     const auto add = [&](const Shape& shape) {
@@ -152,7 +153,8 @@ class GeometryLowering {
     check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
   }
 
-  /// FlatScene::shapes and has_chains: every kind that is to be encoded, and those within csg shapes.
+  /// Sets FlatScene::shapes and has_chains: every kind that is to be encoded, and those within csg
+  /// shapes.
   void find_shapes(const LoweredGeometry& lowered) {
     out_.shapes = 0;
     out_.has_chains =
@@ -169,7 +171,7 @@ class GeometryLowering {
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
     if (lowered.world.parts.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
-    // Kernels have one kind at least.
+    // Kernels have at least one kind.
     if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
     kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
   }
@@ -211,7 +213,7 @@ class GeometryLowering {
     return lowered;
   }
 
-  /// The first step of a shape's alpha; shapes with the same one share it.
+  /// Returns the first step of a shape's alpha; shapes with the same one share it.
   uint alpha_of(const Shape& shape) {
     if (!shape.alpha) return CAPLET_NONE;
     const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
@@ -220,7 +222,8 @@ class GeometryLowering {
     return found->second;
   }
 
-  /// Rows of surface_materials where a shape's surfaces differ; CAPLET_NONE where they do not.
+  /// Adds rows of surface_materials where a shape's surfaces differ; returns CAPLET_NONE where they
+  /// do not.
   uint add_surfaces(const Shape& shape) {
     std::vector<uint> rows = surface_materials(shape);
     if (shape.emission && !shape.emission->surfaces.empty())
@@ -258,7 +261,7 @@ class GeometryLowering {
     return p;
   }
 
-  /// Shapes of one primitive.
+  /// Appends shapes of one primitive.
   template <class Geometry>
   void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record, Part& part) {
     const FlatPrimitive flat = flat_primitive(geometry, m, out_.leaves);
@@ -311,7 +314,7 @@ class GeometryLowering {
     }
   }
 
-  /// Takes back what add_vertex_data has just added.
+  /// Removes what add_vertex_data has just added.
   void drop_vertex_data(GeometryRecord& record) {
     if (record.normal_begin != CAPLET_NONE) out_.mesh_normals.resize(record.normal_begin);
     if (record.uv_begin != CAPLET_NONE) out_.mesh_uvs.resize(record.uv_begin);
@@ -346,7 +349,8 @@ class GeometryLowering {
     }
   }
 
-  /// pbrt: where a mesh has normals, they say which side is out, not the winding. `normal`: by winding.
+  /// By pbrt's rule a mesh with normals has its outside where they point, whatever the winding.
+  /// `normal`: by winding.
   bool against_normals(const GeometryRecord& record, const dvec3& normal, std::span<const std::uint32_t> corners,
                        bool flipped) const {
     if (record.normal_begin == CAPLET_NONE) return false;
@@ -422,7 +426,8 @@ class GeometryLowering {
 }  // namespace
 
 PartKey part_key(const Shape& shape, const Matrix& m) {
-  // One part for what is baked into the shapes' common space, then one for each transform that cannot be.
+  // There is one part for what is baked into the shapes' common space, then one for each transform
+  // that cannot be baked.
   const bool stays = !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
   return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The way back from the numbers that lower gives to what the scene calls things.
+// Maps the numbers of lower back to the names in the scene.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,16 @@ struct Identity {
   std::optional<std::uint32_t> instance;  // index into Scene::instances; none: a shape of the world
 };
 
-/// What a crossing (not a miss) is on.
+/// Returns what a crossing (not a miss) is on.
 Identity identity_of(const Scene& scene, const PickRecord& pick);
 
-/// Number in the object-id layer: shapes of the world in the order of the scene, then its instances.
+/// Returns the number in the object-id layer: shapes of the world in the order of the scene, then
+/// its instances.
 std::uint32_t object_number(const Scene& scene, const Identity& identity);
 
-/// The shape's name; without one, the number in the object-id layer.
+/// Returns the shape's name; without one, the number in the object-id layer.
 std::string object_label(const Scene& scene, const Identity& identity);
-/// The material's name; without one, its index in Scene::materials.
+/// Returns the material's name; without one, its index in Scene::materials.
 std::string material_label(const Scene& scene, std::uint32_t material);
 
 }  // namespace caplet

@@ -27,7 +27,7 @@ struct Level {
   std::vector<float> values;  // linear
 };
 
-/// What it covers, both sides of which are powers of two.
+/// Returns a level of half the sides, both of which are powers of two.
 Level halved(const Level& from, std::size_t channels) {
   Level to{std::max<std::size_t>(1, from.width / 2), std::max<std::size_t>(1, from.height / 2), {}};
   to.values.resize(to.width * to.height * channels);
@@ -46,10 +46,10 @@ Level halved(const Level& from, std::size_t channels) {
   return to;
 }
 
-/// sin(pi x) / (pi x).
+/// Returns sin(pi x) / (pi x).
 double sinc_pi(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
 
-/// Along one axis: the four texels about a new one's centre, by Lanczos' filter.
+/// Taps are, along one axis, the four texels about a new one's centre, by Lanczos' filter.
 struct Taps {
   Taps(std::size_t i, std::size_t from, std::size_t to) {
     const double center = (static_cast<double>(i) + 0.5) * static_cast<double>(from) / static_cast<double>(to);
@@ -66,7 +66,7 @@ struct Taps {
   double weights[4];
 };
 
-/// The texel that (x, y) stands for, or none (kernels/textures/images.cl).
+/// Returns the texel that (x, y) stands for, or none (kernels/textures/images.cl).
 std::optional<std::size_t> wrapped(int x, int y, int width, int height, int wrap) {
   const auto repeated = [](int v, int n) { return (v % n + n) % n; };
   const auto beyond = [&] { return x < 0 || y < 0 || x >= width || y >= height; };
@@ -123,7 +123,7 @@ struct Uses : TextureVisitor {
   void add(const ImageUse& use) { found.try_emplace(use, narrow<std::uint32_t>(found.size())); }
 };
 
-/// The byte whose meaning is nearest.
+/// Returns the byte whose decoded value is nearest.
 std::uint8_t encoded(const std::array<float, 256>& decoded, float value) {
   const auto above = std::ranges::lower_bound(decoded, value);
   if (above == decoded.begin()) return 0;
@@ -131,12 +131,13 @@ std::uint8_t encoded(const std::array<float, 256>& decoded, float value) {
   return static_cast<std::uint8_t>(at == 256 || value - decoded[at - 1] <= decoded[at] - value ? at - 1 : at);
 }
 
-/// Values of a level that are few enough for 16 bits to number them, as those of images of 16 bits and of halves are.
+/// FewValues holds the values of a level if 16 bits can number them, as for images of 16 bits and
+/// of halves.
 class FewValues {
  public:
   static constexpr std::size_t most = 65536;
 
-  /// False where there are more than `most`.
+  /// Returns false where there are more than `most`.
   bool take(const std::vector<float>& values) {
     for (const float value : values) {
       const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -152,7 +153,7 @@ class FewValues {
   std::uint16_t number_of(float value) { return static_cast<std::uint16_t>(slot_of(std::bit_cast<std::uint32_t>(value)) - 1); }
 
  private:
-  /// Of a hash table: the number of the value that has it + 1, or 0.
+  /// Returns the entry of a hash table for these bits: the number of the value + 1, or 0.
   std::uint32_t& slot_of(std::uint32_t bits) {
     std::size_t at = (bits * 0x9e3779b1u) >> 14;
     while (slots_[at] != 0 && all_[slots_[at] - 1] != bits) at = (at + 1) % slots_.size();
@@ -185,7 +186,7 @@ class ImageLowering {
       if (i > 0) level = halved(level, channels_);
       const std::vector<float>& floats = i > 0 || is_new ? level.values : image_.floats;
       uint how = image_.bytes.empty() ? CAPLET_TEXELS_FLOATS : CAPLET_TEXELS_BYTES;
-      // One table an image: of the first level, which is the most of it.
+      // An image has one table: that of the first level, which is most of it.
       if (FewValues few; i == 0 && how == CAPLET_TEXELS_FLOATS && floats.size() > 1024 && few.take(floats) &&
                          few.all().size() + floats.size() / 2 < floats.size()) {
         how = CAPLET_TEXELS_NUMBERS;
@@ -215,7 +216,7 @@ class ImageLowering {
     return out;
   }
 
-  /// What is said of a level before its texels.
+  /// Writes the header of a level before its texels.
   void put_level(const ImageRecord& record, uint i, const Level& level, uint how) {
     uint* const of = &out_.texels[record.levels_begin + 4 * i];
     of[0] = narrow<uint>(out_.texels.size());
@@ -242,14 +243,14 @@ class ImageLowering {
     for (const float value : values) numbers.push_back(few.number_of(value));
     const std::size_t at = out_.texels.size();
     out_.texels.resize(at + (numbers.size() + 1) / 2);
-    // Two to a word as they lie in memory.
+    // Numbers lie two to a word, in the order of memory.
     std::memcpy(&out_.texels[at], numbers.data(), numbers.size() * sizeof numbers[0]);
   }
 
   void add_bytes(const std::vector<std::uint8_t>& bytes) {
     const std::size_t at = out_.texels.size();
     out_.texels.resize(at + (bytes.size() + 3) / 4);
-    // Four to a word as they lie in memory: devices read them as bytes.
+    // Bytes lie four to a word, in the order of memory: devices read them as bytes.
     std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(&out_.texels[at]));
   }
 
@@ -274,7 +275,8 @@ ImageNumbers image_numbers(const std::vector<Texture>& textures) {
 void lower_images(const Scene& scene, const ImageNumbers& numbers, FlatScene& out) {
   std::vector<ImageUse> uses(numbers.size());
   for (const auto& [use, number] : numbers) uses[number] = use;
-  // At most: sides grow to twice themselves; mip levels take a third, of long images as much again as the first.
+  // This is an upper bound: sides at most double; mip levels add a third, for long images as much
+  // again as the first level.
   double words = 0;
   for (const ImageUse& use : uses)
     words += 512 + 8 * static_cast<double>(use.image->values() + 4) / (use.image->bytes.empty() ? 1 : 4);

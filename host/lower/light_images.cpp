@@ -20,7 +20,7 @@ namespace caplet {
 namespace {
 
 using std::numbers::pi;
-/// Of the rectified image of one radiance, which has no texels, but weights.
+/// The rectified image of one radiance has this many weights along each side, and no texels.
 constexpr int side_without_image = 64;
 
 void append_grey(const EnvironmentImage& image, FlatScene& out) {
@@ -28,7 +28,7 @@ void append_grey(const EnvironmentImage& image, FlatScene& out) {
     out.light_texels.push_back((usable(image.rgb[i]) + usable(image.rgb[i + 1]) + usable(image.rgb[i + 2])) / 3);
 }
 
-/// The mean over its texels of what lights take of it.
+/// Returns the mean over its texels of the value that lights use.
 double mean_of(const EnvironmentImage& image, bool is_grey) {
   double sum = 0;
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3)
@@ -37,7 +37,8 @@ double mean_of(const EnvironmentImage& image, bool is_grey) {
   return sum / (static_cast<double>(image.width) * image.height);
 }
 
-/// Direction in the portal's space at the middle of a texel, and its solid angle. Bitterli et al. 2015.
+/// PortalCell is the direction in the portal's space at the middle of a texel, and its solid angle
+/// (Bitterli et al. 2015).
 struct PortalCell {
   glm::dvec3 direction;
   double solid_angle;
@@ -51,7 +52,8 @@ struct PortalCell {
   }
 };
 
-/// Sums of whole numbers in proportion to `weights` over all rectangles from the first corner, two words each.
+/// Appends sums of whole numbers in proportion to `weights` over all rectangles from the first
+/// corner, two words each.
 void append_sums(const std::vector<double>& weights, std::size_t width, std::size_t height, FlatScene& out) {
   double total = 0;
   for (const double weight : weights) total += weight;
@@ -77,7 +79,8 @@ void append_sums(const std::vector<double>& weights, std::size_t width, std::siz
   }
 }
 
-/// The image as the portal shows it: each texel of it the sky's radiance at its middle, as pbrt-v4 has it.
+/// Lowers the image as the portal shows it: each of its texels has the sky's radiance at its
+/// middle, as in pbrt-v4.
 void lower_portal(const InfiniteLight& light, const glm::dmat3& image_from_portal, LoweredPicture& picture, FlatScene& out) {
   const int height = light.image ? light.image->height : side_without_image, width = height;
   picture.field[2] = picture.field[3] = narrow<std::uint32_t>(height);
@@ -143,7 +146,7 @@ const LoweredPicture& LightImages::find(Use use, const std::shared_ptr<const voi
     fresh.picture.field[0] = narrow<std::uint32_t>(out.light_texels.size());
     fresh.picture.field[1] = narrow<std::uint32_t>(out.light_cdf.size());
     make(fresh.picture);
-    // Numbers of floats are 32 bits.
+    // Indices of floats have 32 bits.
     if (std::max(out.light_texels.size(), out.light_cdf.size()) > 0xffffffffu)
       throw InputError("the images of lights have more texels than 32 bits number");
     has_changed_ = true;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uint64_t numbers = std::uint64_t{1} << 32;  // random numbers there are
 
-/// The chances that are wanted, before they are made whole numbers; zeros when no light has power.
+/// Returns the probabilities that are wanted, before they are made whole numbers; zeros when no
+/// light has power.
 std::vector<double> wanted_chances(const std::vector<LightShare>& lights) {
   double total = 0;
   std::map<std::uint32_t, double> groups;
@@ -32,7 +33,8 @@ std::vector<double> wanted_chances(const std::vector<LightShare>& lights) {
   return chances;
 }
 
-/// How many of `units` each light gets: their sum is `units`, and every light with a chance gets at least one.
+/// Returns how many of `units` each light gets: their sum is `units`, and every light with a
+/// probability gets at least one.
 std::vector<std::uint64_t> whole_shares(const std::vector<double>& chances, std::uint64_t units) {
   std::vector<std::uint64_t> counts;
   std::uint64_t sum = 0;
@@ -62,7 +64,8 @@ std::vector<AliasRecord> light_table(const std::vector<LightShare>& lights) {
   const std::uint64_t unit = n <= 65536 ? 256 : 1;
   std::vector<std::uint64_t> counts = whole_shares(wanted_chances(lights), numbers / unit);
   std::vector<AliasRecord> table(n, AliasRecord{});
-  // Number u falls into row u n >> 32: those from first(i) on, and `keep` is compared with the low half of u n.
+  // Number u falls into row u n >> 32: the row's numbers are those from first(i) on, and `keep` is
+  // compared with the low half of u n.
   const auto first = [n](std::uint64_t i) { return (i * numbers + n - 1) / n; };
   const auto size = [&](std::uint64_t i) { return first(i + 1) - first(i); };
   std::vector<std::size_t> less, more;

@@ -31,7 +31,7 @@ constexpr std::uint32_t no_group = 0xffffffff;
 constexpr double cells = 65535;  // of the grid, along each axis
 static_assert(CAPLET_LIGHT_NODE == 7 * width);
 
-/// normal_bits of kernels/lights/tree.cl.
+/// Computes normal_bits of kernels/lights/tree.cl.
 std::uint32_t octahedral_bits(const dvec3& n) {
   const double scale = 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   double x = n.x * scale, y = n.y * scale;
@@ -44,12 +44,12 @@ std::uint32_t octahedral_bits(const dvec3& n) {
   return low | high << 16;
 }
 
-/// Of the angle by which octahedral_bits may turn a direction: half a step of each coordinate of the octahedron, which is at
-/// least 1/sqrt(3) away.
+/// octahedral_bits may turn a direction by at most this angle: half a step of each coordinate of
+/// the octahedron, which is at least 1/sqrt(3) away.
 constexpr double axis_error = 1e-4;
 
-/// In 65535ths of [-1, 1], of an angle that is axis_error greater: never above the cosine that is meant. Of neighbours they are
-/// mostly the same, so that the last is kept.
+/// Returns the cosine, in 65535ths of [-1, 1], of an angle that is axis_error greater: it is never
+/// above the exact cosine. Neighbours mostly have the same cosine, so the last result is kept.
 class CosineBits {
  public:
   std::uint32_t operator()(double cosine) {
@@ -66,13 +66,13 @@ class CosineBits {
   std::uint32_t bits_ = 0;
 };
 
-/// The grid of the boxes' ends.
+/// Grid is the grid of the boxes' ends.
 struct Grid {
   dvec3 min, cell;
 
   Grid(const dvec3& low, const dvec3& high) {
     for (int k = 0; k < 3; ++k) {
-      // Floats, as the kernel has them; the last cell ends beyond the box.
+      // These are floats, as the kernel has them; the last cell ends beyond the box.
       min[k] = std::nextafter(static_cast<float>(low[k]), -INFINITY);
       cell[k] = std::nextafter(static_cast<float>((high[k] - min[k]) / cells), INFINITY);
       while (min[k] + cell[k] * cells < high[k]) cell[k] = std::nextafter(static_cast<float>(cell[k]), INFINITY);
@@ -88,7 +88,7 @@ struct Grid {
   static std::uint32_t whole(double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, cells)); }
 };
 
-/// The box of some lights.
+/// Extent is the box of some lights.
 struct Extent {
   dvec3 min{INFINITY}, max{-INFINITY};
   void extend(const dvec3& low, const dvec3& high) {
@@ -101,7 +101,7 @@ struct Extent {
 
 namespace {
 
-/// Of two cones the smallest one that holds both.
+/// Sets the smallest cone that holds both.
 void unite_cones(LightBounds& out, const LightBounds& b) {
   const LightBounds a = out;
   const LightBounds &wide = a.cos_cone < b.cos_cone ? a : b, &narrow = a.cos_cone < b.cos_cone ? b : a;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The tree that many lights are chosen by (kernels/lights/tree.cl).
+// Makes the tree that many lights are chosen by (kernels/lights/tree.cl).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace caplet {
 
-/// What the light tree knows of a light, or of several together.
+/// LightBounds is what the light tree stores of a light, or of several together.
 struct LightBounds {
   glm::dvec3 min{0}, max{0};  // box in the world
   glm::dvec3 axis{0, 0, 1};   // of a cone that holds the directions of its normals, and that cone's cosine; -1: all
@@ -21,10 +21,11 @@ struct LightBounds {
   double intensity = 0;  // luminous, seen along a normal from afar; > 0
 };
 
-/// Both together. Conty Estevez and Kulla 2018, section 4.1.
+/// Returns the bounds of both together (Conty Estevez and Kulla 2018, section 4.1).
 LightBounds united(const LightBounds& a, const LightBounds& b);
 
-/// Lights as the tree takes them: a line of a processor's cache each, and more of those that do not shine everywhere.
+/// TreeLights are lights as the tree takes them: a cache line each, and more for those that do not
+/// shine everywhere.
 struct TreeLights {
   static constexpr std::uint32_t all_around = 0xffffffff;
   struct alignas(64) One {
@@ -44,8 +45,9 @@ struct TreeLights {
   LightBounds bounds_of(const One& light) const;
 };
 
-/// Writes light_nodes, light_places (of all `light_count` lights) and the grid in `lighting`. `lights` in any order, each once;
-/// none: no tree. The same for any number of threads.
+/// Writes light_nodes, light_places (of all `light_count` lights) and the grid in `lighting`.
+/// `lights` are in any order, each once; none: no tree. The result is the same for any number of
+/// threads.
 void lower_light_tree(const TreeLights& lights, std::size_t light_count, FlatScene& out);
 
 }  // namespace caplet

@@ -26,12 +26,12 @@ constexpr std::uint32_t light_kinds = light_count;
 #define LIGHT_MODEL(name, Type) \
   template <>                   \
   constexpr std::uint32_t light_kinds<Type> = light_##name;
-// An InfiniteLight is one of three.
+// An InfiniteLight becomes one of three kinds.
 enum { light_infinite = light_count };
 #include "scene/lights.def"
 
-// Every row of lights.def has its model: `area` and `textured_area` are emissions, and `constant`, `image` and `portal` have one
-// together.
+// Every row of lights.def has its model: `area` and `textured_area` are emissions, and `constant`,
+// `image` and `portal` have one together.
 #define LIGHT_MODEL(name, Type) +1
 static_assert(4
 #include "scene/lights.def"
@@ -41,13 +41,13 @@ template <class Model>
 concept HasImage = requires(const Model& model) {
   model.solid_angle(0.0, 0.0);
 };
-/// The image has the colours.
+/// HasColors is true for models whose image has the colours.
 template <class Model>
 concept HasColors = HasImage<Model> && !requires(const Model& model) {
   model.intensity;
 };
 
-/// The integral of an image over directions: of luminance, or of grey.
+/// Returns the integral of an image over directions: of luminance, or of grey.
 template <HasImage Model>
 double integral_of(const Model& light) {
   const EnvironmentImage& image = *light.image;
@@ -63,16 +63,18 @@ double integral_of(const Model& light) {
   return sum / (static_cast<double>(image.width) * image.height);
 }
 
-/// One light of the scene (not an emissive shape): its record, data and power.
+/// LightLowering converts one light of the scene (not an emissive shape): its record, data and
+/// power.
 class LightLowering {
  public:
   LightLowering(SpectrumTable& spectra, LightImages& images, FlatScene& out)
       : spectra_(spectra), images_(images), out_(out), radius_(out.world.radius) {}
 
-  /// Luminance of the radiance of the brightest light so far, spread over all directions and the scene where it has none.
+  /// Returns the luminance of the radiance of the brightest light so far, spread over all
+  /// directions and the scene where it has none.
   double brightest() const { return brightest_; }
 
-  /// `bounded`: takes the light where it is somewhere.
+  /// Adds a light. `bounded` receives it if it has a place.
   void add(const Light& light, std::vector<LightShare>& shares, TreeLights& bounded) {
     light_ = &light;
     LightRecord record{};
@@ -155,8 +157,8 @@ class LightLowering {
     return of.luminance * pi * radius_ * radius_ * record.scale;
   }
 
-  /// As the sky without its portal has them, power and illuminance; but what goes through the portal is what the light is chosen
-  /// by.
+  /// Lowers a portal. Power and illuminance are those of the sky without its portal, but the light
+  /// is chosen by what goes through the portal.
   double lower_portal(const InfiniteLight& light, LightRecord& record) {
     EnvironmentIntegrals sky{4 * pi, pi};
     if (FlatScene scratch; light.image && (light_->power || light_->illuminance)) sky = lower_environment(*light.image, scratch);
@@ -180,13 +182,14 @@ class LightLowering {
     return width * height * picture.integrals.illuminance * unit;
   }
 
-  /// The factor for a spectrum that by itself gives a power or illuminance of `of_unit`, so that it gives `wanted`.
+  /// Returns the factor for a spectrum that by itself gives a power or illuminance of `of_unit`, so
+  /// that it gives `wanted`.
   static double replaced(const std::optional<double>& wanted, double of_unit) {
     if (!wanted) return 1;
     return of_unit > 0 ? *wanted / of_unit : 0;
   }
 
-  /// Of what scene/lights.def visits, the spectrum.
+  /// Takes the spectrum from what scene/lights.def visits.
   struct Emission {
     LightLowering& lowering;
     LightRecord& record;
@@ -235,14 +238,15 @@ LightBounds bounds_of(const Emitter& emitter, double power) {
   const bool one_way = out.axis != glm::dvec3(0);
   if (!one_way) out.axis = {0, 0, 1};
   out.cos_cone = one_way ? 1 : -1;
-  // Of a flat side its radiance by its area; of a convex solid a quarter of that, from everywhere in the mean.
+  // The intensity of a flat side is its radiance times its area; that of a convex solid is a
+  // quarter of that, in the mean over all directions.
   out.intensity = power / (one_way ? pi : 4 * pi);
   return out;
 }
 
-/// Makes the tree of `bounded` and leaves in `shares` the lights that the table has beside it, `emitters` and what is in the tree
-/// not among them; the tree is one choice more: half of the random
-/// numbers by power, half evenly to groups, as light_table has it.
+/// Makes the tree of `bounded` and leaves in `shares` the lights that the table has beside it,
+/// without `emitters` and the lights of the tree. The tree is one choice more: half of the random
+/// numbers go by power, half evenly to groups, as in light_table.
 void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vector<LightShare>& shares, FlatScene& out) {
   static const TreeLights none;
   const bool many = bounded.lights.size() >= CAPLET_LIGHT_TREE_FROM;
@@ -261,7 +265,7 @@ void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vec
   std::ranges::sort(groups);
   const auto others = static_cast<double>(std::distance(groups.begin(), std::unique(groups.begin(), groups.end())));
   const double chance = 0.5 * of_tree / (of_tree + of_others) + 0.5 / (1 + others);
-  // Rows for what may be chosen: emissive primitives stand first.
+  // Rows are for lights that may be chosen: emissive primitives stand first.
   out.lighting.table_begin = others > 0 ? narrow<uint>(emitters) : out.lighting.light_count;
   shares.erase(shares.begin(), shares.begin() + out.lighting.table_begin);
   out.lighting.tree_share = others > 0 ? static_cast<uint>(std::clamp(chance, 0x1p-8, 1 - 0x1p-8) * 0x1p32) : CAPLET_NONE;
@@ -309,7 +313,7 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
       data.put("ball_center", glm::dvec3(emitter.ball[0], emitter.ball[1], emitter.ball[2]));
       data.put("ball_radius", emitter.by_ball ? emitter.ball[3] : -1);
       if (record.kind == light_textured_area) data.put_picture("picture", picture.field);
-      // Rounded up: nothing of the shape may lie outside.
+      // The radius is rounded up: no part of the shape may lie outside.
       static_assert(int{area_at_ball_radius} == int{textured_area_at_ball_radius} &&
                     int{area_at_ball_center} == int{textured_area_at_ball_center});
       out.light_data[record.data + area_at_ball_radius] *= 1 + 0x1p-18f;

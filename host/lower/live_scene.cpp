@@ -22,7 +22,8 @@ namespace {
 
 using Matrix = glm::dmat4;
 
-/// A tree of at least so many primitives is built again when edits have made it so many times as costly.
+/// A tree of at least this many primitives is built again when edits have made it this many times
+/// as costly.
 constexpr std::size_t rebuilt_from_primitives = 256;
 constexpr double rebuilt_at_growth = 2;
 /// Beyond this share of a tree it is cheaper to build it again than to move primitive by primitive.
@@ -34,7 +35,7 @@ bool same_bytes(const T& a, const T& b) {
   return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
 }
 
-/// What of `now` differs from `before`.
+/// Adds the ranges of `now` that differ from `before`.
 template <class T>
 void add_differences(const std::vector<T>& before, const std::vector<T>& now, ChangedRanges& out) {
   const std::size_t common = std::min(before.size(), now.size());
@@ -45,7 +46,7 @@ void add_differences(const std::vector<T>& before, const std::vector<T>& now, Ch
   out.add(begin, end - begin);
 }
 
-/// The same edit back to what stands there now.
+/// Returns the edit that restores what stands there now.
 SceneEdit undo_of(const Scene& scene, const SceneEdit& edit) {
   return std::visit(
       [&](const auto& one) -> SceneEdit {
@@ -89,8 +90,8 @@ struct LiveScene::State {
     return (at.object ? geometry().objects[*at.object] : geometry().world).extents[at.shape];
   }
 
-  // Each of these does what follows in the flat arrays from an edit that is made already; `before`: what stood there. False: that
-  // cannot be done in place, and nothing is changed.
+  // Each of these updates the flat arrays for an edit that is made already; `before`: what stood
+  // there. They return false, and change nothing, if that cannot be done in place.
 
   bool follow(const CapsuleEdit& edit, const CapsuleEdit&) {
     const Shape& shape = shape_at(scene, edit.at);
@@ -122,7 +123,7 @@ struct LiveScene::State {
     return true;
   }
 
-  /// A shape of which only numbers change, under another matrix.
+  /// Bakes a shape of which only numbers change, under another matrix.
   bool bake(const Shape& shape, ShapeExtent& of, const Matrix& baked) {
     Part& part = *of.part;
     const std::size_t count = of.end.primitives - of.begin.primitives;
@@ -166,7 +167,8 @@ struct LiveScene::State {
     return true;
   }
 
-  /// Where the rotation of a shape that is lowered into `fresh` is to stand, and puts it there. `old`: where the last one stood.
+  /// Writes the rotation of a shape that is lowered into `fresh`, and returns its place. `old`:
+  /// where the last one stood.
   uint set_uv_space(uint old, const FlatScene& fresh) {
     const uint from = fresh.geometries[0].uv_space;
     if (from == CAPLET_NONE) return CAPLET_NONE;
@@ -223,7 +225,8 @@ struct LiveScene::State {
     return edit.film.space == before.film.space && edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }
 
-  /// `part` has other primitives or another place; `shape`, where it emits, other areas.
+  /// Call this when `part` has other primitives or another place; `shape`, where it emits, has
+  /// other areas.
   void part_has_changed(Part& part, const Shape* shape) {
     if (&part != &top()) {
       for (Placed& placed : geometry().placed)
@@ -234,7 +237,7 @@ struct LiveScene::State {
     world_may_have_changed();
   }
 
-  /// An instance's record, its box in the world, and its lights.
+  /// Updates an instance's record, its box in the world, and its lights.
   void place_again(Placed& placed) {
     const Part& part = *placed.part;
     placed.world_from_part = placed.scene_instance == CAPLET_NONE
@@ -255,7 +258,7 @@ struct LiveScene::State {
       emit_again(part, emissive, placed.instance, placed.world_from_part, record.light_base);
   }
 
-  /// The lights of a shape wherever its part is.
+  /// Updates the lights of a shape wherever its part is.
   void update_emitters(const Part& part, const Shape* shape) {
     for (const Part::Emissive& emissive : part.emissive) {
       if (emissive.shape != shape) continue;
@@ -273,7 +276,7 @@ struct LiveScene::State {
     lights_are_old = true;
   }
 
-  /// The world's bounds, and the lights, if these depend on what has changed.
+  /// Updates the world's bounds, and the lights, if these depend on what has changed.
   void world_may_have_changed() {
     const WorldRecord before = flat().world;
     set_world_bounds(top().tree, flat().world);
@@ -305,7 +308,7 @@ struct LiveScene::State {
     lights_are_old = false;
   }
 
-  /// Whether other surfaces may part media afterwards, or in another order of size.
+  /// Returns whether other surfaces may separate media afterwards, or in another order of size.
   bool parts_media(const SceneEdit& edit, const SceneEdit& before) const {
     const auto passes = [](const SceneEdit& one) {
       const auto* material = std::get_if<MaterialEdit>(&one);

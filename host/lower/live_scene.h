@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A scene that is edited: what changes in its flat arrays is what an edit touches, so that a picture of them is, to the bit, that
-// of the edited scene lowered afresh.
+// A LiveScene is a scene that is edited: an edit changes only the parts of its flat arrays that it
+// affects, so that a picture of them is, to the bit, that of the edited scene lowered afresh.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace caplet {
 
-/// Keeps the scene, its flat arrays, and some 70 bytes a primitive that edits go by.
+/// It keeps the scene, its flat arrays, and some 70 bytes a primitive for edits.
 class LiveScene {
  public:
-  /// Throws as lower() does. The scene has passed validate().
+  /// Lowers the scene, which has passed validate(). Throws as lower() does.
   explicit LiveScene(Scene scene);
   LiveScene(LiveScene&&) noexcept;
   LiveScene& operator=(LiveScene&&) noexcept;
@@ -26,20 +26,21 @@ class LiveScene {
 
   const Scene& scene() const;
   const FlatScene& flat() const;
-  /// How its picture is taken.
+  /// Returns the view of its picture.
   FlatView view() const;
 
-  /// Makes a change. A moved capsule takes the path from its leaf to the root, and no more; boxes along it are the exact unions
-  /// that a fresh tree would have. What the arrays cannot hold in place (a capsule that becomes a sphere, a transform that a
-  /// shape's form cannot hold) lowers the whole again, as does a tree of which edits have made twice the cost that it was built
-  /// with. Throws InputError as check_edit and lower() do, and then changes nothing.
+  /// Makes a change. A moved capsule changes only the path from its leaf to the root; boxes along
+  /// it are the exact unions that a fresh tree would have. The whole is lowered again if the arrays
+  /// cannot hold the change in place (a capsule that becomes a sphere, a transform that a shape's
+  /// form cannot hold), or if edits have doubled the cost of a tree since it was built. Throws
+  /// InputError as check_edit and lower() do, and then changes nothing.
   void edit(const SceneEdit& edit);
-  /// Another scene in its place. Throws as lower() does.
+  /// Puts another scene in its place. Throws as lower() does.
   void replace(Scene scene);
 
-  /// What has changed since it was made, or since the last call.
+  /// Returns what has changed since it was made, or since the last call.
   SceneChanges take_changes();
-  /// How often the whole was lowered.
+  /// Returns how often the whole was lowered.
   std::uint64_t lowerings() const;
 
  private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scene -> records, flat buffers, trees and light tables. The only room that decides layouts and indices.
+// Converts a scene to records, flat buffers, trees and light tables. Only this room decides layouts
+// and indices.
 #pragma once
 
 #include "lower/flat_scene.h"
@@ -9,10 +10,12 @@
 
 namespace caplet {
 
-/// Throws InputError when a limit of the layout is exceeded (before memory is allocated).
+/// Lowers a scene. Throws InputError when a limit of the layout is exceeded (before memory is
+/// allocated).
 FlatScene lower(const Scene& scene);
 
-/// Cheap: nothing of the scene but its camera, film, filter, sampler and integrator is looked at.
+/// Lowers the view. It is cheap: it reads only the scene's camera, film, filter, sampler and
+/// integrator.
 FlatView lower_view(const Scene& scene);
 
 }  // namespace caplet

@@ -30,7 +30,7 @@ static_assert(0
 
 static_assert(material_stride <= 32, "MaterialRecord.textured has a bit for each float");
 
-/// Writes what scene/materials.def visits.
+/// Writes the fields that scene/materials.def visits.
 struct MaterialWriter {
   FamilyData& data;
   SpectrumTable& spectra;
@@ -45,7 +45,8 @@ struct MaterialWriter {
     std::ranges::replace(name, '.', '_');
     return name;
   }
-  /// Whether the scene's `parameter` is a texture: then the field of `name` is, with a last step of this kind if there is one.
+  /// If the scene's `parameter` is a texture, makes the field of `name` one, with a last step of
+  /// this kind if there is one, and returns true.
   bool textured(const std::string& parameter, const std::string& name, TextureUse use, std::optional<uint> last = {}) {
     const auto texture = texture_of(material, parameter);
     if (!texture) return false;
@@ -70,7 +71,7 @@ struct MaterialWriter {
     if (!textured(name, TextureUse::number)) data.put(field_of(name), value);
   }
   void whole(const char* name, int value, int, int) { data.put(name, value); }
-  /// The one flag that there is: the bit says nothing of its name.
+  /// There is only one flag, so its name is not needed.
   void flag(const char*, bool on) {
     if (on) record.flags |= CAPLET_MATERIAL_MULTISCATTER;
   }

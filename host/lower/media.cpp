@@ -31,7 +31,7 @@ static_assert(0
 #include "scene/media.def"
               == medium_count);
 
-/// Writes what scene/media.def visits.
+/// Writes the fields that scene/media.def visits.
 struct MediumWriter {
   FamilyData& data;
   std::span<const FamilyField> fields;
@@ -53,7 +53,7 @@ struct MediumWriter {
     data.put_index("le", radiance ? spectra.add_illuminant(*radiance) : spectra.add_number(0));
   }
   void number(const char* name, double value, double, double) {
-    // pbrt-v4's colours that are no lights' count by the illuminant's own magnitude.
+    // pbrt-v4's colours that are no lights' are scaled by the illuminant's own magnitude.
     if (name == std::string_view("Lescale"))
       data.put("le_scale", value * illuminant_magnitude);
     else
@@ -98,7 +98,7 @@ struct MediumWriter {
   }
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
 
-  /// Where they stand in media_grids, four to a row.
+  /// Adds values to media_grids, aligned to four, and returns where they begin.
   uint add(const std::vector<float>& values) {
     out.media_grids.resize((out.media_grids.size() + 3) / 4 * 4);
     const auto begin = narrow<uint>(out.media_grids.size());
@@ -108,7 +108,7 @@ struct MediumWriter {
   bool has(std::string_view field) const {
     return std::ranges::any_of(fields, [&](const FamilyField& one) { return one.name == field; });
   }
-  /// Integral of the CIE's y in nm: what pbrt-v4's spectra of luminance 1 are divided by.
+  /// This is the integral of the CIE's y in nm, by which pbrt-v4 divides spectra of luminance 1.
   static constexpr double illuminant_magnitude = 106.856895;
 };
 

@@ -15,11 +15,12 @@ namespace {
 
 constexpr int majorant_cells = CAPLET_MAJORANT_CELLS;
 
-/// The greatest of `values` in each of the cells of the box: linear interpolation between centres reaches those around it.
+/// Returns the greatest of `values` in each of the cells of the box: linear interpolation between
+/// centres reaches those around it.
 std::vector<float> most_within(const GridCounts& counts, const std::vector<float>& values) {
   const auto range = [&](std::size_t axis, int cell) {
     const double n = counts[axis];
-    // A hundredth of a cell, for points that are rounded.
+    // A hundredth of a cell is added, for points that are rounded.
     const int low = static_cast<int>(std::floor(n * cell / majorant_cells - 0.51)),
               high = static_cast<int>(std::floor(n * (cell + 1) / majorant_cells - 0.49)) + 1;
     return std::pair(std::clamp(low, 0, counts[axis] - 1), std::clamp(high, 0, counts[axis] - 1));
@@ -43,7 +44,7 @@ std::vector<float> most_within(const GridCounts& counts, const std::vector<float
   return out;
 }
 
-/// The greatest value of a sigmoid spectrum at any wavelength that there is.
+/// Returns the greatest value of a sigmoid spectrum at any wavelength in range.
 float most_of(const float* texel) {
   double most = -1e9;
   const auto at = [&](double l) { most = std::max(most, (texel[0] * l + texel[1]) * l + texel[2]); };

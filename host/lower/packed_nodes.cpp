@@ -23,14 +23,14 @@ constexpr int least_exponent = -100;  // of a step: what is lost where subnormal
 constexpr float farthest = 0x1p126f;  // of coordinates that kernels compute with
 constexpr std::uint32_t not_looked_at = 255;
 
-/// One axis of eight boxes.
+/// PackedAxis is one axis of eight boxes.
 struct PackedAxis {
   float origin = 0;
   std::uint32_t exponent = not_looked_at;  // as floats have it
   std::array<std::uint8_t, CAPLET_WIDTH> low{}, high{};
 };
 
-/// False: they do not fit into bytes of steps of this size.
+/// Returns false if they do not fit into bytes of steps of this size.
 bool quantise(const float* low, const float* high, std::uint32_t children, int exponent, PackedAxis& out) {
   const double step = std::ldexp(1.0, exponent);
   float least = inf;
@@ -42,7 +42,7 @@ bool quantise(const float* low, const float* high, std::uint32_t children, int e
   for (std::uint32_t i = 0; i < CAPLET_WIDTH; ++i) {
     out.low[i] = out.high[i] = 0;
     if ((children >> i & 1) == 0) continue;
-    // Both in double to 2^-44 of a step, which the slack has room for.
+    // Both are in double to 2^-44 of a step, for which the slack has room.
     const double from = std::floor((double(low[i]) - double(out.origin)) / step - slack);
     const double to = std::ceil((double(high[i]) - double(out.origin)) / step + slack);
     if (!(from >= 0 && to <= 255)) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Trees as placed: their records, boxes and lights.
+// Computes records, boxes and lights of trees as placed.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -24,13 +24,14 @@ namespace {
 using Matrix = glm::dmat4;
 using glm::dvec3;
 
-/// Bounds of the transformed shapes themselves while they are few; of the tree's transformed box for large objects.
+/// Returns the bounds of the transformed shapes themselves while they are few; for large objects
+/// those of the tree's transformed box.
 Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
   Bounds box;
   if (part.primitives.size() <= 256) {
     for (const Shape* shape : part.shapes) {
       Shape moved = *shape;
-      // A part with a transform of its own holds its shapes in their object space.
+      // A part with its own transform holds its shapes in their object space.
       moved.world_from_object = part.placed == Matrix(1) ? world_from_part * shape->world_from_object : world_from_part;
       box.extend(bounds_of(moved));
     }
@@ -44,7 +45,7 @@ Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
   return box;
 }
 
-/// Of lights that are placed together.
+/// Placement is shared by lights that are placed together.
 struct Placement {
   explicit Placement(const Matrix& m)
       : world_from_part(m), stays(m == Matrix(1)), normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
@@ -53,7 +54,7 @@ struct Placement {
   glm::dmat3 normals;
 };
 
-/// The image of the primitive's box, and the side of a flat one that emits.
+/// Sets the box of the primitive's image, and the emitting side of a flat one.
 void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitter& emitter) {
   double low[3], high[3];
   primitive_box(p, low, high);
@@ -85,7 +86,7 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
   }
 }
 
-/// The ball around the image of the primitive's box, for kinds that are sampled by it.
+/// Sets the ball around the image of the primitive's box, for kinds that are sampled by it.
 void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
   const bool has_round_end =
       p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
@@ -104,7 +105,8 @@ void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& em
   emitter.ball[3] = radius + 0x1p-23 * glm::length(center);
 }
 
-/// pbrt-v4: where the alpha is the number 0, rays pass everywhere, and light is given nevertheless.
+/// Returns whether the alpha is the number 0: then in pbrt-v4 rays pass everywhere, and the shape
+/// emits light nevertheless.
 bool is_unseen(const Shape& shape) {
   if (!shape.alpha || shape.alpha->texture) return false;
   const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
@@ -130,8 +132,8 @@ void set_instance_box(const Part& part, const Matrix& world_from_part, FlatPrimi
   const Bounds box = placed_bounds(part, world_from_part);
   double largest = 0;
   for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
-  // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on either side: 32 units are
-  // ample.
+  // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on
+  // either side: 32 units are ample.
   const double slack = 32 * 0x1p-24 * largest;
   for (int k = 0; k < 3; ++k) {
     instance.kept_box()[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
@@ -163,11 +165,11 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
   emitter.spectrum = spectra.add_illuminant(color);
   emitter.of_image = emission.image ? &emission : nullptr;
   emitter.unseen = is_unseen(*emissive.shape);
-  // That of an image's white.
+  // This is the luminance of an image's white.
   const double luminance = spectra.illuminant_luminance(color);
   emitter.scale = emission.scale;
   if (emission.power) {
-    // pbrt-v4: the power of a light of radiance 1, whatever the colour.
+    // In pbrt-v4 the power is that of a light of radiance 1, whatever the colour.
     const double sides = emission.two_sided ? 2 : 1;
     emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
   }
@@ -183,7 +185,8 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
     to.area = areas[i];
     set_ball(p, world_from_part, to);
     set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, to);
-    // A guess that affects the choice among lights alone: half of the ball's area, however little of it the solid fills.
+    // This guess affects only the choice among lights: half of the ball's area, however little of
+    // it the solid fills.
     if (p.shape == shape_csg) to.area = 2 * std::numbers::pi * to.ball[3] * to.ball[3];
   });
 }

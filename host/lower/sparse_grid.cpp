@@ -58,7 +58,8 @@ std::vector<float> sparse_majorants(const SparseGrid& grid) {
   const glm::dvec3 extent = grid.box.max - grid.box.min;
   const glm::dmat4 cells_from_voxels = glm::scale(glm::dmat4(1), double{sparse_majorant_cells} / extent) *
                                        glm::translate(glm::dmat4(1), -grid.box.min) * grid.medium_from_voxels;
-  // How far a voxel reaches, one to each side, in cells; a thousandth more, for points that are rounded.
+  // This is how far a voxel reaches, one to each side, in cells; a thousandth more, for points that
+  // are rounded.
   glm::dvec3 reach(1e-3);
   for (int c = 0; c < 3; ++c) reach += glm::abs(glm::dvec3(cells_from_voxels[c]));
   for (std::size_t i = 0; i < grid.bricks.size(); ++i)

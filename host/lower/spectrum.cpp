@@ -14,7 +14,8 @@ namespace caplet {
 
 namespace {
 
-/// Wavelengths at u = i / CAPLET_WAVELENGTH_CELLS: the inverse of the CDF of the sampling density.
+/// Returns wavelengths at u = i / CAPLET_WAVELENGTH_CELLS: the inverse of the CDF of the sampling
+/// density.
 std::vector<float> make_wavelength_table() {
   constexpr std::size_t cells = CAPLET_WAVELENGTH_CELLS;
   const SpectrumSamples density = wavelength_density();
@@ -59,13 +60,13 @@ SpectrumRecord sigmoid_record(const glm::dvec3& rgb, double scale, ColorSpace sp
 
 double maximum(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// The value of a spectrum that is_constant().
+/// Returns the value of a spectrum that is_constant().
 double constant_value(const Spectrum& spectrum) {
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return rgb->rgb.r;
   return evaluate(spectrum, double{CAPLET_LAMBDA_MIN});
 }
 
-/// rgb >= 0 as scale and a colour of maximum 1/2, where sigmoids are smooth.
+/// ScaledColor is rgb >= 0 as scale and a colour of maximum 1/2, where sigmoids are smooth.
 struct ScaledColor {
   explicit ScaledColor(const RgbSpectrum& spectrum) {
     const glm::dvec3 color = glm::max(spectrum.rgb, 0.0);

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t count = CAPLET_LAMBDA_COUNT;
 
-/// The integral over wavelength of the product of two functions, each linear between its 1 nm samples.
+/// Returns the integral over wavelength of the product of two functions, each linear between its 1
+/// nm samples.
 double integral_of_product(const SpectrumSamples& a, const SpectrumSamples& b) {
   double sum = 0;
   for (std::size_t i = 0; i + 1 < count; ++i)
@@ -46,7 +47,7 @@ SpectrumSamples make_illuminant(const char* name) {
   return samples;
 }
 
-/// Chromaticities of red, green and blue.
+/// Returns chromaticities of red, green and blue.
 std::array<glm::dvec2, 3> primaries(ColorSpace space) {
   switch (space) {
     case ColorSpace::dci_p3:
@@ -61,7 +62,8 @@ std::array<glm::dvec2, 3> primaries(ColorSpace space) {
   return {glm::dvec2(0.64, 0.33), glm::dvec2(0.30, 0.60), glm::dvec2(0.15, 0.06)};
 }
 
-/// Columns: XYZ of red, green and blue, which sum up to the white of the tabulated illuminant.
+/// The columns are XYZ of red, green and blue, which sum up to the white of the tabulated
+/// illuminant.
 glm::dmat3 xyz_from_rgb_matrix(ColorSpace space) {
   glm::dmat3 columns;
   const std::array<glm::dvec2, 3> xy = primaries(space);
@@ -93,7 +95,8 @@ double sampled_at(const SampledSpectrum& spectrum, double nm) {
   return values[after - 1] + (nm - low) / (high - low) * (values[after] - values[after - 1]);
 }
 
-/// XYZ, of luminance 1, of CIE daylight (CIE 15:2018, 4.1.2), whose temperatures are by an older constant of Planck's law.
+/// Returns XYZ, of luminance 1, of CIE daylight (CIE 15:2018, 4.1.2), whose temperatures use an
+/// older constant of Planck's law.
 glm::dvec3 daylight_white(double kelvin) {
   if (kelvin < 4000) {
     const glm::dvec3 xyz = xyz_of(sample(BlackbodySpectrum{kelvin}));
@@ -136,8 +139,9 @@ double sigmoid_value(const std::array<double, 3>& coefficients, double nm) {
 }
 
 SpectrumSamples wavelength_density() {
-  // The logarithm at nodes, linear between: found by a random search for the least summed variance of linear RGB estimated from
-  // four wavelengths u + i/4, over emitters E, D65, A and three saturated ones (docs/numerics.md).
+  // This is the logarithm at nodes, linear between: found by a random search for the least summed
+  // variance of linear RGB estimated from four wavelengths u + i/4, over emitters E, D65, A and
+  // three saturated ones (docs/numerics.md).
   struct Node {
     double nm, logarithm;
   };

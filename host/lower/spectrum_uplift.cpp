@@ -25,14 +25,15 @@ namespace {
 /// Wavelengths are mapped to t in [-1, 1] while solving, where the powers of t are well scaled.
 constexpr double middle = 595, half_width = 235;
 
-/// Linear RGB response to a reflectance at nodes t under the illuminant, so that rgb = sum response * reflectance.
+/// Response is the linear RGB response to a reflectance at nodes t under the illuminant, so that
+/// rgb = sum response * reflectance.
 struct Response {
   std::vector<double> t;
   std::vector<glm::dvec3> weight;
 };
 
-/// Nodes every `step` nm (a divisor of 470); the 1 nm responses are shared out linearly between them. The weights sum up to (1,
-/// 1, 1).
+/// Makes nodes every `step` nm (a divisor of 470); the 1 nm responses are distributed linearly
+/// between them. The weights sum up to (1, 1, 1).
 Response make_response(ColorSpace space, int step) {
   const auto& observer = normalized_observer();
   const SpectrumSamples& light = illuminant(space);
@@ -76,7 +77,7 @@ const Response& response(ColorSpace space, bool fine) {
   return all[s][f];
 }
 
-/// The colour of the sigmoid of c (powers 2, 1, 0 of t) and its derivatives, in columns.
+/// Returns the colour of the sigmoid of c (powers 2, 1, 0 of t) and its derivatives, in columns.
 glm::dvec3 color(const Response& response, const glm::dvec3& c, glm::dmat3* jacobian) {
   glm::dvec3 rgb(0);
   if (jacobian) *jacobian = glm::dmat3(0);
@@ -97,9 +98,11 @@ double sqr(double x) { return x * x; }
 
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Gauss-Newton steps, damped (Levenberg-Marquardt) where they do not help. Returns the residual.
+/// Makes Gauss-Newton steps, damped (Levenberg-Marquardt) where they do not help. Returns the
+/// residual.
 double solve(const Response& response, const glm::dvec3& target, double tolerance, int iterations, glm::dvec3& c) {
-  // Beyond this, |x| > 500 nearly everywhere and the spectrum is a box to 1e-6: nothing is gained, floats lose digits.
+  // Beyond this, |x| > 500 nearly everywhere and the spectrum is a box to 1e-6: nothing is gained,
+  // and floats lose digits.
   constexpr double limit = 2000;
   double damping = 1e-6;
   glm::dmat3 jacobian;
@@ -124,25 +127,26 @@ double solve(const Response& response, const glm::dvec3& target, double toleranc
   return largest(residual);
 }
 
-/// The sigmoid's coefficient c of a constant spectrum of this value.
+/// Returns the sigmoid's coefficient c of a constant spectrum of this value.
 glm::dvec3 constant(double value) {
   const double v = std::clamp(value, 1e-6, 1 - 1e-6);
   return {0, 0, (v - 0.5) / std::sqrt(v * (1 - v))};
 }
 
-/// Powers of t -> powers of the wavelength in nm.
+/// Converts powers of t to powers of the wavelength in nm.
 std::array<double, 3> in_nanometres(const glm::dvec3& c) {
   const double a = 1 / half_width, b = -middle / half_width;
   return {c[0] * a * a, 2 * c[0] * a * b + c[1] * a, c[0] * b * b + c[1] * b + c[2]};
 }
 
-/// Solutions for colours with maximum 1/2, over which channel is the largest and the two others in units of it (rows: second).
+/// ChromaticityTable holds solutions for colours with maximum 1/2, over which channel is the
+/// largest and the two others in units of it (rows: second).
 class ChromaticityTable {
  public:
   explicit ChromaticityTable(ColorSpace space) : cells_(3 * size * size) {
     const Response& coarse = response(space, false);
     tbb::parallel_for(std::size_t{0}, 3 * size, [&](std::size_t row) {
-      // From grey outwards: each solution starts the next.
+      // Colours are solved from grey outwards: each solution starts the next.
       glm::dvec3 c(0);
       for (std::size_t step = size; step-- > 0;) {
         glm::dvec3 target;
@@ -182,7 +186,8 @@ class ChromaticityTable {
 
 std::vector<float> make_sigmoid_table(ColorSpace space) {
   constexpr std::size_t values = CAPLET_UPLIFT_VALUES, ratios = CAPLET_UPLIFT_RATIOS;
-  // Below this value coefficients go as one over its root to 4 digits, but are found with ever fewer.
+  // Below this value coefficients go as one over its root to 4 digits, but the solver's precision
+  // falls.
   constexpr double darkest = 2e-3;
   const Response& coarse = response(space, false);
   std::vector<float> table(CAPLET_UPLIFT_FLOATS);
@@ -197,7 +202,7 @@ std::vector<float> make_sigmoid_table(ColorSpace space) {
       target[static_cast<int>((top + 2) % 3)] = value * ratio_at(third);
       return target;
     };
-    // From grey outwards: each solution starts the next.
+    // Colours are solved from grey outwards: each solution starts the next.
     glm::dvec3 c = constant(value);
     for (int part = 1; part < 8; ++part) solve(coarse, glm::mix(glm::dvec3(value), color_at(1), part / 8.0), 1e-5 * value, 20, c);
     for (std::size_t step = ratios; step-- > 0;) {
@@ -213,7 +218,8 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
   static std::array<std::unique_ptr<const ChromaticityTable>, 4> tables;
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
-  // Isolated: while it makes the table, the thread must not take up another task, which may wait for the table.
+  // The table is made in isolation: meanwhile the thread must not take up another task, which may
+  // wait for the table.
   std::call_once(once[s],
                  [&] { tbb::this_task_arena::isolate([&] { tables[s] = std::make_unique<const ChromaticityTable>(space); }); });
   return *tables[s];
@@ -225,7 +231,7 @@ const std::vector<float>& sigmoid_table(ColorSpace space) {
   static std::array<std::vector<float>, 4> tables;
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
-  // Isolated: see chromaticity_table.
+  // This is isolated for the same reason as chromaticity_table.
   std::call_once(once[s], [&] { tbb::this_task_arena::isolate([&] { tables[s] = make_sigmoid_table(space); }); });
   return tables[s];
 }
@@ -244,7 +250,7 @@ SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space) {
   const Response& fine = response(space, true);
   fit.residual = solve(fine, target, tolerance, 40, c);
   if (fit.residual > tolerance) {
-    // From grey to the colour in steps, each starting from the last one's solution.
+    // The solver steps from grey to the colour, each step starting from the last one's solution.
     glm::dvec3 stepped = constant((low + high) / 2);
     double residual = 1;
     for (int step = 1; step <= 16; ++step)

@@ -32,28 +32,28 @@ static_assert(4
 
 static_assert(most_texture_steps + 1 <= CAPLET_TEXTURE_MAX_STEPS);
 
-/// Adds the steps of one texture.
+/// Steps adds the steps of one texture.
 class Steps {
  public:
   Steps(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out)
       : scene_(scene), images_(images), spectra_(spectra), out_(out), first_(narrow<std::uint32_t>(out.textures.size())) {}
 
-  /// The number of the step, from the first, that is the texture's value.
+  /// Returns the number of the step, from the first, that is the texture's value.
   std::uint32_t add(std::uint32_t texture, TextureUse use);
-  /// A step of `kind` whose field "tex" is that of number `of`.
+  /// Adds a step of `kind` whose field "tex" is that of number `of`.
   void add_last(uint kind, std::uint32_t of);
   std::uint32_t finish() {
     out_.textures[first_].steps = narrow<uint>(out_.textures.size() - first_);
     return first_;
   }
 
-  /// A step of a constant, or those of a texture.
+  /// Adds a step of a constant, or those of a texture.
   std::uint32_t operand(const TextureOperand& of, TextureUse use);
 
  private:
   struct Writer;
 
-  /// `put` writes the data.
+  /// Adds a step; `put` writes its data.
   template <class Put>
   std::uint32_t add_step(uint kind, Put put) {
     TextureRecord record{};
@@ -76,7 +76,7 @@ class Steps {
   std::map<std::uint32_t, std::uint32_t> done_;  // the steps of textures: what is used twice is evaluated once
 };
 
-/// Writes what scene/textures.def visits, once the operands are there.
+/// Writes the fields that scene/textures.def visits, once the operands are there.
 struct Steps::Writer : TextureVisitor {
   Writer(FamilyData& to, const std::map<std::string_view, std::uint32_t>& steps, Steps& all, TextureUse what)
       : data(to), operands(steps), of(all), use(what) {}

@@ -24,7 +24,7 @@ void extend(ReferenceBox& box, const ReferenceBox& other) {
   }
 }
 
-/// Half the area; 0 when empty.
+/// Returns half the area; 0 when empty.
 double area(const ReferenceBox& box) {
   double side[3];
   for (int k = 0; k < 3; ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Areas of primitives, as they are and under affine maps.
+// Computes areas of primitives, as they are and under affine maps.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -12,21 +12,23 @@
 
 namespace caplet {
 
-/// Surface area of a primitive in its tree's space, without open ends; of csg shapes 0. Bilinear patches by a sum (error 1e-8 of
-/// it for patches without folds), all others in closed form.
+/// Returns the surface area of a primitive in its tree's space, without open ends; for csg shapes
+/// 0. Bilinear patches use a sum (error 1e-8 of it for patches without folds), all others a closed
+/// form.
 double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
 
-/// An affine map, with what all primitives ask of it.
+/// AreaMap is an affine map, with the values that all primitives need of it.
 struct AreaMap {
   AreaMap(const glm::dmat4& m);  // NOLINT(google-explicit-constructor)
   glm::dmat4 m;
   double similarity;  // the factor of lengths where it is one for all directions; 0: it is not
 };
 
-/// Area of the primitive's image under the affine map, or of those `surfaces` of it (empty: of all; numbers without a surface
-/// add nothing). An element of area with unit normal n grows by |cof(M) n|, cof(M) = |det M| M^-T. Exact for flat surfaces; round
-/// ones by quadrature that converges geometrically: relative error 1e-9 where m stretches by less than ten to one, and 2e-5
-/// however it stretches. 0 for csg shapes.
+/// Returns the area of the primitive's image under the affine map, or of those `surfaces` of it
+/// (empty: of all; numbers without a surface add nothing). An element of area with unit normal n
+/// grows by |cof(M) n|, cof(M) = |det M| M^-T. It is exact for flat surfaces; round ones use
+/// quadrature that converges geometrically: relative error 1e-9 where m stretches by less than ten
+/// to one, and 2e-5 however it stretches. It is 0 for csg shapes.
 double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const AreaMap& map,
                    std::span<const std::uint32_t> surfaces);
 

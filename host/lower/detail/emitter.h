@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Emissive primitives.
+// This file holds emissive primitives.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// One emissive primitive as placed in the world.
+/// Emitter is one emissive primitive as placed in the world.
 struct Emitter {
   std::uint32_t slot, instance, geometry;
   std::uint32_t group;  // the same for the primitives of one shape as placed
@@ -23,7 +23,7 @@ struct Emitter {
   const AreaEmission* of_image;  // where it has an image, whose mean luminance is not in `luminance`; or null
   bool by_ball;                  // sampled by the bounding ball (kernels/lights/ball.cl)
   double ball[4];                // centre and radius, world
-  // What the light tree knows of it: the box in the world; the direction that it shines to, or 0 for all.
+  // The light tree uses these: the box in the world; the direction that it shines to, or 0 for all.
   double min[3], max[3], axis[3];
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The image of an infinite light -> texels and the distribution that light sampling draws from.
+// Converts the image of an infinite light to texels and the distribution that light sampling draws
+// from.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -11,25 +12,28 @@
 
 namespace caplet {
 
-/// Direction (unit, the light's space) at `u`, `v` in [0, 1] of the image, v = 0 at the top row. Latitude-longitude: z up,
-/// phi = 2 pi u, theta = pi v; equal area: Clarberg 2008, as pbrt-v4.
+/// Returns the direction (unit, the light's space) at `u`, `v` in [0, 1] of the image, v = 0 at the
+/// top row. Latitude-longitude: z up, phi = 2 pi u, theta = pi v; equal area: Clarberg 2008, as
+/// pbrt-v4.
 glm::dvec3 environment_direction(bool equal_area, double u, double v);
 
-/// Integrals over the sphere of the image's luminance (1 for rgb (1 1 1), bilinear between texels).
+/// These are integrals over the sphere of the image's luminance (1 for rgb (1 1 1), bilinear
+/// between texels).
 struct EnvironmentIntegrals {
   double luminance = 0;    // times steradian
   double illuminance = 0;  // of a surface facing +z, in the light's space
 };
 
-/// A number that light can be: negative ones and NaN are 0, infinity is the largest float.
+/// Returns a valid radiance: negative values and NaN become 0, infinity the largest float.
 float usable(float x);
-/// Luminance of linear RGB of `space`; 1 for (1 1 1).
+/// Returns the luminance of linear RGB of `space`; 1 for (1 1 1).
 double luminance_of(const float* rgb, ColorSpace space);
 
 /// Appends the texels of an image's colours to light_texels.
 void append_texels(const EnvironmentImage& image, FlatScene& out);
 
-/// Radiance (linear RGB) of an image of a sky from a direction of its space: bilinear between texels.
+/// Returns the radiance (linear RGB) of an image of a sky from a direction of its space: bilinear
+/// between texels.
 glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& direction);
 
 /// Appends an image to light_texels, and its distribution to light_cdf: its rows' running sum (height + 1), then each row's

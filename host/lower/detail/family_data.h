@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The floats of one material, texture or light, by the names of their fields in materials.def, textures.def and lights.def.
+// Writes the floats of one material, texture or light, by the names of their fields in
+// materials.def, textures.def and lights.def.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -13,8 +14,9 @@
 
 namespace caplet {
 
-/// Writes fields to `to`, which has room for all of them. Every field is to be put once: `finish` throws std::logic_error where
-/// one was not, and `put` where there is no such field or it is of another size.
+/// Writes fields to `to`, which has room for all of them. Put every field once: `finish` throws
+/// std::logic_error where one was not put, and `put` where there is no such field or it is of
+/// another size.
 class FamilyData {
  public:
   FamilyData(std::span<const FamilyField> fields, float* to) : fields_(fields), to_(to) {}

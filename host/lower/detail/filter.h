@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The pixel filter -> the tables that kernels/math/filter.cl samples.
+// Converts the pixel filter to the tables that kernels/math/filter.cl samples.
 #pragma once
 
 #include "lower/flat_scene.h"
@@ -9,8 +9,9 @@
 
 namespace caplet {
 
-/// Value of the filter along one axis at `x` pixels from the centre (0 beyond `radius`); the filter itself is the product of both
-/// axes'. Not normalised. Box 1; triangle radius - |x|; gaussian exp(-x^2 / 2 sigma^2) less its value at the radius; Mitchell and
+/// Returns the value of the filter along one axis at `x` pixels from the centre (0 beyond
+/// `radius`); the filter itself is the product of both axes'. It is not normalised. Box 1; triangle
+/// radius - |x|; gaussian exp(-x^2 / 2 sigma^2) less its value at the radius; Mitchell and
 /// Netravali 1988 with b and c, stretched to the radius.
 double filter_value(const PixelFilter& filter, double x, double radius);
 

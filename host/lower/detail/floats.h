@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Floats next to others, matrices as rows of floats, and numbers that several files of this room need.
+// This file holds floats next to others, matrices as rows of floats, and numbers that several files
+// of this room need.
 #pragma once
 
 #include <bit>
@@ -13,16 +14,16 @@ namespace caplet {
 
 inline constexpr float inf = std::numeric_limits<float>::infinity();
 
-/// The child of an 8-wide node that stands for none.
+/// This child of an 8-wide node means that there is none.
 inline constexpr std::uint32_t no_child = 0x7fffffffu;
 
-/// The smallest float above x, which is finite. Infinity comes after the largest number.
+/// Returns the smallest float above x, which is finite. Infinity comes after the largest number.
 inline float next_up(float x) {
   const auto bits = std::bit_cast<std::int32_t>(x);
   return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
 }
 
-/// The largest float beneath x, which is finite.
+/// Returns the largest float below x, which is finite.
 inline float next_down(float x) { return -next_up(-x); }
 
 /// Writes the upper three rows of m: 12 floats, row by row, as kernels read transforms.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shapes of the scene -> geometry records, primitives and trees.
+// Converts shapes of the scene to geometry records, primitives and trees.
 #pragma once
 
 #include "lower/detail/images.h"
@@ -12,9 +12,10 @@
 
 namespace caplet {
 
-/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the bounding sphere, and returns
-/// what edits need of it. A shape whose transform its kernel form cannot hold (an ellipsoid, a sheared capsule)
-/// becomes an instance of its own tree, shared by all shapes under the same transform.
+/// Fills nodes, leaves, instances, geometries, primitive_geometry, mesh_*, world.root and the
+/// bounding sphere, and returns what edits need. A shape whose transform its kernel form cannot
+/// hold (an ellipsoid, a sheared capsule) becomes an instance of its own tree, shared by all shapes
+/// under the same transform.
 LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

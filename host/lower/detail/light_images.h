@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What light_texels and light_cdf hold, each once however many lights have it.
+// Fills light_texels and light_cdf, with each picture once however many lights have it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace caplet {
 
-/// A picture of lights.def, and what is known of it.
+/// LoweredPicture is a picture of lights.def, with its integrals.
 struct LoweredPicture {
   std::array<std::uint32_t, 5> field{};  // of the type `picture`
   EnvironmentIntegrals integrals;        // of skies and portals
@@ -24,10 +24,11 @@ struct LoweredPicture {
 
 class LightImages {
  public:
-  /// A round of lowering. What is asked for in the order of the last round stays where it was.
+  /// These begin and end a round of lowering. Pictures that are requested in the order of the last
+  /// round stay where they were.
   void begin();
   void end(FlatScene& out);
-  /// Whether the last round has changed light_texels or light_cdf.
+  /// Returns whether the last round has changed light_texels or light_cdf.
   bool has_changed() const { return has_changed_; }
 
   // The references hold until the next call.
@@ -35,7 +36,8 @@ class LightImages {
   const LoweredPicture& sky(const std::shared_ptr<const EnvironmentImage>& image, FlatScene& out);
   const LoweredPicture& picture(const LightPicture& picture, FlatScene& out);
   const LoweredPicture& profile(const std::shared_ptr<const IesProfile>& profile, FlatScene& out);
-  /// The light's image as it is seen through the portal, or, without an image, one radiance.
+  /// Returns the light's image as it is seen through the portal, or, without an image, one
+  /// radiance.
   const LoweredPicture& portal(const InfiniteLight& light, FlatScene& out);
 
  private:
@@ -55,7 +57,8 @@ class LightImages {
   bool has_changed_ = false;
 };
 
-/// The rows of its space in the world: along p0 p3, along p0 p1, and the way that it is seen.
+/// Returns the rows of the portal's space in the world: along p0 p3, along p0 p1, and the direction
+/// in which it is seen.
 glm::dmat3 portal_from_world(const LightPortal& portal);
 
 }  // namespace caplet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A scene lowered, with all that is known of it beside the flat arrays.
+// Lowering is a lowered scene, with everything that is known of it beside the flat arrays.
 #pragma once
 
 #include "lower/detail/geometry.h"
@@ -13,9 +13,10 @@
 
 namespace caplet {
 
-/// Refers to the shapes of the scene, which must stay where they are. Its parts refer to each other: it stays where it is.
+/// It refers to the shapes of the scene, which must stay where they are. Its parts refer to each
+/// other, so it stays where it is.
 struct Lowering {
-  /// Throws as lower() does.
+  /// Lowers the scene. Throws as lower() does.
   explicit Lowering(const Scene& scene);
   Lowering(const Lowering&) = delete;
   Lowering& operator=(const Lowering&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials of the model -> records and their data.
+// Converts materials of the model to records and their data.
 #pragma once
 
 #include "lower/detail/images.h"
@@ -11,11 +11,12 @@
 
 namespace caplet {
 
-/// Floats in material_data for each material: room for any kind, so that a material may become one of another kind in its place.
+/// Each material has this many floats in material_data: room for any kind, so that a material may
+/// become one of another kind in its place.
 inline constexpr std::uint32_t material_stride = 16;
 
-/// The record of material number `index`, whose data it writes to out.material_data: made longer when that ends before. The steps
-/// of its textures are added.
+/// Returns the record of material number `index`, and writes its data to out.material_data, which
+/// grows when it ends before. The steps of its textures are added.
 MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images, SpectrumTable& spectra,
                               FlatScene& out);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What lowering knows of a scene's geometry beside the flat arrays: which tree holds what, and where it is placed. Edits go by
-// it.
+// This is what lowering knows of a scene's geometry beside the flat arrays: which tree holds what,
+// and where it is placed. Edits use it.
 #pragma once
 
 #include <cstddef>
@@ -21,11 +21,11 @@
 
 namespace caplet {
 
-/// One tree: primitives in its space, and where emissive ones come from.
+/// Part is one tree: primitives in its space, and the shapes that emissive ones come from.
 struct Part {
   glm::dmat4 placed{1};  // object_from_part
   uint flags = 0;        // of its instances
-  /// By id; after them, in the world's first part, the instances.
+  /// Primitives are by id; after them, in the world's first part, come the instances.
   std::vector<FlatPrimitive> primitives;
   std::vector<const Shape*> shapes;  // those that gave primitives
   struct Emissive {
@@ -38,7 +38,7 @@ struct Part {
   EncodedTree tree;
 };
 
-/// An instance record: a part as placed. By the number of the record.
+/// Placed is an instance record: a part as placed, by the number of the record.
 struct Placed {
   const Part* part;
   std::uint32_t instance;
@@ -47,19 +47,21 @@ struct Placed {
   std::size_t top;               // index into the primitives of the world's first part
 };
 
-/// How long the arrays are that shapes add to.
+/// Lengths holds the lengths of the arrays that shapes add to.
 struct Lengths {
   std::size_t geometries = 0, primitives = 0, surfaces = 0, indices = 0, normals = 0, uvs = 0, leaves = 0;
 };
 
-/// What a shape has of the flat arrays: from `begin` on up to `end`. `part` is null where it gave nothing.
+/// ShapeExtent is a shape's range of the flat arrays: from `begin` on up to `end`. `part` is null
+/// where it gave nothing.
 struct ShapeExtent {
   Part* part = nullptr;
   std::size_t first = 0;  // of its primitives in the part
   Lengths begin, end;
 };
 
-/// Shapes of the world or of one object. Parts stay where they are when this is moved; a copy would refer to the first's.
+/// LoweredShapes holds shapes of the world or of one object. Parts stay where they are when this is
+/// moved; a copy would refer to the first's.
 struct LoweredShapes {
   LoweredShapes() = default;
   LoweredShapes(LoweredShapes&&) = default;
@@ -75,30 +77,32 @@ struct LoweredGeometry {
   std::vector<Emitter> emitters;  // in the order of their lights
 };
 
-/// What decides the part that a shape belongs to, and under which matrix it is stored there.
+/// PartKey decides the part that a shape belongs to, and the matrix under which it is stored there.
 struct PartKey {
   glm::dmat4 placed{1};
   uint flags = 0;
   glm::dmat4 baked{1};
-  /// The part of what needs none of its own.
+  /// Returns whether the shape needs no part of its own.
   bool is_common() const { return placed == glm::dmat4(1) && flags == 0; }
   bool same_part(const PartKey& other) const { return placed == other.placed && flags == other.flags; }
 };
 PartKey part_key(const Shape& shape, const glm::dmat4& world_from_object);
 
-/// The record of a part as placed; `object`: InstanceRecord.object.
+/// Returns the record of a part as placed; `object`: InstanceRecord.object.
 InstanceRecord instance_record(const Part& part, const glm::dmat4& world_from_part, std::uint32_t object);
 /// Writes the box of an instance into its primitive of the top tree.
 void set_instance_box(const Part& part, const glm::dmat4& world_from_part, FlatPrimitive& instance);
 
-/// The lights of an emissive shape of a part as placed, one for each of its primitives.
+/// Sets the lights of an emissive shape of a part as placed, one for each of its primitives.
 void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_part,
                   std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
 
-/// Bounding sphere of the world; the unit sphere where the tree is empty, so that lights have a power.
+/// Sets the bounding sphere of the world; it is the unit sphere where the tree is empty, so that
+/// lights have a power.
 void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
 
-/// One shape, lowered by itself into empty arrays `out` under `baked`: its primitives, with ids from 0 on.
+/// Lowers one shape by itself into empty arrays `out` under `baked`: its primitives, with ids from
+/// 0 on.
 Part lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
                        const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Surfaces in pieces whose images under affine maps have areas that are known how to find.
+// Divides surfaces into pieces whose images under affine maps have known areas.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@
 
 namespace caplet {
 
-/// An end of a hull: a ball, a disk across the axis, or a rim. `cap`: CAPLET_CAP_*.
+/// HullEnd is an end of a hull: a ball, a disk across the axis, or a rim. `cap`: CAPLET_CAP_*.
 struct HullEnd {
   double radius;
   float cap;
 };
 
-/// Areas of the hulls of two balls, and of two ends, `length` apart.
+/// These return areas of the hulls of two balls, and of two ends, `length` apart.
 double two_balls_area(double length, double r0, double r1);
 double hull_area(double length, const HullEnd& end0, const HullEnd& end1);
 
-/// A part of a primitive's surface whose image has an area of its own kind. With d = `axis` (unit), e(phi) around it from
-/// `start`:
+/// Piece is a part of a primitive's surface whose image has an area of its own kind. With d =
+/// `axis` (unit), e(phi) is around it from `start`:
 struct Piece {
   enum Kind {
     flat,  // of area and normal `axis` (not unit)
@@ -40,14 +40,15 @@ class Pieces {
  public:
   const std::vector<Piece>& all() const { return all_; }
 
-  /// `area`: along the normal, as long as the area is large.
+  /// Adds a flat piece. `area`: along the normal, as long as the area is large.
   void flat(std::uint32_t surface, const glm::dvec3& area);
   void round(Piece::Kind kind, std::uint32_t surface, const glm::dvec3& axis, double amount, double low, double high = 0);
-  /// Around z, from +x up to phi_max.
+  /// Adds a part around z, from +x up to phi_max.
   void part(Piece::Kind kind, double amount, double low, double high, double phi_max);
-  /// As two_balls_area, of balls at p0 and p1. `surfaces`: of the cone between them, and of each.
+  /// Adds the pieces of two_balls_area, for balls at p0 and p1. `surfaces`: of the cone between
+  /// them, and of each.
   void balls(const float* p0, const float* p1, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces);
-  /// As hull_area, of ends at p0 and p1.
+  /// Adds the pieces of hull_area, for ends at p0 and p1.
   void hull(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1);
 
  private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What each kind of shape is to this room: lower/shapes/<name>.cpp. A function that a kind lacks does not link.
+// These are the functions of each kind of shape in this room: lower/shapes/<name>.cpp. A missing
+// function does not link.
 #pragma once
 
 #include <array>
@@ -17,15 +18,15 @@
 
 namespace caplet {
 
-/// In double, of a shape's floats.
+/// ExactBox is a box in double, of a shape's floats.
 struct ExactBox {
   std::array<double, 3> min{}, max{};
 };
 
-// For each kind of shapes.def, of a primitive in the space of its tree:
+// Each kind of shapes.def has, for a primitive in the space of its tree:
 // - its exact box; kinds with trait_kept_box have it in their data.
-// - its area, without open ends (0 of csg shapes), and the pieces of its surface, to find areas under affine maps by. Bilinear
-//   patches have no pieces: bilinear_area.
+// - its area, without open ends (0 for csg shapes), and the pieces of its surface, which give areas
+//   under affine maps. Bilinear patches have no pieces: bilinear_area.
 // - solids: itself with its surfaces moved out by `b`; data of no fixed size are appended to `leaves`.
 #define SHAPE(name, traits)                                                                     \
   ExactBox name##_box(const FlatPrimitive& p);                                                  \
@@ -36,39 +37,40 @@ struct ExactBox {
 #include "shared/shapes.def"
 #undef SHAPE
 
-/// Area of a bilinear patch's image under `m`.
+/// Returns the area of a bilinear patch's image under `m`.
 double bilinear_area(const float* data, const glm::dmat3& m);
 
-// For each geometry of the model:
+// Each geometry of the model has:
 // - whether its kernels' form can hold the transform `m`; otherwise it becomes an instance.
-// - the rotation or reflection in `m` (which it can hold), where its uv has angles around an axis; otherwise 1.
-// - those of one primitive (all but capsules and meshes): that primitive under `m`, which it can hold; the id is left 0. Data of
-// no
-//   fixed size are appended to `leaves`.
+// - the rotation or reflection in `m` (which it can hold), where its uv has angles around an axis;
+//   otherwise 1.
+// - if it is one primitive (all but capsules and meshes): that primitive under `m`, which it can hold;
+//   the id is left 0. Data of no fixed size are appended to `leaves`.
 #define GEOMETRY(Type, name)                                        \
   bool bakes_under(const Type& geometry, const glm::dmat4& m);      \
   glm::dmat3 turn_under(const Type& geometry, const glm::dmat4& m); \
   FlatPrimitive flat_primitive(const Type& geometry, const glm::dmat4& m, std::vector<float>& leaves);
 #include "scene/geometries.def"
 
-/// Capsule i of `capsules` under the similarity `m` (null: none) of this scale: a sphere, capsule or tapered capsule.
+/// Returns capsule i of `capsules` under the similarity `m` (null: none) of this scale: a sphere,
+/// capsule or tapered capsule.
 FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const glm::dmat4* m, double scale);
 FlatPrimitive flat_partial_disk(const DiskShape& disk);
-/// The kinds of a csg primitive's operands, as shape_bit()s.
+/// Returns the kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);
-/// Whether an operand is a capsule with u at its ends.
+/// Returns whether an operand is a capsule with u at its ends.
 bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves);
 
-/// A primitive without data.
+/// Makes a primitive without data.
 inline FlatPrimitive make_primitive(int shape) { return FlatPrimitive{static_cast<std::uint32_t>(shape), 0, {}}; }
 
 inline glm::dvec3 point3(const float* d) { return {d[0], d[1], d[2]}; }
 inline double length3(const float* a, const float* b) { return glm::length(point3(b) - point3(a)); }
 
-/// The rotation or reflection in a similarity.
+/// Returns the rotation or reflection in a similarity.
 glm::dmat3 turn_of_similarity(const glm::dmat4& m);
 
-/// x += sign * b in double.
+/// Adds sign * b to x in double.
 inline void move_by(float& x, double sign, double b) { x = static_cast<float>(double(x) + sign * b); }
 
 inline float cap_number(Cap cap) {
@@ -78,7 +80,7 @@ inline float cap_number(Cap cap) {
 // --- Hulls of two ends: cylinders, cones and capsules (hulls.cpp) ---
 
 ExactBox hull_box(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1);
-/// The ends with the surfaces moved out by `b`.
+/// GrownHull holds the ends with the surfaces moved out by `b`.
 struct GrownHull {
   glm::dvec3 p0, p1;
   double r0, r1;

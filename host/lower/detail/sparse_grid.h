@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Grids of bricks as devices have them (kernels/media/nanovdb.cl).
+// Converts grids of bricks to the form of devices (kernels/media/nanovdb.cl).
 #pragma once
 
 #include <vector>
@@ -10,10 +10,11 @@
 
 namespace caplet {
 
-/// The head, the table of bricks, and their values.
+/// Returns the head, the table of bricks, and their values.
 std::vector<float> sparse_floats(const SparseGrid& grid, const glm::dmat4& world_from_medium);
 
-/// Of CAPLET_SPARSE_MAJORANT_CELLS^3 cells of the grid's box, x fastest, the most that its values can be within.
+/// Returns for CAPLET_SPARSE_MAJORANT_CELLS^3 cells of the grid's box, x fastest, the greatest
+/// value within each.
 std::vector<float> sparse_majorants(const SparseGrid& grid);
 
 }  // namespace caplet

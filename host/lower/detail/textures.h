@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Textures of the model -> steps (records.def: TextureRecord) and their data.
+// Converts textures of the model to steps (records.def: TextureRecord) and their data.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,8 @@
 
 namespace caplet {
 
-/// What spectra of a texture are: reflectances, spectra from 0 up, or numbers.
+/// TextureUse says how values of a texture are used: as reflectances, as spectra from 0 up, or as
+/// numbers.
 enum class TextureUse { albedo, unbounded, number };
 
 /// Adds the steps of Scene::textures[texture] to out.textures, and one of kind `last` of it where there is one. Returns the
@@ -21,7 +22,7 @@ enum class TextureUse { albedo, unbounded, number };
 std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
                             const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
-/// The same of a shape's alpha.
+/// Does the same for a shape's alpha.
 std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, const ImageNumbers& images, SpectrumTable& spectra,
                           FlatScene& out);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Moves primitives within trees that are encoded: their leaf blocks, and the boxes from there to the root.
+// Moves primitives within encoded trees: their leaf blocks, and the boxes from there to the root.
 #pragma once
 
 #include <cstddef>
@@ -17,15 +17,16 @@ namespace caplet {
 
 class TreeEdit {
  public:
-  /// Of the trees in `flat`, which hold `geometry`.
+  /// Edits the trees in `flat`, which hold `geometry`.
   TreeEdit(FlatScene& flat, LoweredGeometry& geometry);
 
-  /// After primitive `at` of `part` has changed in `part.primitives`: the same in its tree.
+  /// Updates the tree after primitive `at` of `part` has changed in `part.primitives`.
   void move(Part& part, std::size_t at, SceneChanges& changes);
-  /// Rows were appended to the leaves.
+  /// Records that rows were appended to the leaves.
   void leaves_have_grown();
 
-  /// The part's expected cost of a ray, now over when it was built: of lines through its bounds, now or then, whichever is worse.
+  /// Returns the part's expected cost of a ray now over that when it was built: for lines through
+  /// its bounds, now or then, whichever is worse.
   double cost_growth(const Part& part) const;
 
  private:
@@ -36,14 +37,15 @@ class TreeEdit {
   ReferenceBox leaf_box(const Part& part, std::uint32_t row) const;
   const FlatPrimitive& primitive(const Part& part, std::uint32_t kind, std::uint32_t id) const;
   void write_lanes(const Part& part, std::size_t at, SceneChanges& changes);
-  /// Child `i` of a node gets another box.
+  /// Sets the box of child `i` of a node.
   void set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& box, Cost& cost);
   ReferenceBox box_of(std::uint32_t node, std::uint32_t i) const;
   ReferenceBox bounds_of_node(std::uint32_t node) const;
 
   FlatScene& flat_;
   LoweredGeometry& geometry_;
-  // By node, and by the first row of a leaf block: the parent node times 8, and which of its children it is.
+  // These are, by node and by the first row of a leaf block, the parent node times 8 plus the
+  // number of the child.
   std::vector<std::uint32_t> node_parent_, row_parent_;
   std::unordered_map<const Part*, Cost> costs_;
 };

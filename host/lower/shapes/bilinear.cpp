@@ -25,8 +25,9 @@ ExactBox bilinear_box(const FlatPrimitive& p) {
   return box;
 }
 
-/// dp/du x dp/dv is n0 + u n1 + v n2: its length, summed by Simpson's rule over 32 x 32 cells. Relative error 1e-8 where it
-/// vanishes nowhere near the patch, 1e-3 where the patch is folded or has a corner of 180 degrees.
+/// dp/du x dp/dv is n0 + u n1 + v n2; its length is summed by Simpson's rule over 32 x 32 cells.
+/// The relative error is 1e-8 where it vanishes nowhere near the patch, 1e-3 where the patch is
+/// folded or has a corner of 180 degrees.
 double bilinear_area(const float* d, const glm::dmat3& m) {
   const dvec3 p00 = point3(bilinear_p00(d)), p10 = point3(bilinear_p10(d)), p01 = point3(bilinear_p01(d)),
               p11 = point3(bilinear_p11(d));
@@ -42,7 +43,7 @@ double bilinear_area(const float* d, const glm::dmat3& m) {
 
 double bilinear_area(const FlatPrimitive& p, const std::vector<float>&) { return bilinear_area(p.data, glm::dmat3(1)); }
 
-/// None: placed_area asks for the image's area itself.
+/// There are none: placed_area uses bilinear_area.
 void bilinear_pieces(const FlatPrimitive&, const std::vector<float>&, Pieces&) {}
 
 }  // namespace caplet

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Csg shapes: operands, flattened, and the expression over them. Layout: kernels/shapes/csg.cl.
+// Lowers csg shapes: operands, flattened, and the expression over them. Layout:
+// kernels/shapes/csg.cl.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +39,8 @@ struct Solid {
   bool subtracted;
 };
 
-/// A solid as its kernel reads it: in csg space or, where `placed`, in a space of its own.
+/// Operand is a solid as its kernel reads it: in csg space or, where `placed`, in a space of its
+/// own.
 struct Operand {
   FlatPrimitive flat, grown;
   std::uint32_t surface;  // with CAPLET_CSG_SUBTRACTED
@@ -49,7 +51,8 @@ struct Operand {
   double error;  // in csg space
 };
 
-/// The expression as a postfix program over its solids, in the order of their surfaces.
+/// Flattening makes the expression a postfix program over its solids, in the order of their
+/// surfaces.
 class Flattening {
  public:
   std::vector<Solid> solids;
@@ -86,7 +89,7 @@ class Flattening {
   std::uint32_t surfaces_ = 0;
 };
 
-/// What a solid's kernel form is: that of the shape by itself.
+/// FlatOf returns a solid's kernel form: that of the shape by itself.
 struct FlatOf {
   const Matrix& m;
   std::vector<float>& leaves;
@@ -108,7 +111,7 @@ struct FlatOf {
 
 double length3(const double (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-/// The solid with its surfaces moved out by `b`.
+/// Returns the solid with its surfaces moved out by `b`.
 FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& leaves) {
   switch (p.shape) {
 #define SHAPE(name, traits)                                                       \
@@ -124,13 +127,15 @@ FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& lea
   throw std::logic_error("only solids grow");
 }
 
-/// `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of `radius` around it.
+/// Returns `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of
+/// `radius` around it.
 Operand make_operand(const Solid& solid, const dvec3& center, double radius, std::vector<float>& leaves) {
   Operand out{};
   Shape moved = *solid.shape;
   moved.world_from_object = glm::translate(Matrix(1), -center) * solid.space_from_solid;
   out.placed = !bakes(moved);
-  // from: how far from the origin of the operand's space rays may begin; scale: of lengths from there to csg space.
+  // from: how far from the origin of the operand's space rays may begin; scale: of lengths from
+  // there to csg space.
   double from = radius, scale = 1;
   if (out.placed) {
     out.csg_from_object = moved.world_from_object;
@@ -148,8 +153,9 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   }
   const Bounds bounds = bounds_of(moved);
   const double extent = glm::length(glm::max(glm::abs(bounds.min), glm::abs(bounds.max)));
-  // The kernels claim 16 eps (distance of the origin + size): at most from + extent, and 2 extent. The way into the operand's
-  // space adds 5 eps of its terms (matrix, products, sums), 8 here.
+  // The kernels' error is at most 16 eps (distance of the origin + size): at most from + extent,
+  // and 2 extent. The transform to the operand's space adds 5 eps of its terms (matrix, products,
+  // sums), 8 here.
   const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
   out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
   out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
@@ -161,7 +167,7 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   return out;
 }
 
-/// Operands that one call of a span function answers.
+/// Group holds operands that one call of a span function evaluates.
 struct Group {
   std::vector<std::size_t> operands;
 };
@@ -188,7 +194,7 @@ float as_row(std::size_t number) { return std::bit_cast<float>(narrow<std::uint3
 
 std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 
-/// Appends `count` zeros, whole rows, and returns where they begin.
+/// Appends `count` zeros, in whole rows, and returns where they begin.
 std::size_t append_rows(std::vector<float>& leaves, std::size_t count) {
   const std::size_t begin = round_up(leaves.size());
   leaves.resize(begin + round_up(count));

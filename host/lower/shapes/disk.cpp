@@ -16,7 +16,8 @@ using Matrix = glm::dmat4;
 
 namespace {
 
-/// The common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise 0.
+/// Returns the common scale of the plane z = 0 under `m` when circles in it stay circles; otherwise
+/// 0.
 double disk_scale(const Matrix& m) {
   const glm::dmat3 a(m);
   const double x = glm::length(a[0]), y = glm::length(a[1]), s = (x + y) / 2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What cylinders, cones and capsules share: hulls of two ends.
+// Cylinders, cones and capsules share these functions for hulls of two ends.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -17,30 +17,32 @@ using glm::dvec3;
 
 using std::numbers::pi;
 
-/// What a flat end adds. Round ones have no disk, open ones none that is seen.
+/// Returns the area that a flat end adds. Round ends have no disk, open ones none that is seen.
 double disk_area_of(const HullEnd& end) { return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0; }
 
-/// The hull of a disk (or the rim of an open end) of radius `rim` and a ball at a distance `length` along its axis: tangents from
-/// the rim touch the ball at `angle` to either side of the rim's direction, as seen from the centre.
+/// Returns the area of the hull of a disk (or the rim of an open end) of radius `rim` and a ball at
+/// a distance `length` along its axis: tangents from the rim touch the ball at `angle` to either
+/// side of the rim's direction, as seen from the centre.
 double disk_and_ball_area(const HullEnd& disk, double length, double ball) {
   const double rim = disk.radius, apart = std::hypot(rim, length);
   if (apart <= ball) return 4 * pi * ball * ball;  // the ball holds the disk
   const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart, s = tangent / apart;
-  // Height and distance from the axis of the unit normals where the tangents touch.
+  // These are height and distance from the axis of the unit normals where the tangents touch.
   const double front = (-length * c + rim * s) / apart, front_off = (rim * c + length * s) / apart;
   double area = pi * (rim + ball * front_off) * tangent + 2 * pi * ball * ball * (1 - front);
   if (length >= ball) return area + disk_area_of(disk);
-  // The ball reaches through the disk, which is inside then; behind it the hull has a second cone.
+  // The ball reaches through the disk, which is then inside; behind it the hull has a second cone.
   const double back = (-length * c - rim * s) / apart, back_off = (rim * c - length * s) / apart;
   return area + pi * (rim + ball * back_off) * tangent + 2 * pi * ball * ball * (1 + back);
 }
 
-/// By how much the radius of a flat end grows when the side of slope `k` (radius lost a unit of height towards the other end) and
-/// the end itself move out by `b`: where the two moved lines meet.
+/// Returns by how much the radius of a flat end grows when the side of slope `k` (radius lost a
+/// unit of height towards the other end) and the end itself move out by `b`: where the two moved
+/// lines meet.
 double rim_growth(double k, double b) { return b * (std::sqrt(1 + k * k) + k); }
 
-/// Radius lost a unit of height, seen from a flat end of radius `flat` across `length` to a ball of radius `round`: the tangent
-/// from the rim to the ball.
+/// Returns the radius lost a unit of height, seen from a flat end of radius `flat` across `length`
+/// to a ball of radius `round`: the tangent from the rim to the ball.
 double slope_to_ball(double flat, double round, double length) {
   const double distance = std::hypot(flat, length);
   return distance > round ? -std::tan(std::asin(round / distance) - std::atan2(flat, length)) : 0;
@@ -48,8 +50,8 @@ double slope_to_ball(double flat, double round, double length) {
 
 }  // namespace
 
-/// The hull of two balls: both caps, and the cone between the circles where it touches them. `s` and `c`: sine and cosine of its
-/// half angle.
+/// Returns the area of the hull of two balls: both caps, and the cone between the circles where it
+/// touches them. `s` and `c`: sine and cosine of its half angle.
 double two_balls_area(double length, double r0, double r1) {
   const double taper = r0 - r1;
   if (length <= std::abs(taper)) return 4 * pi * std::max(r0, r1) * std::max(r0, r1);
@@ -57,7 +59,7 @@ double two_balls_area(double length, double r0, double r1) {
   return 2 * pi * (r0 * r0 * (1 + s) + r1 * r1 * (1 - s)) + pi * (r0 + r1) * c * length * c;
 }
 
-/// Cylinders and cones.
+/// Returns the area of cylinders and cones.
 double hull_area(double length, const HullEnd& end0, const HullEnd& end1) {
   const bool round0 = end0.cap == CAPLET_CAP_ROUND, round1 = end1.cap == CAPLET_CAP_ROUND;
   if (round0 && round1) return two_balls_area(length, end0.radius, end1.radius);
@@ -113,7 +115,7 @@ void Pieces::balls(const float* p0, const float* p1, double r0, double r1, const
   two_balls(length > 0 ? along / length : dvec3(0, 0, 1), length, r0, r1, surfaces);
 }
 
-/// As two_balls_area, between centres `length` apart along `axis`.
+/// Adds the pieces of two_balls_area, between centres `length` apart along `axis`.
 void Pieces::two_balls(const dvec3& axis, double length, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces) {
   const double taper = r0 - r1;
   if (length <= std::abs(taper))
@@ -124,7 +126,7 @@ void Pieces::two_balls(const dvec3& axis, double length, double r0, double r1, c
   round(Piece::side, surfaces[0], axis, pi * (r0 + r1) * c * length * c, s);
 }
 
-/// As disk_and_ball_area; `axis` from the disk to the ball.
+/// Adds the pieces of disk_and_ball_area; `axis` from the disk to the ball.
 void Pieces::disk_and_ball(const dvec3& axis, double length, const HullEnd& disk, std::uint32_t disk_surface, double ball,
                            std::uint32_t ball_surface) {
   const double rim = disk.radius, apart = std::hypot(rim, length);

@@ -18,15 +18,17 @@ using Matrix = glm::dmat4;
 
 namespace {
 
-/// Through memory: GCC 12 drops the rounding of a double to float and back where it vectorises it.
+/// Rounds through memory: GCC 12 drops the rounding of a double to float and back where it
+/// vectorises it.
 double rounded_to_float(double x) {
   volatile float rounded = static_cast<float>(x);
   return rounded;
 }
 
-/// A row a plane (shapes.def): in the polyhedron's own space uv runs along the plane, 1/2 at the foot of the perpendicular from
-/// the centre of the bounds, over a bounding radius to either side; from the directions that turning +z (-z for normals below
-/// -0.9) onto the normal the short way takes +x and +y (-y) to.
+/// Writes a row for each plane (shapes.def). In the polyhedron's own space uv runs along the plane,
+/// 1/2 at the foot of the perpendicular from the centre of the bounds, over a bounding radius to
+/// either side. Its directions are those of +x and +y (-y) after the shortest rotation of +z (-z
+/// for normals below -0.9) to the normal.
 void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& corners, const Matrix& m, const dvec3& center,
                    float* out) {
   Bounds box;
@@ -49,7 +51,7 @@ void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& 
   }
 }
 
-/// Along the normal, as long as the area is large.
+/// Returns a vector along the normal, as long as the area is large.
 dvec3 polygon_area(const std::vector<dvec3>& corners) {
   dvec3 sum(0);
   for (std::size_t i = 2; i < corners.size(); ++i) sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
@@ -78,7 +80,8 @@ const float* head_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
 }  // namespace
 
 FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m, std::vector<float>& leaves) {
-  // Planes are kept relative to the centre of the bounds, so that their rounding goes with the solid's size.
+  // Planes are kept relative to the centre of the bounds, so that their rounding is relative to the
+  // solid's size.
   const std::vector<dvec3> corners = polyhedron_corners(polyhedron);
   CHECK_LT_(std::size_t(0), corners.size());
   Bounds box;
