@@ -8,8 +8,8 @@
 
 #include "math/vector.cl"
 
-// Below the first the inversion loses digits and area sampling is as good; above the second the
-// triangle fills a hemisphere.
+// Below the first limit the inversion loses digits and area sampling is as good; above the second
+// one the triangle fills a hemisphere.
 #define CAPLET_TRIANGLE_MIN_SOLID_ANGLE 3e-3f
 #define CAPLET_TRIANGLE_SMALL 0.25f
 #define CAPLET_TRIANGLE_MAX_SOLID_ANGLE 6.22f

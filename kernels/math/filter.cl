@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Importance sampling of the pixel filter (Ernst, Stamminger and Greiner, "Filter importance
+// Samples the pixel filter by importance (Ernst, Stamminger and Greiner, "Filter importance
 // sampling", 2006). Every filter is a product of one function an axis, each piecewise linear over
 // the cells of a table (host/lower/filter.cpp).
 #ifndef CAPLET_MATH_FILTER_CL
