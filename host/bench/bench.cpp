@@ -68,7 +68,7 @@ struct Bench {
       ask_peer();
       b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
     }
-    // Of each ray, in the peer's words.
+    // `found` is the result of each ray, in the peer's terms.
     std::vector<std::uint32_t> found;
     if (any) {
       for (const int one : tracer.any()) found.push_back(one != 0 ? 1 : 0);

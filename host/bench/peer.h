@@ -36,8 +36,8 @@ class Peer {
  public:
   /// False where this is built without Embree; everything else then throws std::runtime_error.
   static bool is_there();
-  /// Of one kind. Capsules become two-vertex round linear curves, spheres and disks Embree's points.
-  /// Throws std::runtime_error.
+  /// Takes primitives of one kind. Capsules become two-vertex round linear curves, spheres and
+  /// disks Embree's points. Throws std::runtime_error.
   explicit Peer(std::span<const FlatPrimitive> primitives, PeerMode mode = PeerMode::fast);
   explicit Peer(const RoundCurves& curves, PeerMode mode = PeerMode::fast);
   ~Peer();

@@ -13,7 +13,8 @@ namespace caplet::cli {
 /// try_device (render/known_answers.h), when it is due, by running this program again. Throws WrongDevice with what the test
 /// says, or RunError with how the driver ended it; also when interrupted.
 void try_device_apart(const Device& device, const Trial& trial);
-/// Of several devices those that pass; the others are warned of. Throws what the last of them says where none passes.
+/// Returns those of several devices that pass; the others are warned of. If none passes, throws the
+/// error of the last one.
 std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial);
 
 }  // namespace caplet::cli

@@ -87,7 +87,7 @@ void run_view(const ViewFlags& options) {
   const Device device = choose_device(options.device, options.encoding);
   const std::string name = scene_names(options.scenes);
   std::unique_ptr<view::Keeper> keeper;
-  // Of several files that make one scene, none is where changes of it could be kept.
+  // If several files make one scene, changes of it could be kept in none of them.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
     keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
   Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);

@@ -89,7 +89,7 @@ struct Axes {
   glm::dmat3 axis{1};    // columns, unit
 };
 
-/// Of the balls' centres.
+/// Returns the principal axes of the balls' centres.
 Axes axes_of(const std::vector<Ball>& balls) {
   glm::dvec3 mean(0);
   for (const Ball& ball : balls) mean += ball.center / static_cast<double>(balls.size());

@@ -22,7 +22,7 @@ namespace caplet::report {
 std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
                                                     const RenderResult& result);
 
-/// Of the devices that have made it, with commas.
+/// Returns a property of the devices that have made the picture, with commas.
 std::string of_devices(const RenderResult& result, std::string DeviceWork::*what);
 
 /// What is done to a whole preview before it is written.

@@ -15,7 +15,8 @@ namespace caplet::view {
 
 namespace {
 
-/// Of an interface that is up and no loopback; empty for what a browser could not use, such as an address of one link.
+/// Returns the address of an interface that is up and no loopback; empty for one that a browser
+/// could not use, such as an address of one link.
 std::string address_of(const ifaddrs& interface, bool with_v6) {
   if (!interface.ifa_addr || !(interface.ifa_flags & IFF_UP) || (interface.ifa_flags & IFF_LOOPBACK)) return {};
   std::array<char, INET6_ADDRSTRLEN> text{};

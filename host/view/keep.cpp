@@ -110,7 +110,8 @@ Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolu
       return;
     }
   }
-  // Of a large file that takes a while, and nobody asks before there is something to keep.
+  // Hashing a large file takes a while, and nothing needs the hash before there is something to
+  // keep.
   scene_hash_ = std::async(std::launch::deferred, [content = content_of(scene_)] { return hash_of(content); }).share();
   base_hash_ = scene_hash_;
   for (const fs::path& place : {journal_, elsewhere_})
@@ -304,7 +305,7 @@ void Keeper::save(const Scene& scene, const fs::path& target, const std::string&
   const bool own = target == scene_, copies = own && !base_is_copy_ && !is_second_;
   std::error_code error;
   if (copies) {
-    // Of what lines begin with; a name of the same file costs nothing.
+    // This computes the hash that lines begin with. A hard link to the same file costs nothing.
     (void)base_hash_.get();
     fs::remove(copy_, error);
     const fs::path file = fs::canonical(scene_, error);

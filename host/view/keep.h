@@ -26,7 +26,7 @@ namespace caplet::view {
 /// from the first change to the next save. What the file held before it was saved over stays beside it, `.STEM.unsaved.pbrt`,
 /// while the session lasts: the lines of changes after that begin there, too.
 ///
-/// Of two sessions of one file at a time the second keeps nothing.
+/// If two sessions show one file at a time, the second keeps nothing.
 class Keeper {
  public:
   /// What a user asked of the file's reader, by name: another scene, to which changes of this one do not belong.

@@ -32,8 +32,8 @@ inline constexpr int tile_size = 64;
 /// size. Ids go with the first picture of a view at full scale.
 std::string packed(const Picture& now, const Picture* before);
 
-/// Of finite numbers and others; what is beyond the range of a half float becomes the greatest, and 11 bits of 16 are kept: steps
-/// of 1/128.
+/// Converts finite numbers and others; a value beyond the range of a half float becomes the
+/// greatest, and 11 bits of 16 are kept: steps of 1/128.
 std::uint16_t to_half(float value);
 
 }  // namespace caplet::view

@@ -58,7 +58,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   std::uint16_t port() const;
-  /// Of the page, with the token.
+  /// Returns the address of the page, with the token.
   std::string address() const;
 
   // From any thread:

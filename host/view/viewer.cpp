@@ -186,7 +186,7 @@ class Viewer::State {
       } else if (const Seen* seen = std::get_if<Seen>(&message)) {
         client.seen = seen->seen;
       } else if (const Ask* ask = std::get_if<Ask>(&message)) {
-        // Of several questions for what is under the cursor the last one counts.
+        // Only the last one of several questions for what is under the cursor counts.
         if (!ask->all)
           std::erase_if(client.asked,
                         [](const Question& other) { return std::holds_alternative<Ask>(other) && !std::get<Ask>(other).all; });
@@ -504,7 +504,7 @@ class Viewer::State {
   std::optional<Query> query_;
   std::optional<Server> server_;
 
-  // Of the renderer's thread.
+  // Only the renderer's thread uses these.
   Look full_;
   std::uint64_t number_ = 0, version_ = 0;
   std::uint32_t view_ = 1;

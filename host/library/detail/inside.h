@@ -38,8 +38,8 @@ struct Scene::Data {
   };
   std::uint64_t origin = next_serial();
   std::vector<Logged> edits;
-  // Of a scene that is built: whether no one has given it a camera, or a light; whether present() has given it its light; and
-  // the state (`origin`) that present() has seen to.
+  // A scene that is built has these: whether no one has given it a camera, or a light; whether
+  // present() has given it its light; and the state (`origin`) that present() has processed.
   bool open_camera = false, open_light = false, studio_light = false;
   std::optional<std::uint64_t> presented = {};
 
