@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// These tables hold the loss of single scattering at GGX facets, and its means over a hemisphere.
-// tools/energy_tables.py writes them and documents them.
+// What one scattering at GGX facets loses, and its means over a hemisphere. Written by tools/energy_tables.py, which says of what.
 #ifndef CAPLET_BSDF_MULTISCATTER_TABLES_CL
 #define CAPLET_BSDF_MULTISCATTER_TABLES_CL
 
