@@ -202,7 +202,8 @@ itself in a white furnace. The pictures have Caplet above and Mitsuba below:
 
 # --- Scenes ---
 
-# Of scenes_pbrt: width, height, depth as their reference pictures have; the most that the mean may differ.
+# Scenes of scenes_pbrt have width, height and depth of their reference pictures. REMARKS say why
+# means differ.
 SCENES = {"cornell-box": (256, 256, 65), "veach-mis": (320, 180, 1), "coffee": (200, 250, 65)}
 REMARKS = {
     "cornell-box": "the reference is RGB: rendered channel by channel it is +0.05 %",

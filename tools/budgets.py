@@ -118,7 +118,7 @@ def number(pattern, text):
 
 
 def measure(target, arguments, text, out):
-    """Of one stage: {registers, stack, spill, code}, or an error."""
+    """Returns {registers, stack, spill, code} of one stage, or an error."""
     result = command([*arguments, str(text), "-o", str(out)])
     if result.returncode != 0:
         return {"error": result.stdout.strip()[:2000]}

@@ -130,7 +130,7 @@ class Trials:
                 print(page.row(facts), flush=True)
 
     def results(self):
-        """Of all drivers that were ever tried with this cache, in their order."""
+        """Returns the results of all drivers that were ever tried with this cache, in their order."""
         files = [self.cache / "results" / f"{driver.name}-{encoding}.json" for driver in DRIVERS for encoding in ENCODINGS]
         return [json.loads(file.read_text()) for file in files if file.exists()]
 

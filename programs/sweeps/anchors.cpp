@@ -35,7 +35,7 @@ std::array<float, 3> floats(const dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// Of one shape and one program.
+// Score is the result of one shape and one program.
 struct Score {
   std::uint64_t rays = 0, meets = 0;  // those that the witness says enter deeper than `clear`
   std::uint64_t lost = 0, false_hits = 0, outside = 0;
@@ -248,7 +248,7 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
 #endif
     for (std::size_t i = 0; i < list.size(); ++i) {
       const Case c = make_case(p, witness, list[i]);
-      // Of rays that begin at the surface or inside Embree does not see the same crossing.
+      // Embree does not see the same crossing for rays that begin at the surface or inside.
       if (c.value(0) <= 1e-3 * radius) continue;
       const bool deep = reference::margin(witness, c.ray) > 1e-3 * radius;
       for (int k = 0; k <= deep; ++k) ours[k].add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, c.bound);

@@ -82,7 +82,7 @@ struct Case {
   double theta;  // of wo
 };
 
-/// Of every material of the list.
+/// Returns the cases of every material of the list.
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const MaterialOnTrial& material : materials_on_trial())

@@ -57,7 +57,8 @@ TEST(Multiscatter, AWhiteMetalReflectsAll) {
   EXPECT_NEAR(energy(off, 0.1).first, 0.3087, 2e-3);  // tools/energy_tables.py
 }
 
-// Of two roughnesses along u and v the losses are those of their mean: less is lost, but not all is given back.
+// Two roughnesses along u and v have the losses of their mean: less is lost, but not all is given
+// back.
 TEST(Multiscatter, OfUnequalRoughnessesGivesBackMost) {
   for (const auto& [u, v] : {std::pair(0.3f, 0.5f), std::pair(0.2f, 0.1f), std::pair(0.1f, 0.4f), std::pair(0.2f, 0.8f)})
     for (const double theta : {0.1, 0.9, 1.35})

@@ -235,8 +235,8 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
       bsdf.tint = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
       bsdf.normal_tinted = std::array{0.0f, 0.04f, 1.0f}[random() % 3];
     }
-    // Of what makes up for losses a sample weighs the loss over its mean at the most: 60 of indices next to 1, 12 of glass, 6 of
-    // metals.
+    // A sample of the lobe that makes up for losses weighs the loss over its mean at the most: 60
+    // for indices next to 1, 12 for glass, 6 for metals.
     const double heaviest = bsdf.flags != 0 ? 64 : material.trial.heaviest;
     const double most = heaviest * material.trial.most(bsdf, wo[2] < 0);
     std::vector<Direction> other, same;

@@ -17,7 +17,8 @@ namespace {
 const char* const kernel_text = R"CL(
 #include "bsdf/bsdf.cl"
 
-// Of the first material at normal incidence: density straight back, and whether it is a mirror.
+// This evaluates the first material at normal incidence: density straight back, and whether it is a
+// mirror.
 __kernel void straight_back(__global const MaterialRecord* materials, __global const float* material_data,
                             __global const SpectrumRecord* spectra, __global const float* spectrum_tables, __global float* out, uint count) {
   if (get_global_id(0) >= count) return;

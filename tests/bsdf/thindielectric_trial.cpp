@@ -8,7 +8,7 @@ namespace caplet::test {
 
 namespace {
 
-/// Of one face, by Fresnel's equations in double.
+/// Returns the reflectance of one face, by Fresnel's equations in double.
 double face(double cos_i, double eta) {
   const double cos_t = std::sqrt(1 - (1 - cos_i * cos_i) / (eta * eta));
   const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t), across = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);

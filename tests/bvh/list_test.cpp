@@ -162,7 +162,7 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
     double rounding = 0;
     if (!scene.object_from_world.empty()) {
       const dmat4& m = scene.object_from_world[place];
-      // Of the way into the object: 4 eps of its terms.
+      // The transform to the object rounds by 4 eps of its terms.
       double terms = glm::length(dvec3(m[3]));
       for (int k = 0; k < 3; ++k) terms += glm::length(dvec3(m[k])) * glm::length(ray.origin);
       rounding = 4 * eps * terms;

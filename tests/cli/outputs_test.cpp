@@ -135,7 +135,7 @@ TEST(Outputs, WhatCannotBeAFileIsRefused) {
   EXPECT_THAT(refused("nowhere.exr"), HasSubstr("no/such' does not exist"));
   EXPECT_THAT(refused("scene.pbrt/out.exr"), HasSubstr("does not exist"));
   EXPECT_THAT(refused(std::string(300, 'x') + ".exr"), HasSubstr("name too long"));
-  // Of a driver that is not there: nothing is behind it.
+  // This device's driver is not there: nothing is behind it.
   if (::mknod((folder / "block").c_str(), S_IFBLK | 0600, makedev(240, 200)) == 0) {
     EXPECT_THAT(refused("block"), HasSubstr("is a block device"));
   }

@@ -206,7 +206,8 @@ Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [1 0 0] "float radius" 1)";
   EXPECT_FALSE(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided);
 }
 
-// Of csg shapes one that shows hair anywhere: on an operand, on one of an operand, or by its own list of materials.
+// A csg shape is one-sided if it shows hair anywhere: on an operand, on one of an operand, or by
+// its own list of materials.
 TEST(RoundTrip, CsgOfHairIsOneSidedUnlessTheSceneSaysOtherwise) {
   const std::string operands = R"(MakeNamedMaterial "fibre" "string type" "hair"
 MakeNamedMaterial "stone" "string type" "diffuse"

@@ -64,10 +64,10 @@ TEST(ExportText, DegreesAreThoseOfTheFile) {
 TEST(ExportText, TransformsAreTurnedAroundToTheBit) {
   EXPECT_EQ(inverse_text(glm::inverse(glm::dmat4(1))), "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1]\n");
   EXPECT_THAT(inverse_text(glm::inverse(glm::translate(glm::dmat4(1), {1, 2, 3}))), StartsWith("Transform ["));
-  // Of a file's own matrix there is one of few digits.
+  // A file's own matrix has an inverse of few digits.
   const glm::dmat4 stated = glm::dmat4(0.5, 0.25, 0, 0, -0.125, 2, 0, 0, 0, 0.375, 1.1, 0, 3.7, -2.1, 0.3, 1);
   EXPECT_THAT(inverse_text(glm::inverse(stated)), StartsWith("Transform [0.5 0.25 0 0 -0.125 2 "));
-  // Of others mostly none.
+  // Others mostly have none.
   const auto looking = camera_looking({1, 2, 3}, {-0.3, 0.7, 0.1}, {0, 1, 0.3});
   EXPECT_THAT(inverse_text(*looking), StartsWith("InverseTransform ["));
 }

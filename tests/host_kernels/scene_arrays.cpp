@@ -10,7 +10,8 @@ namespace caplet::test {
 
 namespace {
 
-/// Of an empty array: a place of no bytes, as devices have one too, since kernels add an offset of 0 to it.
+/// An empty array gives a place of no bytes, as devices have one too, since kernels add an offset
+/// of 0 to it.
 template <class T>
 const T* first(const std::vector<T>& values) {
   static const auto nothing = std::make_unique<T[]>(0);

@@ -60,7 +60,7 @@ TEST_F(LightFiles, ProjectionHasItsFieldOfView) {
   EXPECT_EQ(first.fov, 40);
   EXPECT_EQ(second.fov, 90);
   EXPECT_EQ(first.image, second.image);  // read once
-  // Of the shorter side.
+  // The field of view is that of the shorter side.
   EXPECT_NEAR(second.half_height(), 1, 1e-12);
   EXPECT_NEAR(second.half_width(), 2, 1e-12);
   // The picture fills as much as the four triangles between its corners.

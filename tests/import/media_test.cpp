@@ -300,7 +300,7 @@ TEST(Interface, OfAMixIsAnAlpha) {
   EXPECT_EQ(std::get<ConstantSpectrum>(rest.tex1.value).value, 1);
   EXPECT_EQ(std::get<ConstantSpectrum>(rest.tex2.value).value, 0);
   EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(textured.textures.at(*rest.amount.texture).model));
-  // Of nothing but interfaces there is nothing.
+  // A mix of nothing but interfaces gives nothing.
   EXPECT_EQ(world_of(parts + mix("gone", "gone") + "Shape \"sphere\" Material \"diffuse\" Shape \"disk\"").shapes.size(), 1u);
   EXPECT_THAT(said(parts + mix("paint", "gone") + "AreaLightSource \"diffuse\" Shape \"sphere\""),
               ElementsAre(HasSubstr("the shape is an area light, whose material is no mix with an interface")));

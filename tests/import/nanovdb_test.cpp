@@ -50,7 +50,8 @@ Memory grid() {
   for (std::size_t k = 0; k < 6; ++k) m.put<double>(map + 264 + 8 * k, box[k]);
   m.put<std::uint64_t>(672 + 24, root - 672);
   m.put<std::uint32_t>(root + 24, 1);
-  // Of x = -8, whose 4096s are -1; and none of x = 0: the tile of that has nodes of its own.
+  // The root has a tile of x = -8, whose 4096s are -1, and none of x = 0: the tile of that has
+  // nodes of its own.
   const auto key = [](std::int32_t x) { return (std::uint64_t{static_cast<std::uint32_t>(x) >> 12} << 42); };
   m.put<std::uint64_t>(root + 64, key(-8));
   m.put<std::int64_t>(root + 72, upper - root);

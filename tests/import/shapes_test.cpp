@@ -304,8 +304,8 @@ std::function<dvec3(std::mt19937&)> drawn_from(const dvec3& low, const dvec3& hi
   };
 }
 
-// Of the box that the search starts from, which is up to three times as wide here; and points within a solid meet its tips more
-// rarely than those on a surface.
+// This is a share of the box that the search starts from, which is up to three times as wide here.
+// Points within a solid meet its tips more rarely than those on a surface.
 constexpr double csg_share = 3.0 / 64 + 2 * drawn_share;
 
 TEST(Bounds, LensOfTwoSpheres) {
@@ -435,7 +435,7 @@ TEST_P(Curves, StayWithinTheToleranceOfTheCurve) {
                                  "\" \"integer degree\" " + std::to_string(row.degree) + " \"point3 P\" [" + text +
                                  "] \"float width0\" " + std::to_string(width0) + " \"float width1\" " + std::to_string(width1));
     const auto& chain = geometry_of<CapsulesShape>(scene);
-    // Of the documentation; ends are rounded to floats once more.
+    // The tolerance is that of the documentation; ends are rounded to floats once more.
     const double tolerance = std::max(1e-3 * width0, 1e-5 * size) + 0x1p-23 * size;
     for (int i = 0; i <= 2000; ++i) EXPECT_LE(distance_to_chain(chain, at(i / 2000.0)), tolerance) << i;
     expect_near(dvec3(chain.p0.front()), at(0), tolerance);

@@ -285,9 +285,10 @@ TEST(LoopSubdivision, Borders) {
   EXPECT_LT(glm::length(finer.positions[0] - glm::vec3(0.175f, 0.175f, 0)), 1e-6f);
 }
 
-// Of points that rise along x alone, regular and with one diagonal. By hand, as pbrt-v4 does it: points go to their limits (a
-// half and 1/12 of six neighbours within, 3/5 and 1/5 of two at a border), and normals are across tangents of those, of a
-// border's vertex of four neighbours r along r3 - r0 and -r0 + 2 r1 + 2 r2 - r3 - 2 p.
+// The points rise along x alone, regular and with one diagonal. By hand, as pbrt-v4 does it: points
+// go to their limits (a half and 1/12 of six neighbours within, 3/5 and 1/5 of two at a border),
+// and normals are across tangents of those, of a border's vertex of four neighbours r along r3 - r0
+// and -r0 + 2 r1 + 2 r2 - r3 - 2 p.
 TEST(LoopSubdivision, NormalsOfASheetAndOfItsBorders) {
   constexpr double height[] = {0, 1, -1, 2, 0.5};
   std::string points, indices;

@@ -109,7 +109,8 @@ struct PixelMeans {
   dvec3 position{0}, normal{0};
 };
 
-/// Of the unit sphere at (0, 0, 4) seen from the origin along +z through x0..x0+size, y0..y0+size of the plane z = 1.
+/// Integrates over the unit sphere at (0, 0, 4) seen from the origin along +z through x0..x0+size,
+/// y0..y0+size of the plane z = 1.
 PixelMeans integrate_sphere(double x0, double y0, double size) {
   constexpr int steps = 1500;
   PixelMeans out;

@@ -222,7 +222,7 @@ TEST(Limit, IsOfEachSampleAsItIsExposed) {
     EXPECT_NEAR(peak_of(part, i), 2 * share, 1e-4) << i;
   }
   EXPECT_GE(partly, 8);
-  // Of dim ones nothing is changed.
+  // Dim samples are not changed.
   const LayeredImage dim = rendered(0.1, "\"float maxcomponentvalue\" 50", 4), free = rendered(0.1, "", 4);
   for (const char* name : {"R", "G", "B"}) EXPECT_EQ(channel(dim, name).floats, channel(free, name).floats) << name;
 }

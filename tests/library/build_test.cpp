@@ -299,7 +299,7 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);
 }
 
-// Of a shape that is checked again its textures and media are there.
+// A shape that is checked again still has its textures and media.
 TEST_F(LibraryBuild, ShapesWithTexturesAndMediaAreMoved) {
   caplet::Scene scene = three_balls();
   const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {}});

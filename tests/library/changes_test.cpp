@@ -261,7 +261,7 @@ TEST_F(LibraryChanges, ACameraThatWasSetStays) {
   EXPECT_EQ(zoomed.camera(), automatic.camera());
   placed.set_camera("perspective", {{"fov", 30.0}}, caplet::identity);
   EXPECT_FALSE(sees_anew(placed));
-  // Of a scene that is built: more shapes, too.
+  // A scene that is built keeps its camera when shapes are added, too.
   caplet::Scene built;
   built.add_shape("sphere", {{"radius", 1.0}});
   built.look_at({3, 4, 50}, {0, 0, 0}, {0, 1, 0});

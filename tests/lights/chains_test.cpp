@@ -219,8 +219,9 @@ std::vector<std::pair<int, int>> open_heights(const Scene& scene) {
   return out;
 }
 
-// Of two equal capsules that meet at an angle b, the next one covers normals nearer than a right angle to its axis: what is left
-// of an end reaches up to the height sin b. Room for rounding is less than a hundredth here; a step is 1 / 255.
+// Two equal capsules meet at an angle b. The next one covers normals nearer than a right angle to
+// its axis: what is left of an end reaches up to the height sin b. Room for rounding is less than a
+// hundredth here; a step is 1 / 255.
 TEST(CoveredEnds, ReachAsHighAsTheNextCapsuleLeavesThem) {
   for (const double angle : {0.0, 0.3, 1.0, 1.5, 2.5}) {
     const dvec3 turn(std::cos(angle), std::sin(angle), 0);

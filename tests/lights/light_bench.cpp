@@ -78,8 +78,8 @@ __kernel void sky(SCENE, float px, float py, float pz, __global const float* dir
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
-// Of the 2^32 numbers, those from i << shift on, 2^shift of them: how many choose each of up to 8 lights, and whether every chance is
-// the light's own.
+// This takes from the 2^32 numbers those from i << shift on, 2^shift of them: how many choose each
+// of up to 8 lights, and whether every chance is the light's own.
 __kernel void selections(SCENE, uint shift, __global uint* out, uint count) {
   MAKE_SCENE;
   uint counts[8] = {0, 0, 0, 0, 0, 0, 0, 0};

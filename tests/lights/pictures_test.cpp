@@ -452,8 +452,8 @@ TEST(Portal, GivesTheSkysLight) {
   EXPECT_NEAR(found.mean, expected, 4 * found.error + 4e-3 * expected);
 }
 
-// Of every direction that a point sees through the portal, the densities have the integral 1; and those of samples are those that
-// rays find.
+// Over every direction that a point sees through the portal, the densities have the integral 1; and
+// those of samples are those that rays find.
 TEST(Portal, DensityIsThatOfTheSamples) {
   LightBench bench(lower(scene_with({portal_light()})));
   const std::vector<dvec3> directions = sphere_directions(1000000);

@@ -170,7 +170,8 @@ TEST(LightTree, NoLightThatShinesIsWithoutAChance) {
   EXPECT_GT(dark, 5000);
 }
 
-// Of two lights in one node, which are points, the chances are as the irradiances: I cos / d^2.
+// Two lights in one node, which are points, have chances in proportion to the irradiances: I cos /
+// d^2.
 TEST(LightTree, SiblingsShareByTheirIrradiance) {
   Random random(5);
   Scene scene = ground();

@@ -64,7 +64,7 @@ TEST(Backdrop, PicturesCoverTheFilm) {
   // A film of 4 x 2: columns 2 to 5 of the picture, texel by texel.
   for (int x = 0; x < 4; ++x) EXPECT_FLOAT_EQ(under(backdrop, 4, 2, x, 1)[0], static_cast<float>(x + 2) / 8);
   for (int y = 0; y < 2; ++y) EXPECT_FLOAT_EQ(under(backdrop, 4, 2, 1, y)[2], static_cast<float>(y));
-  // Of 2 x 1 each pixel is the mean of 2 x 2 texels of those.
+  // On a film of 2 x 1 each pixel is the mean of 2 x 2 texels of those.
   EXPECT_NEAR(under(backdrop, 2, 1, 0, 0)[1], (2.5 / 8), 1e-6);
   EXPECT_NEAR(under(backdrop, 2, 1, 1, 0)[1], (4.5 / 8), 1e-6);
 }

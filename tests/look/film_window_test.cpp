@@ -115,7 +115,7 @@ double reach(const Camera& camera, const FilmSettings& film, const glm::dvec4& b
   return most;
 }
 
-/// Of balls over all frames of a turn.
+/// Returns the reach of balls over all frames of a turn.
 double reach_of_turn(const Scene& scene, const std::vector<glm::dvec4>& balls) {
   const Turntable table(scene);
   double most = 0;

@@ -76,7 +76,7 @@ double difference(const Shown& picture, const Box& box, const std::string& what,
   return best;
 }
 
-/// Of these texts the one that a box says; empty where none of them is near.
+/// Returns the one of these texts that a box says; empty where none of them is near.
 std::string read(const Shown& picture, const Box& box, const std::vector<std::string>& texts, double size) {
   std::string out;
   double least = 0.05;
@@ -205,7 +205,7 @@ AxesPicture axes_of(const glm::dmat3& world_from_file) {
 
 constexpr std::array<std::array<float, 3>, 3> srgb = {{{0.86F, 0.16F, 0.16F}, {0.13F, 0.60F, 0.20F}, {0.16F, 0.38F, 0.90F}}};
 
-/// Of the three the axis whose colour a pixel has; none.
+/// Returns the one of the three axes whose colour a pixel has; none.
 std::optional<int> axis_at(const Shown& picture, const glm::dvec2& at) {
   const auto color = color_at(picture, static_cast<int>(at.x), static_cast<int>(at.y));
   for (int axis = 0; axis < 3; ++axis) {

@@ -328,7 +328,7 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
   EXPECT_GT(bottom - top, 60);
   EXPECT_GT(red_of_top, 0.98);
   EXPECT_LT(red_of_bottom, 0.02);
-  // Of two colours each has half of the rows.
+  // With two colours each has half of the rows.
   Canvas two = empty_canvas(400, 300);
   draw_color_bar(two.picture, {"B", "", 0, 1, {{0, 0, 0.25}, {0.5, 0, 0.25}}}, {0, 0, 0});
   int difference = 0;
@@ -347,7 +347,7 @@ TEST(Ink, IsSeenOnWhatIsBehind) {
              8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
   EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
-  // Of one pixel just above the luminance between, 0.179: black.
+  // On one pixel just above the luminance between, 0.179, the ink is black.
   Canvas grey = canvas(
       1, 1, {0.2f, 0.2f, 0.2f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(grey.picture, grey.layers)[0], 0);

@@ -217,7 +217,7 @@ TEST(Subsurface, WhatIsWithinCounts) {
   EXPECT_TRUE(agrees(seen(parallel_view(0.1, 2) + scene, 64), 1));
 }
 
-// Of a mix, what enters does so by the part that is a subsurface: nothing is lost.
+// Light enters a mix by the part that is a subsurface: nothing is lost.
 TEST(Subsurface, IsAPartOfAMix) {
   const std::string ball =
       "MakeNamedMaterial \"wax\" \"string type\" \"subsurface\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [4 4 4]\n"

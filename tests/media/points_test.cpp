@@ -197,7 +197,8 @@ TEST(MediaPoints, AHotGridGlowsByPlancksLaw) {
     const glm::dvec3 part = part_of(points[i]);
     const double kelvin = (between(heat, counts, part) - 150) * 0.875;
     for (std::size_t l = 0; l < 4; ++l) {
-      // Of a radiance of 1 a picture is 1 where the integral of the CIE's y over wavelengths is divided by 106.856895.
+      // A radiance of 1 gives a picture of 1 if the integral of the CIE's y over wavelengths is
+      // divided by 106.856895.
       const double expected = kelvin > 100 ? 106.856895 * planck_part(kelvin, wavelengths[l]) : 0;
       // At 500 K a change of kelvin by 2e-6 of itself is one of 60 times that. Below, kernels hold the exponent to 80.
       EXPECT_NEAR(plain.le[i][l], expected, 2e-4 * expected + 1e-20) << kelvin;

@@ -157,7 +157,7 @@ TEST(RgbGrid, IsOneOfGreysWhereItsColoursAre) {
                              list(a) + " \"rgb sigma_s\" " + list(std::vector<double>(81, 0));
   const double expected = mean_over_rays(0.6, [](const std::vector<double>& depth) { return std::exp(-depth.back()); });
   EXPECT_TRUE(agrees(seen(parallel_view() + "WorldBegin\n" + white_sky() + cube(colors), 256), expected));
-  // Of a colour each wavelength loses its own: red goes through what is red.
+  // In a colour each wavelength loses its own share: red goes through what is red.
   std::vector<double> s;
   for (const double d : densities) s.insert(s.end(), {2 * d, 0.5 * d, 3 * d});
   const std::string furnace = "\"string type\" \"rgbgrid\" \"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 3 \"rgb sigma_a\" " +

@@ -207,7 +207,8 @@ TEST(Collada, ArraysOfTwoGeometriesMayHaveTheSameIds) {
   EXPECT_EQ(parts[1].positions.at(0), glm::vec3(5, 0, 0));
 }
 
-// Of two elements of one id, which are not allowed, the first is meant, as in a browser (getElementById).
+// If two elements have one id, which is not allowed, the first is used, as in a browser
+// (getElementById).
 TEST(Collada, OfTwoOfOneIdTheFirstIsMeant) {
   const std::string text = dae(kTwo, "<node><instance_node url='#of'/></node>",
                                "<library_nodes><node id='of'><translate>0 0 1</translate><instance_geometry url='#g'/></node>"

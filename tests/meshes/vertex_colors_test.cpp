@@ -105,7 +105,7 @@ TEST(VertexColors, OfPly) {
   EXPECT_LT(glm::length(color_at(scene, shape, 0, {1, 0, 0}) - vec3(1, 0, 0)), kClose);
   EXPECT_LT(glm::length(color_at(scene, shape, 0, {0, 0.5F, 0.5F}) - vec3(0, 0.5F, 0.5F)), kClose);
   EXPECT_LT(glm::length(color_at(scene, shape, 1, {0, 0, 1}) - decoded({0.2F, 0.4F, 0.6F})), kClose);
-  // Of faces, as floats; a face that is left out has one as well.
+  // These are colours of faces, as floats; a face that is left out has one as well.
   const Scene faces = scene_of(
       "f.ply",
       ply_head +
@@ -139,7 +139,7 @@ TEST(VertexColors, OfOff) {
   const Scene faces = scene_of("f.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 0.2 0.4 0.6\n3 0 1 2 1 0 0 1\n");
   EXPECT_LT(glm::length(color_at(faces, faces.shapes.at(0), 1, {0.3F, 0.3F, 0.4F}) - decoded({0.2F, 0.4F, 0.6F})), kClose);
   EXPECT_LT(glm::length(color_at(faces, faces.shapes.at(0), 2, {0.3F, 0.3F, 0.4F}) - vec3(1, 0, 0)), kClose);
-  // Of one face alone: none.
+  // If only one face has a colour, there is none.
   const Scene one = scene_of("o.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2 1 0 0\n3 0 2 1\n");
   EXPECT_EQ(color_at(one, one.shapes.at(0), 0, {1, 0, 0}), vec3(-1));
 }

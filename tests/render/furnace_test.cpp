@@ -47,7 +47,7 @@ LayeredImage check(const Furnace& furnace) {
   return rendered.image;
 }
 
-// Of a path through dispersive glass only the hero wavelength is left, and counts for all four.
+// A path through dispersive glass keeps only the hero wavelength, which counts for all four.
 TEST(Furnace, DispersiveGlassTakesNothing) {
   check(
       {"LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"dielectric\" \"spectrum eta\" \"glass-SF11\"\n"

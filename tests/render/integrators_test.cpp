@@ -48,7 +48,7 @@ TEST(AmbientOcclusion, EndsAtItsGreatestDistance) {
   expect_mean(mean_of_text(text + floor + ceiling, 1024), 0.25);
 }
 
-// Of what is seen from behind the rays leave on that side.
+// If a surface is seen from behind, the rays leave on that side.
 TEST(AmbientOcclusion, IsOfTheSideThatIsSeen) {
   const std::string upright = looking_at_floor("\"ambientocclusion\"");
   const std::string below =

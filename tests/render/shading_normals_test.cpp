@@ -28,7 +28,8 @@ const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 const std::string from_above = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n";
 const std::string from_aside = "LookAt 4 0 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 20\n";
 
-/// Of each kind something that is too far away and too small to matter, so that all scenes have the same kernels.
+/// This has something of each kind that is too far away and too small to matter, so that all scenes
+/// have the same kernels.
 const std::string some_of_each =
     "AttributeBegin Translate 0 300 0\n"
     "Material \"conductor\" Shape \"sphere\" \"float radius\" 1e-3 Material \"dielectric\" Shape \"disk\" \"float radius\" 1e-3\n"

@@ -24,7 +24,7 @@ Scene scene_of(const std::string& world, const std::string& view) {
                        world);
 }
 
-/// Of the green of a render. `sampled`: with light sampling, of all lights alike.
+/// Returns the mean of the green of a render. `sampled`: with light sampling, of all lights alike.
 Mean light_of(const Scene& scene, int samples, bool sampled) {
   FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);

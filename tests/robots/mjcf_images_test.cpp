@@ -88,7 +88,7 @@ TEST(MjcfImages, HeightFieldsHaveTwoToManyRows) {
   EXPECT_EQ(said("2", "2"), "");
   EXPECT_EQ(said("8192", "2"), "");
   EXPECT_EQ(said("2", "8192"), "");
-  // Of 8192 x 513 there are more than 2^22.
+  // A field of 8192 x 513 has more than 2^22 values.
   for (const auto& [rows, columns] : {std::pair("1", "2"), std::pair("2", "1"), std::pair("8193", "2"), std::pair("2", "8193"),
                                       std::pair("8192", "513"), std::pair("2.5", "2"), std::pair("2", "2.5")})
     EXPECT_THAT(said(rows, columns), HasSubstr("2 to 8192 rows and columns")) << rows << ' ' << columns;

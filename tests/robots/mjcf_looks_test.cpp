@@ -167,7 +167,7 @@ TEST(MjcfLooks, TexturesLieAsMujocos) {
       EXPECT_TRUE(same(1 - glm::dot(mapping.v2, p) - mapping.vdelta, one.e * y + one.f)) << one.geom << one.material;
     }
   }
-  // Of our u = turns around z from x, v = 1 - the angle from z in half turns.
+  // Our coordinates are u = turns around z from x, v = 1 - the angle from z in half turns.
   for (const auto& [geom, material, columns, rows] :
        {std::tuple("size='1.5'", "texrepeat='3 2'", 3.0, 2.0),
         std::tuple("size='1.5'", "texrepeat='1 1' texuniform='true'", 1.5, 1.5),
@@ -179,7 +179,8 @@ TEST(MjcfLooks, TexturesLieAsMujocos) {
       EXPECT_TRUE(same(1 - mapping.vscale * (1 - angle) - mapping.vdelta, rows * angle)) << geom;
     }
   }
-  // Of the side of a capsule of radius 1 and half length 1.5, rows from its top, over 3 of the pi + 3 of its profile.
+  // The side of a capsule of radius 1 and half length 1.5 has rows from its top, over 3 of the pi +
+  // 3 of its profile.
   const TextureMapping side = mapping_of("type='capsule' size='1 1.5'", "texrepeat='3 2'");
   for (const double z : {-1.5, 0.2, 1.5}) {
     const double along = (std::acos(-1.0) / 2 + 1.5 + z) / (std::acos(-1.0) + 3);

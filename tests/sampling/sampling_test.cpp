@@ -91,7 +91,7 @@ struct Numbers {
   std::vector<glm::dvec2> pairs;
   std::vector<double> singles;
 };
-/// Of pixel `pixel` of an image that is 256 pixels wide.
+/// Returns numbers of pixel `pixel` of an image that is 256 pixels wide.
 Numbers numbers(std::uint32_t pixel, std::uint32_t pair, std::uint32_t count, const SamplerSettings& sampler = {}) {
   Scene scene;
   scene.film.width = scene.film.height = 256;
@@ -540,8 +540,9 @@ TEST(Filter, HistogramFollowsTheFilter) {
       for (std::size_t i = 0; i < bins; ++i) {
         const double begin = radius * (2.0 * static_cast<double>(i) / bins - 1), end = begin + 2 * radius / bins;
         const double share = filter_share(filter, end, radius) - filter_share(filter, begin, radius);
-        // Of samples that weigh w: five standard deviations of their number, and the table's linear interpolation (1e-3 of the
-        // maximum, which is at most 3 / (2 radius)). The other axis's signs make more of them where the filter is small.
+        // The tolerance for samples that weigh w is five standard deviations of their number, and
+        // the table's linear interpolation (1e-3 of the maximum, which is at most 3 / (2 radius)).
+        // The other axis's signs make more of them where the filter is small.
         const double count = std::max(std::abs(share), 0.01) * n;
         EXPECT_NEAR(sums[i], share * n, 5 * heaviest * std::sqrt(count) + 3e-3 * n / bins)
             << static_cast<int>(filter.kind) << ' ' << axis << ' ' << i;

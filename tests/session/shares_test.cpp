@@ -167,7 +167,7 @@ TEST(Shares, AWorkerAloneTakesWholePasses) {
   EXPECT_EQ(shares.samples(), 10u);
 }
 
-// Of any speeds all are done together, and each has done what its speed makes of the whole.
+// Workers of any speeds finish together, and each has done what its speed makes of the whole.
 TEST(Shares, AreBySpeedAndEndTogether) {
   for (const std::vector<double>& speeds : std::vector<std::vector<double>>{
            {1e5, 1e5}, {1e5, 3e5}, {2e4, 1e6}, {1e5, 1e5, 1e5, 1e5}, {3e5, 1e5, 2e5}, {1e3, 1e6, 2e6}}) {

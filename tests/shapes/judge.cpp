@@ -125,7 +125,7 @@ Judgement judge(const Case& c, const Listed& listed, std::uint32_t capacity) {
   const bool begins_there = std::abs(c.value(0)) <= c.bound;
   if (listed.any != hit || (hit == listed.all.empty() && !begins_there))
     note("nearest, any and the list do not agree on whether there is a hit");
-  // Of two crossings at one t the list has the leaving one first.
+  // The list has the leaving one of two crossings at one t first.
   if (hit && !listed.all.empty()) {
     const auto same = [&](std::size_t i) {
       const HitRecord& other = listed.all[i];

@@ -13,7 +13,7 @@ using glm::dvec3;
 
 namespace {
 
-/// Of meshes of four vertices; half of them.
+/// Returns uvs for half of the meshes of four vertices.
 std::vector<glm::vec2> own_uvs(double r) {
   if (r < 0.6) return {};
   return {{0.1f, 0.2f}, {0.9f, -0.3f}, {-0.2f, 2}, {1.5f, 2.5f}};
@@ -40,7 +40,7 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
     case 0:
       return SphereShape{r};
     case 1:
-      // Of chains, half of them.
+      // Half of them are chains.
       return CapsulesShape{{a, b},
                            {b, c},
                            {0.3f * f, 0.2f * f},

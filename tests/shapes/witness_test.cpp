@@ -478,7 +478,7 @@ TEST(SceneWitness, SurfacesMaterialsAndNormals) {
   EXPECT_EQ(hits[1].material, 20u);
   EXPECT_EQ(hits[1].instance, 0u);
   EXPECT_FALSE(hits[1].leaving);
-  // Of the ellipsoid with half axes 1/2 and 1, into its middle.
+  // The normal is that of the ellipsoid with half axes 1/2 and 1, into its middle.
   EXPECT_LT(glm::length(witness.normal(hits[1], {4 + chord, 0, 0.1}) + glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))), 1e-6);
   EXPECT_NEAR(hits[2].t, (9 + 6) / 2.0, 10 * rounding);
   EXPECT_EQ(hits[2].surface, 0u);

@@ -58,7 +58,7 @@ ObjectInstance "{0}"
       EXPECT_EQ(operand->name, broken.valid) << broken.what;
     put(obj, fmt::format("o {0}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", broken.bytes));
     EXPECT_EQ(import_scene(obj, FileImageReader()).shapes.at(0).name, broken.valid) << broken.what;
-    // Of several files the names of files come before.
+    // With several files, the names of files come before.
     const fs::path other = folder / (std::string(broken.bytes) + ".obj");
     put(other, text_of(obj));
     const std::vector<fs::path> both{file, other};
@@ -69,7 +69,7 @@ ObjectInstance "{0}"
 
 TEST(Names, AreWrittenAsUtf8AndToldApart) {
   const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt", written = folder / "b.pbrt";
-  // Of both one character stays, which is the same.
+  // One character of both names stays, and it is the same.
   put(file, R"(WorldBegin
 MakeNamedMaterial "K)"
             "\xfc"

@@ -25,7 +25,8 @@ inline double mitchell_integral(double t, double b, double c) {
   return sum;
 }
 
-/// Of sinc(x) sinc(x / tau) from 0 to x, by Simpson's rule: sinc(x) = sin(pi x) / (pi x).
+/// Returns the integral of sinc(x) sinc(x / tau) from 0 to x, by Simpson's rule: sinc(x) = sin(pi
+/// x) / (pi x).
 inline double windowed_sinc_integral(double x, double tau) {
   const auto sinc = [](double t) { return t == 0 ? 1 : std::sin(std::numbers::pi * t) / (std::numbers::pi * t); };
   constexpr int steps = 2000;

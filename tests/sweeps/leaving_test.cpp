@@ -63,7 +63,8 @@ std::array<float, 3> direction_over(const dvec3& n, CaseMaker& maker) {
   }
 }
 
-// Of object_from_world along the normal: a world distance times this is one in object space.
+// Returns the stretch of object_from_world along the normal: a world distance times this is one in
+// object space.
 double stretch_of(const PlacedPrimitive& placed, const Probed& from) {
   dvec3 n = point(from.surface.ng), out(0);
   for (int r = 0; r < 3; ++r)

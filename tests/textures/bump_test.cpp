@@ -28,7 +28,8 @@ struct Parallelogram {
 
   glm::dvec3 at(double u, double v) const { return origin + u * a + v * b; }
   glm::dvec3 normal() const { return glm::normalize(glm::cross(a, b)); }
-  /// Of the same raised along its normal by heights that grow by hu and hv over u and v: across both a + hu n and b + hv n.
+  /// Returns the normal of the same raised along its normal by heights that grow by hu and hv over
+  /// u and v: across both a + hu n and b + hv n.
   glm::dvec3 normal_raised(double hu, double hv) const {
     return glm::normalize(glm::cross(a + hu * normal(), b + hv * normal()));
   }

@@ -151,7 +151,8 @@ dvec3 bent_dome(const dvec3& p, const dvec3& slope_there, double height_there, d
                     y + glm::dot(slope_there, y) * at.n + height_there * at.dy);
 }
 
-// Of these four corners the interpolation over a patch and over both of its triangles is the same.
+// With these four corners the interpolation over a patch and over both of its triangles is the
+// same.
 TEST(Displacements, OfMeshesGrowWithTheirNormals) {
   const auto expected = [](const dvec3& p) { return bent_dome(p, slope, height(p)); };
   EXPECT_GT(

@@ -214,7 +214,7 @@ TextureTrial fbm_texture_trial() {
           {{0, 0, 0.193748207, {0.5f, 0.25f, -0.75f}},
            {0, 0, -0.0729523367, {3.2f, -1.7f, 9.4f}},
            {0, 0, 0.522669931, {-100.3f, 55.9f, 0.1f}},
-           // Of what is 1/8 wide the first two octaves are seen.
+           // A footprint of 1/8 shows the first two octaves.
            {0, 0, 0.196306593, {0.5f, 0.25f, -0.75f}, {0, 0, 1}, {0.125f, 0, 0}, {0, 0.0625f, 0}}},
           2e-5,
           "step",
@@ -230,7 +230,8 @@ TextureTrial wrinkled_texture_trial() {
           {{0, 0, 0.180065289, {0.5f, 0.25f, -0.75f}},
            {0, 0, 0.283878626, {3.2f, -1.7f, 9.4f}},
            {0, 0, 0.266841748, {-100.3f, 55.9f, 0.1f}},
-           // Of what is too wide for any the mean, 0.2 an octave; and once more, as pbrt-v4 counts.
+           // A footprint too wide for any octave shows the mean, 0.2 an octave; and once more, as
+           // pbrt-v4 counts.
            {0, 0, 0.45, {0.5f, 0.25f, -0.75f}, {0, 0, 1}, {8, 0, 0}, {}}},
           2e-5,
           "step",

@@ -22,7 +22,8 @@ namespace {
 const char* const kernel_text = R"CL(
 #include "bsdf/bsdf.cl"
 
-// Of the first material at a place: reflectance, eta, k, alpha_u, alpha_v at four wavelengths; the texture whose first step is `step`.
+// This evaluates the first material at a place: reflectance, eta, k, alpha_u, alpha_v at four
+// wavelengths; and the texture whose first step is `step`.
 __kernel void look_up(__global const MaterialRecord* materials, __global const float* material_data,
                       __global const TextureRecord* textures, __global const float* texture_data,
                       __global const ImageRecord* images, __global const uint* texels,
@@ -63,7 +64,7 @@ Program& program_of(std::uint64_t textures) {
 
 constexpr std::uint64_t every_kind = ~std::uint64_t{0};
 
-/// Of the first material, and of the texture whose first step is `step` of `flat`.
+/// Evaluates the first material, and the texture whose first step is `step` of `flat`.
 Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kinds, std::uint32_t step = CAPLET_NONE) {
   const Device& device = test_device();
   flat.spectrum_tables.push_back(0);  // never empty
@@ -221,7 +222,7 @@ TEST(Textures, OfColoursAreThoseOfConstants) {
   const Scene scene = scene_of(DiffuseMaterial{}, {{checks, false, "t", {}}}, {{"reflectance", 0}});
   EXPECT_EQ(look_up(scene, 0.5, 0.5).reflectance, look_up(scene_of(DiffuseMaterial{red}, {}, {}), 0, 0).reflectance);
   EXPECT_EQ(look_up(scene, 1.5, 0.5).reflectance, look_up(scene_of(DiffuseMaterial{blue}, {}, {}), 0, 0).reflectance);
-  // Of a metal's eta they are unbounded: 3 is 3.
+  // For a metal's eta they are unbounded: 3 is 3.
   checks.tex1 = 3;
   checks.tex2 = 0.5;
   const Scene metal =
@@ -385,7 +386,7 @@ TEST(Images, OfFewValuesAreNumbers) {
         EXPECT_EQ(number_of(map, u, v), expected) << channels << " " << at;
     }
   }
-  // Of more values than that would save something, and of few texels: floats.
+  // Images with more values than would save something, and images of few texels, stay floats.
   std::vector<float> all;
   for (int i = 0; i < 64 * 64; ++i) all.push_back(static_cast<float>(i) / 5000);
   ImagemapTexture map;
@@ -424,7 +425,7 @@ TEST(Images, HaveMipLevelsOfTheirMeans) {
   EXPECT_NEAR(number_of(map, at), 0.5, 0.01);
 }
 
-// Of stripes along t, seen from far along t alone: EWA keeps them, the others do not.
+// The image has stripes along t, seen from far along t alone: EWA keeps them, the others do not.
 TEST(Images, EwaKeepsWhatOneSideIsNarrowEnoughFor) {
   std::vector<float> stripes;
   for (int i = 0; i < 64; ++i) stripes.push_back(i % 2 ? 1.f : 0.25f);

@@ -58,7 +58,8 @@ Scene looked_at(const Look& look, int scale, int eye) {
   return scene;
 }
 
-// Of parallel rays, 3 units of the world are 48 pixels: balls of radius 0.75 are disks of 12 pixels, the near and the far one.
+// With parallel rays, 3 units of the world are 48 pixels: balls of radius 0.75 are disks of 12
+// pixels, the near and the far one.
 TEST(Orthographic, ShowsBallsAsDisksWhateverTheirDistance) {
   Look look = look_at(64, 48);
   look.orthographic = 1.5;

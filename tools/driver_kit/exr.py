@@ -52,7 +52,7 @@ def _run_lengths(data):
 
 
 def _unpacked(data, compression, size):
-    """Of a block: undoes the compression, the differences of neighbouring bytes and the parting of even from odd ones."""
+    """Undoes the compression of a block, the differences of neighbouring bytes and the separation of even from odd ones."""
     if compression == 0 or len(data) == size:
         return data
     mixed = bytearray(_run_lengths(data) if compression == 1 else zlib.decompress(data))
