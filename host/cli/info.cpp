@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/description.h"
 #include "cli/options.h"
+#include "cli/parameters.h"
 #include "lower/lower.h"
 #include "report/summary.h"
 
@@ -43,16 +44,26 @@ void add_info(CLI::App& app) {
   struct Options {
     std::vector<std::string> scenes;
     ImportOptions import_options;
-    bool json = false;
+    bool json = false, parameters = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("info", "Tell what a scene file holds: primitives, bounds, materials, lights, memory, tree");
   add_scene_files(*command, options->scenes);
-  command->add_flag("--json", options->json, "Print a JSON object for machines");
+  command->get_option("SCENE")->required(false);
+  command->add_flag("--json", options->json, "Print JSON for machines");
+  command->add_flag("--parameters", options->parameters,
+                    "List what scene files may say, in place of a scene: families and their types; of a family, or of a family "
+                    "and a type, the parameters with types, defaults, ranges and units");
   add_import_options(*command, options->import_options);
-  command->footer(footer_with({"caplet info scene.pbrt", "caplet info neuron.swc --json"}));
+  command->footer(
+      footer_with({"caplet info scene.pbrt", "caplet info neuron.swc --json", "caplet info --parameters material conductor"}));
   command->callback([options] {
+    if (options->parameters) {
+      fmt::print("{}", options->json ? parameters_json(options->scenes) : parameters_text(options->scenes));
+      return;
+    }
+    if (options->scenes.empty()) throw CLI::RequiredError("SCENE");
     const Scene scene = import_files(options->scenes, options->import_options);
     const nlohmann::ordered_json info = report::scene_summary(scene, lower(scene));
     options->json ? fmt::print("{}", report::to_text(info)) : print_text(info);

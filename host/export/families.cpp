@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
+#include "scene/field.h"
 #include "scene/transform.h"
 
 namespace caplet::pbrt_text {
@@ -25,7 +26,9 @@ std::string encoding_name(const ImageEncoding& encoding) {
 }
 
 /// Writes what scene/textures.def visits.
-struct TextureWriter {
+struct TextureWriter : IgnoresFields {
+  TextureWriter(Statement& statement, const Names& all, const Stream& out, bool of_floats)
+      : to(statement), names(all), stream(out), is_float(of_floats) {}
   Statement& to;
   const Names& names;
   const Stream& stream;
@@ -33,99 +36,80 @@ struct TextureWriter {
   std::optional<glm::dmat4> texture_from_world = {};
   bool is_turned = false;  // has directions, which are of the world
 
-  void operand(const char* name, const TextureOperand& of) {
+  void operand(const Field& field, const TextureOperand& of) {
     if (of.texture)
-      to.texture(name, names.textures[*of.texture]);
+      to.texture(field.name, names.textures[*of.texture]);
     else
-      to.spectrum(name, of.value);
+      to.spectrum(field.name, of.value);
   }
-  void factor(const char* name, const TextureOperand& of) { operand(name, of); }
-  void number(const char* name, double value) { to.number(name, value); }
+  void factor(const Field& field, const TextureOperand& of) { operand(field, of); }
+  void number(const Field& field, double value) { to.number(field.name, value); }
+  void integer(const Field& field, int value) { to.whole(field.name, value); }
+  void vector(const Field& field, const glm::dvec3& value) { to.vector(field.name, value); }
   template <class Options>
-  void choice(const char* name, int value, const Options& options) {
-    to.text(name, options[static_cast<std::size_t>(value)]);
+  void choice(const Field& field, int value, const Options& options) {
+    to.text(field.name, options[static_cast<std::size_t>(value)]);
   }
-  void flag(const char* name, int value) { to.boolean(name, value != 0); }
-  void image(const std::shared_ptr<const TextureImage>& of) {
+  void flag(const Field& field, bool value) { to.boolean(field.name, value); }
+  void image(const Field& field, const std::shared_ptr<const TextureImage>& of) {
     if (!of) refuse(to.where(), "the texture has no image");
-    to.file("filename", of->file, "the texture's image", stream);
+    to.file(field.name, of->file, "the texture's image", stream);
     to.text("encoding", encoding_name(of->encoding));
   }
   void mapping(const TextureMapping& of) {
-    choice("mapping", static_cast<int>(of.kind), texture_mapping_names);
-    if (of.kind == TextureMapping::Kind::uv) {
-      number("uscale", of.uscale);
-      number("vscale", of.vscale);
-    } else {
-      place(of.texture_from_world);
-    }
-    if (of.kind == TextureMapping::Kind::planar) {
-      to.vector("v1", of.v1);
-      to.vector("v2", of.v2);
-    }
-    if (of.kind == TextureMapping::Kind::uv || of.kind == TextureMapping::Kind::planar) {
-      number("udelta", of.udelta);
-      number("vdelta", of.vdelta);
-    }
+    choice(TextureMapping::kind_field, static_cast<int>(of.kind), texture_mapping_names);
+    if (of.kind != TextureMapping::Kind::uv) place(of.texture_from_world);
+    TextureMapping::fields(of, *this);
   }
   void board(const TextureMapping& of) {
     if (of.kind != TextureMapping::Kind::solid) return mapping(of);
-    to.whole("dimension", 3);
+    to.whole(TextureMapping::dimension_field.name, 3);
     place(of.texture_from_world);
   }
   void place(const glm::dmat4& inverse) {
     if ((texture_from_world && *texture_from_world != inverse) || is_turned) refuse(to.where(), "the texture has two places");
     texture_from_world = inverse;
   }
-  void direction(const char* name, const glm::dvec3& value) {
+  void direction(const Field& field, const glm::dvec3& value) {
     if (texture_from_world) refuse(to.where(), "the texture has two places");
     if (!is_unit(glm::length(value))) refuse(to.where(), "the texture's direction is not of unit length");
     is_turned = true;
-    to.vector(name, value);
+    to.vector(field.name, value);
   }
-  void count(const char* name, int value, int, int) { to.whole(name, value); }
-  void only(bool) {}
-  void colors() {}
-  void vectors(const std::shared_ptr<const TextureImage>&) {}
 };
 
 /// Writes what scene/materials.def visits.
-struct MaterialWriter {
+struct MaterialWriter : CompositesInParts<MaterialWriter> {
+  MaterialWriter(Statement& statement, const Material& of, const Names& all) : to(statement), material(of), names(all) {}
   Statement& to;
   const Material& material;
   const Names& names;
   bool said_remap = false;
 
-  void albedo(const char* name, const Spectrum& value) { spectrum(name, name, value); }
-  void unbounded(const char* name, const Spectrum& value) { spectrum(name, name, value); }
-  void index(const char* name, const Spectrum& value) { to.spectrum(name, value); }
-  void number(const char* name, double value, double, double) {
-    if (!textured(name, name)) to.number(name, value);
+  void albedo(const Field& field, const Spectrum& value) { spectrum(field, value); }
+  void unbounded(const Field& field, const Spectrum& value) { spectrum(field, value); }
+  void index(const Field& field, const Spectrum& value) { to.spectrum(field.name, value); }
+  void number(const Field& field, double value) {
+    if (!textured(field.name, field.name)) to.number(field.name, value);
   }
-  void whole(const char* name, int value, int, int) { to.whole(name, value); }
+  void integer(const Field& field, int value) { to.whole(field.name, value); }
   /// pbrt does not know them: they stand only where they are on.
-  void flag(const char* name, bool value) {
-    if (value) to.boolean(name, true);
+  void flag(const Field& field, bool value) {
+    if (value) to.boolean(field.name, true);
   }
-  void parts(const std::array<std::uint32_t, 2>& of) { to.texts("materials", {names.materials[of[0]], names.materials[of[1]]}); }
-  void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
-    spectrum(reflectance ? "reflectance" : "sigma_a", reflectance ? "reflectance" : "sigma_a", reflectance.value_or(sigma_a));
+  void parts(const Field& field, const std::array<std::uint32_t, 2>& of) {
+    to.texts(field.name, {names.materials[of[0]], names.materials[of[1]]});
   }
-  void roughness(double alpha_u, double alpha_v, const std::string& prefix = "") {
+  void roughness(const RoughnessFields& fields, double alpha_u, double alpha_v) {
     if (!said_remap) to.boolean("remaproughness", false);
     said_remap = true;
-    if (!textured(prefix + "uroughness", prefix + "alpha_u")) to.number(prefix + "uroughness", alpha_u);
-    if (!textured(prefix + "vroughness", prefix + "alpha_v")) to.number(prefix + "vroughness", alpha_v);
-  }
-  void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
-    if (reflectance) return spectrum("reflectance", "reflectance", *reflectance);
-    spectrum(prefix + "eta", prefix + "eta", eta);
-    spectrum(prefix + "k", prefix + "k", k);
+    if (!textured(fields.uroughness, fields.alpha_u.name)) to.number(fields.uroughness, alpha_u);
+    if (!textured(fields.vroughness, fields.alpha_v.name)) to.number(fields.vroughness, alpha_v);
   }
 
  private:
-  void spectrum(const std::string& name, const std::string& field, const Spectrum& value) {
-    if (!textured(name, field)) to.spectrum(name, value);
+  void spectrum(const Field& field, const Spectrum& value) {
+    if (!textured(field.name, field.name)) to.spectrum(field.name, value);
   }
   bool textured(const std::string& name, const std::string& field) {
     const auto texture = texture_of(material, field);
@@ -141,18 +125,16 @@ struct MediumWriter {
 
   template <class Preset>
   void scattering(const ScatteringProperties& of, Preset&&) {
-    to.spectrum("sigma_a", of.sigma_a);
-    to.spectrum("sigma_s", of.sigma_s);
-    to.number("scale", of.scale);
-    asymmetry(of.g);
+    ScatteringProperties::fields(of, *this);
   }
-  void asymmetry(double g) { to.number("g", g); }
-  void emission(const char* name, const std::optional<Spectrum>& radiance) {
-    if (radiance) to.spectrum(name, *radiance);
+  void unbounded(const Field& field, const Spectrum& value) { to.spectrum(field.name, value); }
+  void asymmetry(double g) { number(asymmetry_field, g); }
+  void emission(const Field& field, const std::optional<Spectrum>& radiance) {
+    if (radiance) to.spectrum(field.name, *radiance);
   }
-  void emission(const char* name, const std::optional<Spectrum>& radiance, double scale) {
-    emission(name, radiance);
-    to.number("Lescale", scale);
+  void emission(const Field& field, const std::optional<Spectrum>& radiance, double scale) {
+    emission(field, radiance);
+    number(radiance_scale_field, scale);
   }
   void bounds(const MediumBounds& of) {
     transform(to, of.world_from_medium);
@@ -160,12 +142,11 @@ struct MediumWriter {
     to.point("p1", of.p1);
   }
   void counts(const GridCounts& of) {
-    static constexpr const char* names[] = {"nx", "ny", "nz"};
-    for (std::size_t k = 0; k < 3; ++k) to.whole(names[k], of[k]);
+    for (std::size_t k = 0; k < 3; ++k) to.whole(grid_count_names[k], of[k]);
   }
-  void grid(const char* name, const FloatGrid& of, const GridCounts&, bool) { list("float", name, of, {}); }
-  void colors(const char* name, const ColorGrid& of, const GridCounts&) { list("rgb", name, of.rgb, of.space); }
-  void number(const char* name, double value, double, double) { to.number(name, value); }
+  void grid(const Field& field, const FloatGrid& of, const GridCounts&, bool) { list("float", field.name, of, {}); }
+  void grid(const Field& field, const ColorGrid& of, const GridCounts&) { list("rgb", field.name, of.rgb, of.space); }
+  void number(const Field& field, double value) { to.number(field.name, value); }
   void volume(const SparseGridPointer& density, const SparseGridPointer& temperature, const glm::dmat4& world_from_medium) {
     if (temperature && temperature->file != density->file)
       refuse(to.where(), "the medium's density and temperature are of different files");
@@ -191,18 +172,18 @@ struct LightWriter {
   std::string position_name = {};
   bool is_placed = false;
 
-  void emission(const char* name, const Spectrum& value) { to.spectrum(name, value); }
-  void position(const char* name, const glm::dvec3& value) {
+  void emission(const Field& field, const Spectrum& value) { to.spectrum(field.name, value); }
+  void position(const Field& field, const glm::dvec3& value) {
     position_ = value;
-    position_name = name;
+    position_name = field.name;
   }
-  void direction(const char*, const char* name, const glm::dvec3& value) {
+  void direction(const Field&, const Field& towards, const glm::dvec3& value) {
     if (!is_unit(glm::length(value))) refuse(to.where(), "the light's direction is not of unit length");
     transform(to, glm::translate(glm::dmat4(1), position_));
     is_placed = true;
-    to.point(name, value);
+    to.point(towards.name, value);
   }
-  void number(const char* name, double value, double, double) { to.number(name, value); }
+  void number(const Field& field, double value) { to.number(field.name, value); }
   void place(const glm::dvec3& at, const glm::dmat3& turn) {
     if (!is_unit(glm::length(turn[0]))) refuse(to.where(), "the light's rotation is not of unit length");
     glm::dmat4 matrix(turn);
@@ -210,31 +191,31 @@ struct LightWriter {
     transform(to, matrix);
     is_placed = true;
   }
-  void image(const char* name, const std::shared_ptr<const EnvironmentImage>& of) {
-    to.file(name, of->file, "the light's image", stream);
+  void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
+    to.file(field.name, of->file, "the light's image", stream);
   }
-  void directions(const char* name, const std::shared_ptr<const EnvironmentImage>& of) { image(name, of); }
-  void profile(const char* name, const std::shared_ptr<const IesProfile>& of) {
-    to.file(name, of->file, "the light's profile", stream);
+  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { image(field, of); }
+  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) {
+    to.file(field.name, of->file, "the light's profile", stream);
   }
   void cone(double total_angle, double falloff_start_angle) {
     const double cone = degrees_of(total_angle);
-    to.number("coneangle", cone);
-    to.number("conedeltaangle", degrees_below(cone, std::min(falloff_start_angle, total_angle)));
+    to.number(SpotLight::cone_field.name, cone);
+    to.number(SpotLight::delta_field.name, degrees_below(cone, std::min(falloff_start_angle, total_angle)));
   }
   void sky(const InfiniteLight& light) {
     if (light.image) {
       place(glm::dvec3(0), light.world_from_light);
       if (light.image->preset.empty())
-        image("filename", light.image);
+        image(InfiniteLight::image_field, light.image);
       else
-        to.text("preset", light.image->preset);
+        to.text(InfiniteLight::preset_field.name, light.image->preset);
     } else {
-      emission("L", light.radiance);
+      emission(InfiniteLight::radiance_field, light.radiance);
     }
     if (!light.portal) return;
     const LightPortal& p = *light.portal;
-    to.numbers("point3", "portal",
+    to.numbers("point3", InfiniteLight::portal_field.name,
                {p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z, p[3].x, p[3].y, p[3].z});
   }
   void finish() {
@@ -265,7 +246,7 @@ std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t tex
   Statement out("Texture " + quoted(names.textures[texture], where) + (is_float ? " \"float\" \"" : " \"spectrum\" \"") +
                     texture_class + "\"",
                 "texture", where);
-  TextureWriter writer{out, names, stream, is_float};
+  TextureWriter writer(out, names, stream, is_float);
   std::visit([&](const auto& m) { m.fields(m, writer); }, model);
   if (writer.texture_from_world && *writer.texture_from_world != glm::dmat4(1))
     out.within(inverse_text(*writer.texture_from_world));
@@ -280,7 +261,7 @@ Statement material_statement(const Scene& scene, std::uint32_t material, const N
   };
   Statement out("MakeNamedMaterial " + quoted(names.materials[material], where), "material", where);
   out.text("type", types[model.index()]);
-  MaterialWriter writer{out, scene.materials[material], names};
+  MaterialWriter writer(out, scene.materials[material], names);
   std::visit([&](const auto& m) { m.fields(m, writer); }, model);
   if (displacement) out.texture("displacement", names.textures[*displacement]);
   if (normalmap)

@@ -147,15 +147,16 @@ class SceneWriter {
                               : "Camera \"orthographic\"",
                   nullptr, where);
     if (perspective) out.number("fov", degrees_of(perspective->fov));
-    if (spherical && spherical->mapping == SphericalProjection::Mapping::equirectangular) out.text("mapping", "equirectangular");
+    if (spherical)
+      out.text(SphericalProjection::mapping_field.name,
+               SphericalProjection::mapping_names[static_cast<std::size_t>(spherical->mapping)]);
     if (frame_aspect_ratio) out.number("frameaspectratio", *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;
       out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});
     }
-    if (lens_radius != 0) out.number("lensradius", lens_radius);
-    if (lens_radius != 0 && is_orthographic(camera)) out.boolean("parallellens", true);
-    out.number("focaldistance", focal_distance);
+    Camera::fields(camera, OptionWriter{out});
+    if (lens_radius != 0 && is_orthographic(camera)) out.boolean(Camera::parallel_lens_field.name, true);
     if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
@@ -170,16 +171,12 @@ class SceneWriter {
                  least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
-    out.whole("xresolution", width);
-    out.whole("yresolution", height);
+    FilmSettings::fields(film, OptionWriter{out});
     if (crop) {
       const auto& c = *crop;
       out.list("integer", "pixelbounds", c.size(), [&c](Text& text, std::size_t i) { text << std::int64_t{c[i]}; });
     }
     out.text("filename", filename);
-    if (iso != 100) out.number("iso", iso);
-    if (max_component_value != 0) out.number("maxcomponentvalue", max_component_value);
-    if (white_balance != 0) out.number("whitebalance", white_balance);
     if (backdrop) {
       static constexpr const char* kinds[] = {"transparent", "color", "image"};
       out.text("background", kinds[static_cast<std::size_t>(backdrop->kind)]);
@@ -187,52 +184,39 @@ class SceneWriter {
       if (backdrop->kind == Backdrop::Kind::color) out.numbers("float", "backgroundcolor", {c.x, c.y, c.z});
       if (backdrop->kind == Backdrop::Kind::image) out.file("backgroundfile", backdrop->image->file, "the backdrop", stream_);
     }
-    if (least_width != 0) out.number("leastwidth", least_width);
+    out.write(stream_);
+  }
+
+  /// Writes what options' `fields` visit.
+  struct OptionWriter {
+    Statement& to;
+    void number(const Field& field, double value) {
+      if (std::isfinite(value)) to.number(field.name, value);
+    }
+    void integer(const Field& field, int value) { to.whole(field.name, value); }
+    void flag(const Field& field, bool value) { to.boolean(field.name, value); }
+    void seed(const Field& field, std::uint32_t value) {
+      if (value != 0) to.whole(field.name, static_cast<std::int32_t>(value));
+    }
+  };
+  template <class Options>
+  void write_option(const char* directive, const char* type, const Options& options) {
+    const SourceLocation where{here()};
+    Statement out(std::string(directive) + " \"" + type + "\"", nullptr, where);
+    Options::fields(options, OptionWriter{out});
     out.write(stream_);
   }
 
   void write_filter(const PixelFilter& filter) {
-    const auto& [kind, radius_x, radius_y, sigma, b, c, tau] = filter;
-    static constexpr const char* types[] = {"box", "triangle", "gaussian", "mitchell", "sinc"};
-    const SourceLocation where{here()};
-    Statement out(std::string("PixelFilter \"") + types[static_cast<std::size_t>(kind)] + "\"", nullptr, where);
-    out.number("xradius", radius_x);
-    out.number("yradius", radius_y);
-    if (kind == PixelFilter::Kind::gaussian) out.number("sigma", sigma);
-    if (kind == PixelFilter::Kind::mitchell) {
-      out.number("B", b);
-      out.number("C", c);
-    }
-    if (kind == PixelFilter::Kind::sinc) out.number("tau", tau);
-    out.write(stream_);
+    write_option("PixelFilter", filter_names[static_cast<std::size_t>(filter.kind)], filter);
   }
 
-  void write_sampler(const SamplerSettings& sampler, const IntegratorSettings& integrator) {
-    const auto& [sampler_kind, samples_per_pixel, seed, x_strata, y_strata, jitter] = sampler;
-    const auto& [integrator_kind, max_depth, max_distance, cosine_sample, sample_bsdf, sample_lights] = integrator;
-    const SourceLocation where{here()};
-    Statement samples("Sampler " + quoted(sampler_names[static_cast<std::size_t>(sampler_kind)], where), nullptr, where);
-    if (sampler_kind == SamplerSettings::Kind::stratified) {
-      const std::array<int, 2> strata = strata_of(sampler);
-      samples.whole("xsamples", strata[0]);
-      samples.whole("ysamples", strata[1]);
-      if (!jitter) samples.boolean("jitter", false);
-    } else {
-      samples.whole("pixelsamples", samples_per_pixel);
-    }
-    if (seed != 0) samples.whole("seed", static_cast<std::int32_t>(seed));
-    samples.write(stream_);
-    Statement paths("Integrator " + quoted(integrator_names[static_cast<std::size_t>(integrator_kind)], where), nullptr, where);
-    paths.whole("maxdepth", max_depth);
-    if (integrator_kind == IntegratorSettings::Kind::ambient_occlusion) {
-      if (!cosine_sample) paths.boolean("cossample", false);
-      if (std::isfinite(max_distance)) paths.number("maxdistance", max_distance);
-    }
-    if (integrator_kind == IntegratorSettings::Kind::simple_path) {
-      if (!sample_bsdf) paths.boolean("samplebsdf", false);
-      if (!sample_lights) paths.boolean("samplelights", false);
-    }
-    paths.write(stream_);
+  void write_sampler(SamplerSettings sampler, const IntegratorSettings& integrator) {
+    const std::array<int, 2> strata = strata_of(sampler);
+    sampler.x_strata = strata[0];
+    sampler.y_strata = strata[1];
+    write_option("Sampler", sampler_names[static_cast<std::size_t>(sampler.kind)], sampler);
+    write_option("Integrator", integrator_names[static_cast<std::size_t>(integrator.kind)], integrator);
   }
 
   // --- Shapes ---

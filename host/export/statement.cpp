@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t longest_line = 120;
 constexpr std::size_t few_values = 8;              // of a list: on the line of others
 constexpr std::size_t values_at_a_time = 1 << 14;  // between looks whether to go on
-constexpr std::array<const char*, 4> space_names = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
 /// What scene files call these samples; empty: nothing.
 std::string name_of(const SampledSpectrum& spectrum) {
@@ -50,7 +49,7 @@ std::string name_from(const fs::path& folder, const std::string& file) {
 
 void set_space(Stream& stream, ColorSpace space) {
   if (std::exchange(stream.space, space) != space)
-    stream.text << "ColorSpace \"" << space_names[static_cast<std::size_t>(space)] << "\"\n";
+    stream.text << "ColorSpace \"" << color_space_names[static_cast<std::size_t>(space)] << "\"\n";
 }
 
 void Statement::finite(double value, const std::string& name) const {

@@ -91,10 +91,7 @@ void Parser::color_space() {
   const SourceLocation place = lexer_->place(lexer_->peek());
   const std::string name = string_argument("a name");
   if (!check_name("ColorSpace", name, place, diagnostics_)) return;
-  state_.space = name == "srgb"      ? ColorSpace::srgb
-                 : name == "dci-p3"  ? ColorSpace::dci_p3
-                 : name == "rec2020" ? ColorSpace::rec2020
-                                     : ColorSpace::aces2065_1;
+  state_.space = static_cast<ColorSpace>(std::ranges::find(color_space_names, name) - color_space_names.begin());
 }
 
 // --- Transforms ---

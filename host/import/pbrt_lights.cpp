@@ -11,6 +11,7 @@
 #include "base/reading.h"
 #include "base/spelling.h"
 #include "import/detail/ies.h"
+#include "import/detail/pbrt_fields.h"
 #include "present/lights.h"
 #include "scene/transform.h"
 
@@ -66,43 +67,32 @@ std::string size_of(Parameters& parameters, const char* name, const EnvironmentI
 }
 
 /// Reads what scene/lights.def visits.
-struct LightReader {
-  Parameters& parameters;
+struct LightReader : FieldReader {
   const glm::dmat4& world_from_light;
   LightFiles& files;
 
-  void emission(const char* name, Spectrum& value) { value = white(parameters, name); }
-  void position(const char* name, glm::dvec3& value) {
-    value = glm::dvec3(world_from_light * glm::dvec4(parameters.point(name, glm::dvec3(0)), 1));
+  void emission(const Field& field, Spectrum& value) { value = white(parameters, field.name); }
+  void position(const Field& field, glm::dvec3& value) {
+    value = glm::dvec3(world_from_light * glm::dvec4(parameters.point(field.name, glm::dvec3(0)), 1));
   }
   void place(glm::dvec3& position, glm::dmat3& rotation) {
     position = glm::dvec3(world_from_light[3]);
     rotation = rotation_of(parameters, world_from_light);
   }
-  void image(const char* name, std::shared_ptr<const EnvironmentImage>& value) {
-    if (parameters.has(name))
-      value = files.image(parameters, name);
-    else
-      parameters.error("\"string " + std::string(name) + "\" is missing");
+  void image(const Field& field, std::shared_ptr<const EnvironmentImage>& value) {
+    if (is_there(field)) value = files.image(parameters, field.name);
   }
-  void directions(const char* name, std::shared_ptr<const EnvironmentImage>& value) {
-    image(name, value);
+  void directions(const Field& field, std::shared_ptr<const EnvironmentImage>& value) {
+    image(field, value);
     if (value && value->width != value->height)
-      parameters.error(name, size_of(parameters, name, *value) + ", and not square (equal-area)");
+      parameters.error(field.name, size_of(parameters, field.name, *value) + ", and not square (equal-area)");
   }
-  void profile(const char* name, std::shared_ptr<const IesProfile>& value) {
-    if (parameters.has(name))
-      value = files.profile(parameters, name);
-    else
-      parameters.error("\"string " + std::string(name) + "\" is missing");
+  void profile(const Field& field, std::shared_ptr<const IesProfile>& value) {
+    if (is_there(field)) value = files.profile(parameters, field.name);
   }
-  void direction(const char* from, const char* to, glm::dvec3& value) {
-    value = pbrt::direction(parameters, parameters.point(from, glm::dvec3(0)), parameters.point(to, glm::dvec3(0, 0, 1)),
-                            world_from_light);
-  }
-  void number(const char* name, double& value, double low, double high) {
-    value = parameters.number(name, value);
-    if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
+  void direction(const Field& from, const Field& to, glm::dvec3& value) {
+    value = pbrt::direction(parameters, parameters.point(from.name, glm::dvec3(0)),
+                            parameters.point(to.name, glm::dvec3(0, 0, 1)), world_from_light);
   }
   void cone(double& total_angle, double& falloff_start_angle) {
     const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
@@ -133,6 +123,12 @@ struct LightReader {
     if (const Parameter* corners = parameters.values("portal", {"point3"})) portal(light, *corners);
   }
 
+ private:
+  bool is_there(const Field& field) {
+    if (parameters.has(field.name)) return true;
+    parameters.error("\"string " + std::string(field.name) + "\" is missing");
+    return false;
+  }
   // Whether it is a rectangle is for validation to say.
   void portal(InfiniteLight& light, const Parameter& corners) {
     if (corners.numbers.size() != 12) return parameters.error("portal", "must be four points");
@@ -188,7 +184,7 @@ std::optional<Light> make_light(const std::string& type, Parameters& parameters,
     if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power");                   \
     if (Type::unit == LightUnit::illuminance) light.illuminance = positive_or_none(parameters, "illuminance"); \
     Type model;                                                                                                \
-    Type::fields(model, LightReader{parameters, world_from_light, files});                                     \
+    Type::fields(model, LightReader{{parameters}, world_from_light, files});                                   \
     light.model = std::move(model);                                                                            \
   }
 #include "scene/lights.def"

@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "base/spelling.h"
+#include "import/detail/pbrt_fields.h"
 #include "import/detail/pbrt_subsurface.h"
 #include "scene/transform.h"
 
@@ -93,12 +94,6 @@ std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene&
   return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
-/// Absorption of hair per radius by the concentrations of its pigments (Chiang et al. 2016; d'Eon et al. 2011), by sRGB
-/// components.
-Spectrum melanin(double eumelanin, double pheomelanin) {
-  return RgbSpectrum{eumelanin * glm::dvec3(0.419, 0.697, 1.37) + pheomelanin * glm::dvec3(0.187, 0.4, 1.05), ColorSpace::srgb};
-}
-
 /// Amounts of pigments by texture, each replaced by its number where there is none.
 std::uint32_t melanin_texture(const TextureOperand& eumelanin, const TextureOperand& pheomelanin, const SourceLocation& where,
                               Scene& scene) {
@@ -116,22 +111,22 @@ std::uint32_t melanin_texture(const TextureOperand& eumelanin, const TextureOper
     return add(product);
   };
   MixTexture sum;
-  sum.tex1.texture = twice(melanin(1, 0), eumelanin);
-  sum.tex2.texture = twice(melanin(0, 1), pheomelanin);
+  sum.tex1.texture = twice(HairMaterial::melanin(1, 0), eumelanin);
+  sum.tex2.texture = twice(HairMaterial::melanin(0, 1), pheomelanin);
   return add(sum);
 }
 
 /// Reads what scene/materials.def visits.
-struct MaterialReader {
-  Parameters& parameters;
+struct MaterialReader : FieldReader {
   const TextureTable& textures;
   const PartFinder& part_named;
   Material& material;
   Scene& scene;
 
-  void albedo(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::albedo, value); }
-  void unbounded(const char* name, Spectrum& value) { spectrum(name, SpectrumUse::unbounded, value); }
-  void index(const char* name, Spectrum& value) {
+  void albedo(const Field& field, Spectrum& value) { spectrum(field, SpectrumUse::albedo, value); }
+  void unbounded(const Field& field, Spectrum& value) { spectrum(field, SpectrumUse::unbounded, value); }
+  void index(const Field& field, Spectrum& value) {
+    const char* const name = field.name;
     const Parameter* given = parameters.values(name, {"float", "spectrum", "rgb", "blackbody"});
     if (given && given->type == "float")
       value = ConstantSpectrum{parameters.number(name, std::get<ConstantSpectrum>(value).value)};
@@ -140,23 +135,18 @@ struct MaterialReader {
     if (const auto* constant = std::get_if<ConstantSpectrum>(&value); constant && constant->value <= 0)
       parameters.error(name, "must be positive");
   }
-  void number(const char* name, double& value, double low, double high) {
-    if (textured(name, name, true)) return;
-    value = parameters.number_or_texture(name, value, textures);
-    if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
+  void number(const Field& field, double& value) {
+    if (textured(field.name, field.name, true)) return;
+    value = parameters.number_or_texture(field.name, value, textures);
+    check(field, value);
   }
-  void flag(const char* name, bool& value) { value = parameters.boolean(name, value); }
-  void whole(const char* name, int& value, int low, int high) {
-    value = parameters.integer(name, value);
-    if (value < low || value > high)
-      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
-  }
-  void parts(std::array<std::uint32_t, 2>& materials) {
-    const Parameter* given = parameters.values("materials", {"string"});
+  void parts(const Field& field, std::array<std::uint32_t, 2>& materials) {
+    const char* const name = field.name;
+    const Parameter* given = parameters.values(name, {"string"});
     if (!given || given->strings.size() != 2) {
-      if (given || !parameters.has("materials"))
-        parameters.error("materials", given ? "takes the names of 2 materials, not of " + std::to_string(given->strings.size())
-                                            : "is missing");
+      if (given || !parameters.has(name))
+        parameters.error(
+            name, given ? "takes the names of 2 materials, not of " + std::to_string(given->strings.size()) : "is missing");
       return;
     }
     for (std::size_t i = 0; i < 2; ++i) {
@@ -164,10 +154,10 @@ struct MaterialReader {
       if (const auto found = part_named(given->strings[i], problem))
         materials[i] = *found;
       else
-        parameters.error("materials", problem);
+        parameters.error(name, problem);
     }
   }
-  void pigment(Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields& fields, Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
     const char* const color = parameters.has("reflectance") ? "reflectance" : "color";
     const bool has_color = parameters.has(color), has_melanin = parameters.has("eumelanin") || parameters.has("pheomelanin");
     if (parameters.has("sigma_a") + has_color + has_melanin > 1)
@@ -175,12 +165,12 @@ struct MaterialReader {
     if (has_color) {
       Spectrum value = ConstantSpectrum{0.5};
       if (const auto texture = parameters.texture(color, false, textures))
-        material.textures.push_back({"reflectance", *texture});
+        material.textures.push_back({fields.reflectance.name, *texture});
       else if (auto given = parameters.spectrum(color, SpectrumUse::albedo, &textures))
         value = *std::move(given);
       reflectance = value;
     } else if (parameters.has("sigma_a")) {
-      unbounded("sigma_a", sigma_a);
+      unbounded(fields.sigma_a, sigma_a);
     } else {
       const auto amount = [&](const char* name, double fallback) {
         TextureOperand operand = 0;
@@ -190,50 +180,57 @@ struct MaterialReader {
         operand.value = ConstantSpectrum{std::max(value, 0.0)};
         return operand;
       };
-      const TextureOperand eumelanin = amount("eumelanin", has_melanin ? 0 : 1.3), pheomelanin = amount("pheomelanin", 0);
+      const TextureOperand eumelanin = amount("eumelanin", has_melanin ? 0 : HairMaterial::eumelanin),
+                           pheomelanin = amount("pheomelanin", 0);
       if (eumelanin.texture || pheomelanin.texture)
-        material.textures.push_back({"sigma_a", melanin_texture(eumelanin, pheomelanin, parameters.where(), scene)});
+        material.textures.push_back({fields.sigma_a.name, melanin_texture(eumelanin, pheomelanin, parameters.where(), scene)});
       else
-        sigma_a = melanin(std::get<ConstantSpectrum>(eumelanin.value).value, std::get<ConstantSpectrum>(pheomelanin.value).value);
+        sigma_a = HairMaterial::melanin(std::get<ConstantSpectrum>(eumelanin.value).value,
+                                        std::get<ConstantSpectrum>(pheomelanin.value).value);
     }
   }
-  void roughness(double& alpha_u, double& alpha_v, const char* prefix = "") {
-    const char* const both_name = named(prefix, "roughness");
-    const auto texture = parameters.texture(both_name, true, textures);
-    const double both = texture ? 0 : parameters.number_or_texture(both_name, 0, textures);
+  void roughness(const RoughnessFields& fields, double& alpha_u, double& alpha_v) {
+    if (parameters.has(fields.alpha_u.name) || parameters.has(fields.alpha_v.name)) {
+      for (const char* other : {fields.roughness, fields.uroughness, fields.vroughness})
+        if (parameters.has(other)) parameters.error(other, "cannot be combined with " + in_quotes(fields.alpha_u.name));
+      number(fields.alpha_u, alpha_u);
+      number(fields.alpha_v, alpha_v);
+      parameters.boolean("remaproughness", true);
+      return;
+    }
+    const auto texture = parameters.texture(fields.roughness, true, textures);
+    const double both = texture ? 0 : parameters.number_or_texture(fields.roughness, 0, textures);
     const bool remap = parameters.boolean("remaproughness", true);
     const auto alpha = [&](const char* name, const char* field, double& value) {
       const auto own = parameters.texture(name, true, textures);
       if (const auto used = own || parameters.has(name) ? own : texture)
-        material.textures.push_back({field, remap ? root_of(*used, parameters.where(own ? name : both_name), scene) : *used});
+        material.textures.push_back(
+            {field, remap ? root_of(*used, parameters.where(own ? name : fields.roughness), scene) : *used});
       else
-        value = alpha_from_roughness(parameters, parameters.has(name) ? name : both_name,
+        value = alpha_from_roughness(parameters, parameters.has(name) ? name : fields.roughness,
                                      parameters.number_or_texture(name, both, textures), remap);
     };
-    alpha(named(prefix, "uroughness"), named(prefix, "alpha_u"), alpha_u);
-    alpha(named(prefix, "vroughness"), named(prefix, "alpha_v"), alpha_v);
+    alpha(fields.uroughness, fields.alpha_u.name, alpha_u);
+    alpha(fields.vroughness, fields.alpha_v.name, alpha_v);
   }
-  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance, const char* prefix = "") {
-    const char *const eta_name = named(prefix, "eta"), *const k_name = named(prefix, "k");
+  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
+    const char *const eta_name = fields.eta.name, *const k_name = fields.k.name;
     const bool has_indices = parameters.has(eta_name) || parameters.has(k_name);
-    if (parameters.has("reflectance")) {
+    if (parameters.has(fields.reflectance.name)) {
       if (has_indices)
-        parameters.error("reflectance", "cannot be combined with " + in_quotes(eta_name) + " or " + in_quotes(k_name));
+        parameters.error(fields.reflectance.name, "cannot be combined with " + in_quotes(eta_name) + " or " + in_quotes(k_name));
       reflectance = ConstantSpectrum{0.5};
-      albedo("reflectance", *reflectance);
+      albedo(fields.reflectance, *reflectance);
     } else {
-      eta = named_spectrum("metal-Cu-eta").value_or(ConstantSpectrum{1});
-      k = named_spectrum("metal-Cu-k").value_or(ConstantSpectrum{1});
-      unbounded(eta_name, eta);
-      unbounded(k_name, k);
+      unbounded(fields.eta, eta);
+      unbounded(fields.k, k);
     }
   }
 
-  const char* named(const char* prefix, const char* name) { return *prefix ? parameters.kept(prefix + std::string(name)) : name; }
-
-  void spectrum(const char* name, SpectrumUse use, Spectrum& value) {
-    if (textured(name, name, false)) return;
-    if (auto given = parameters.spectrum(name, use, &textures)) value = *std::move(given);
+ private:
+  void spectrum(const Field& field, SpectrumUse use, Spectrum& value) {
+    if (textured(field.name, field.name, false)) return;
+    if (auto given = parameters.spectrum(field.name, use, &textures)) value = *std::move(given);
   }
   bool textured(const char* name, const char* field, bool is_float) {
     const auto texture = parameters.texture(name, is_float, textures);
@@ -243,64 +240,41 @@ struct MaterialReader {
 };
 
 /// Reads what scene/textures.def visits.
-struct TextureReader {
-  Parameters& parameters;
+struct TextureReader : FieldReader {
   const TextureTable& textures;
   const TextureContext& context;
   bool is_float;
   std::string& refusal;
   bool& failed;  // reported
 
-  void operand(const char* name, TextureOperand& of) {
-    if (is_float) return factor(name, of);
+  void operand(const Field& field, TextureOperand& of) {
+    if (is_float) return factor(field, of);
     const double fallback = std::get<ConstantSpectrum>(of.value).value;
-    if (of.texture = parameters.texture(name, false, textures); !of.texture)
-      of.value = texture_argument(parameters, name, fallback, textures, refusal);
+    if (of.texture = parameters.texture(field.name, false, textures); !of.texture)
+      of.value = texture_argument(parameters, field.name, fallback, textures, refusal);
   }
-  void factor(const char* name, TextureOperand& of) {
+  void factor(const Field& field, TextureOperand& of) {
     const double fallback = std::get<ConstantSpectrum>(of.value).value;
-    if (of.texture = parameters.texture(name, true, textures); !of.texture)
-      of.value = ConstantSpectrum{float_argument(parameters, name, fallback, textures, refusal)};
+    if (of.texture = parameters.texture(field.name, true, textures); !of.texture)
+      of.value = ConstantSpectrum{float_argument(parameters, field.name, fallback, textures, refusal)};
   }
-  void number(const char* name, double& value) { value = parameters.number(name, value); }
-  void flag(const char* name, int& value) { value = parameters.boolean(name, value != 0) ? 1 : 0; }
-  template <class Names>
-  void choice(const char* name, int& value, const Names& names) {
-    const std::string given = parameters.text(name, names[static_cast<std::size_t>(value)]);
-    const auto found = std::find(names.begin(), names.end(), given);
-    if (found != names.end()) {
-      value = static_cast<int>(found - names.begin());
-      return;
-    }
-    parameters.error(name, "is " + in_quotes(given) + "; the nearest known name is \"" +
-                               nearest_name(given, std::vector<std::string>(names.begin(), names.end())) + "\"");
-  }
-  void image(std::shared_ptr<const TextureImage>& image) {
+  void image(const Field& field, std::shared_ptr<const TextureImage>& image) {
     const ImageEncoding encoding = image_encoding(parameters);
-    if (!parameters.has("filename")) return error("\"string filename\" is missing");
+    if (context.needs_files && !parameters.has(field.name)) return error("\"string filename\" is missing");
     std::string problem;
-    image = context.images(parameters, "filename", encoding, problem);
+    image = context.images(parameters, field.name, encoding, problem);
     if (!image && refusal.empty())
       refusal = "Texture \"imagemap\" (" + parameters.where().to_string() + "), whose image cannot be had: " + problem;
   }
+  void vectors(const Field& field, std::shared_ptr<const TextureImage>& of) { image(field, of); }
   void mapping(TextureMapping& value) {
     int kind = 0;
-    choice("mapping", kind, texture_mapping_names);
+    choice(TextureMapping::kind_field, kind, texture_mapping_names);
     value.kind = static_cast<TextureMapping::Kind>(kind);
     value.texture_from_world = context.texture_from_world;
-    if (value.kind == TextureMapping::Kind::uv) {
-      number("uscale", value.uscale);
-      number("vscale", value.vscale);
-    }
-    if (value.kind == TextureMapping::Kind::planar) {
-      value.v1 = parameters.vector("v1", value.v1);
-      value.v2 = parameters.vector("v2", value.v2);
-    }
-    if (value.kind == TextureMapping::Kind::uv || value.kind == TextureMapping::Kind::planar) {
-      number("udelta", value.udelta);
-      number("vdelta", value.vdelta);
-    }
+    TextureMapping::fields(value, *this);
   }
+  void vector(const Field& field, glm::dvec3& value) { value = parameters.vector(field.name, value); }
   void board(TextureMapping& value) {
     const int dimension = parameters.integer("dimension", 2);
     if (dimension != 2 && dimension != 3) parameters.error("dimension", "must be 2 or 3");
@@ -309,23 +283,19 @@ struct TextureReader {
     value.texture_from_world = context.texture_from_world;
   }
   void place(glm::dmat4& value) { value = context.texture_from_world; }
-  void direction(const char* name, glm::dvec3& value) {
-    const glm::dvec3 turned(context.world_from_texture * glm::dvec4(parameters.vector(name, value), 0));
+  void direction(const Field& field, glm::dvec3& value) {
+    const glm::dvec3 turned(context.world_from_texture * glm::dvec4(parameters.vector(field.name, value), 0));
     if (const double length = glm::length(turned); length > 0)
       value = is_unit(length) ? turned : glm::normalize(turned);
     else
-      parameters.error(name, "is no direction");
-  }
-  void count(const char* name, int& value, int low, int high) {
-    value = parameters.integer(name, value);
-    if (value < low || value > high)
-      parameters.error(name, "must lie between " + std::to_string(low) + " and " + std::to_string(high));
+      parameters.error(field.name, "is no direction");
   }
   void only(bool floats) {
     if (is_float != floats) error(std::string("is a texture of ") + (floats ? "floats" : "spectra") + " alone");
   }
   void colors() {}
-  void vectors(std::shared_ptr<const TextureImage>&) {}
+
+ private:
   void error(const std::string& message) {
     parameters.error(message);
     failed = true;
@@ -376,18 +346,18 @@ TextureValue make_texture(const std::string& name, const std::string& kind, cons
     else
       value.spectrum = texture_argument(parameters, "value", 1, textures, value.refusal);
   }
-#define TEXTURE_MODEL(type, Type)                                                                             \
-  if (texture_class == #type) {                                                                               \
-    known = true;                                                                                             \
-    Type model;                                                                                               \
-    Type::fields(model, TextureReader{parameters, textures, context, value.is_float, value.refusal, failed}); \
-    if (const auto constant = folded(model)) {                                                                \
-      value.spectrum = *constant;                                                                             \
-      if (value.is_float) value.number = std::get<ConstantSpectrum>(*constant).value;                         \
-    } else if (value.refusal.empty() && !failed) {                                                            \
-      value.texture = static_cast<std::uint32_t>(scene.textures.size());                                      \
-      scene.textures.push_back({std::move(model), value.is_float, name, parameters.where()});                 \
-    }                                                                                                         \
+#define TEXTURE_MODEL(type, Type)                                                                               \
+  if (texture_class == #type) {                                                                                 \
+    known = true;                                                                                               \
+    Type model;                                                                                                 \
+    Type::fields(model, TextureReader{{parameters}, textures, context, value.is_float, value.refusal, failed}); \
+    if (const auto constant = folded(model)) {                                                                  \
+      value.spectrum = *constant;                                                                               \
+      if (value.is_float) value.number = std::get<ConstantSpectrum>(*constant).value;                           \
+    } else if (value.refusal.empty() && !failed) {                                                              \
+      value.texture = static_cast<std::uint32_t>(scene.textures.size());                                        \
+      scene.textures.push_back({std::move(model), value.is_float, name, parameters.where()});                   \
+    }                                                                                                           \
   }
 #define OWN_TEXTURE_MODEL(name, Type)
 #include "scene/textures.def"
@@ -425,22 +395,57 @@ Material make_material(const std::string& type, Parameters& parameters, const Te
   Material material;
   material.where = parameters.where();
   read_bump(parameters, textures, images, material, scene);
-#define MATERIAL_MODEL(name, Type)                                                          \
-  if (type == #name) {                                                                      \
-    Type model;                                                                             \
-    Type::fields(model, MaterialReader{parameters, textures, part_named, material, scene}); \
-    material.model = std::move(model);                                                      \
+#define MATERIAL_MODEL(name, Type)                                                            \
+  if (type == #name) {                                                                        \
+    Type model;                                                                               \
+    Type::fields(model, MaterialReader{{parameters}, textures, part_named, material, scene}); \
+    material.model = std::move(model);                                                        \
   }
 #include "scene/materials.def"
   if (type == "subsurface") {
     DielectricMaterial boundary;
     boundary.eta = ConstantSpectrum{1.33};
-    DielectricMaterial::fields(boundary, MaterialReader{parameters, textures, part_named, material, scene});
+    DielectricMaterial::fields(boundary, MaterialReader{{parameters}, textures, part_named, material, scene});
     within = subsurface_medium(parameters, textures, scene, boundary.eta);
     material.model = std::move(boundary);
   }
   parameters.finish();
   return material;
+}
+
+Material make_program_material(const std::string& type, Parameters& parameters, const TextureTable& textures,
+                               const PartFinder& part_named) {
+  Material material;
+  Scene more;
+#define MATERIAL_MODEL(name, Type)                                                           \
+  if (type == #name) {                                                                       \
+    Type model;                                                                              \
+    Type::fields(model, MaterialReader{{parameters}, textures, part_named, material, more}); \
+    material.model = std::move(model);                                                       \
+  }
+#include "scene/materials.def"
+  // Roots and mixes of textures, which the scene would have to take.
+  if (!more.textures.empty()) parameters.error("takes textures as \"alpha_u\", \"alpha_v\" and \"sigma_a\" alone");
+  parameters.finish();
+  return material;
+}
+
+std::optional<Texture> make_program_texture(const std::string& texture_class, bool is_float, Parameters& parameters,
+                                            const TextureTable& textures, const TextureContext& context) {
+  Texture out;
+  out.is_float = is_float;
+  std::string refusal;
+  bool failed = false;
+#define TEXTURE_MODEL(type, Type)                                                                   \
+  if (texture_class == #type) {                                                                     \
+    Type model;                                                                                     \
+    Type::fields(model, TextureReader{{parameters}, textures, context, is_float, refusal, failed}); \
+    out.model = std::move(model);                                                                   \
+  }
+#include "scene/textures.def"
+  if (!refusal.empty()) parameters.error(refusal);
+  parameters.finish();
+  return failed || !refusal.empty() ? std::nullopt : std::optional(std::move(out));
 }
 
 }  // namespace caplet::pbrt

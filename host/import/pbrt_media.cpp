@@ -10,14 +10,14 @@
 
 #include "base/spelling.h"
 #include "import/detail/nanovdb.h"
+#include "import/detail/pbrt_fields.h"
 
 namespace caplet::pbrt {
 
 namespace {
 
 /// Reads what scene/media.def visits.
-struct MediumReader {
-  Parameters& parameters;
+struct MediumReader : FieldReader {
   const glm::dmat4& world_from_medium;
 
   template <class Preset>
@@ -46,14 +46,13 @@ struct MediumReader {
     constexpr double most = ScatteringProperties::most_asymmetry;
     g = std::clamp(g, -most, most);
   }
-  void emission(const char* name, std::optional<Spectrum>& radiance, double& scale) {
-    radiance = parameters.spectrum(name, SpectrumUse::illuminant);
+  void emission(const Field& field, std::optional<Spectrum>& radiance, double& scale) {
+    emission(field, radiance);
     scale = parameters.number("Lescale", scale);
     if (scale < 0) parameters.error("Lescale", "must not be negative");
   }
-
-  void emission(const char* name, std::optional<Spectrum>& radiance) {
-    radiance = parameters.spectrum(name, SpectrumUse::illuminant);
+  void emission(const Field& field, std::optional<Spectrum>& radiance) {
+    radiance = parameters.spectrum(field.name, SpectrumUse::illuminant);
   }
   void volume(SparseGridPointer& density, SparseGridPointer& temperature, glm::dmat4& place) {
     place = world_from_medium;
@@ -67,13 +66,12 @@ struct MediumReader {
       add_errors(problem, parameters.where("filename"), parameters.diagnostics());
     }
   }
-  void number(const char* given, double& value, double low, double high) {
+  void number(Field field, double& value) {
     // Older names that pbrt-v4 knows.
-    const std::string_view asked = given;
-    const char* const older = asked == "temperatureoffset" ? "temperaturecutoff" : asked == "Lescale" ? "LeScale" : given;
-    const char* const name = older != given && !parameters.has(given) && parameters.has(older) ? older : given;
-    value = parameters.number(name, value);
-    if (!(value >= low && value <= high)) parameters.error(name, must_lie_within(low, high));
+    const std::string_view asked = field.name;
+    const char* const older = asked == "temperatureoffset" ? "temperaturecutoff" : asked == "Lescale" ? "LeScale" : field.name;
+    if (older != field.name && !parameters.has(field.name) && parameters.has(older)) field.name = older;
+    FieldReader::number(field, value);
   }
   void bounds(MediumBounds& of) {
     const glm::dvec3 p0 = parameters.point("p0", of.p0), p1 = parameters.point("p1", of.p1);
@@ -82,24 +80,24 @@ struct MediumReader {
       if (of.p0[k] == of.p1[k]) return parameters.error(parameters.has("p1") ? "p1" : "p0", "makes the medium's box flat");
   }
   void counts(GridCounts& of) {
-    static constexpr const char* names[] = {"nx", "ny", "nz"};
     double cells = 1;
     for (std::size_t k = 0; k < 3; ++k) {
-      of[k] = parameters.integer(names[k], of[k]);
-      if (of[k] < 1) parameters.error(names[k], "must be at least 1");
+      of[k] = parameters.integer(grid_count_names[k], of[k]);
+      if (of[k] < 1) parameters.error(grid_count_names[k], "must be at least 1");
       of[k] = std::max(of[k], 1);
       cells *= of[k];
     }
     if (cells > static_cast<double>(most_grid_cells)) parameters.error("the grid has more than 2^28 cells");
   }
-  void grid(const char* name, FloatGrid& of, const GridCounts& counts, bool is_needed) {
+  void grid(const Field& field, FloatGrid& of, const GridCounts& counts, bool is_needed) {
+    const char* const name = field.name;
     const Parameter* given = parameters.values(name, {"float"});
     if (!given && is_needed && !parameters.has(name)) parameters.error("\"float " + std::string(name) + "\" is missing");
     if (given) of = values(name, *given, counts, 1);
   }
-  void colors(const char* name, ColorGrid& of, const GridCounts& counts) {
-    const Parameter* given = parameters.values(name, {"rgb"});
-    if (given) of = {values(name, *given, counts, 3), given->space};
+  void grid(const Field& field, ColorGrid& of, const GridCounts& counts) {
+    const Parameter* given = parameters.values(field.name, {"rgb"});
+    if (given) of = {values(field.name, *given, counts, 3), given->space};
   }
   FloatGrid values(const char* name, const Parameter& given, const GridCounts& counts, std::size_t each) {
     const auto expected = static_cast<double>(each) * counts[0] * counts[1] * counts[2];
@@ -142,11 +140,11 @@ Medium make_medium(const std::string& type, const std::string& name, Parameters&
   Medium medium;
   medium.name = name;
   medium.where = parameters.where();
-#define MEDIUM_MODEL(row, Type)                                       \
-  if (type == #row) {                                                 \
-    Type model;                                                       \
-    Type::fields(model, MediumReader{parameters, world_from_medium}); \
-    medium.model = std::move(model);                                  \
+#define MEDIUM_MODEL(row, Type)                                         \
+  if (type == #row) {                                                   \
+    Type model;                                                         \
+    Type::fields(model, MediumReader{{parameters}, world_from_medium}); \
+    medium.model = std::move(model);                                    \
   }
 #include "scene/media.def"
   medium.subsurface = parameters.boolean("subsurface", false);

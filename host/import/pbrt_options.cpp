@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "import/detail/pbrt_fields.h"
 #include "scene/transform.h"
 
 namespace caplet::pbrt {
@@ -26,11 +27,11 @@ double positive(Parameters& parameters, std::string_view name, double fallback) 
   return fallback;
 }
 
-int positive_integer(Parameters& parameters, std::string_view name, int fallback) {
-  const int value = parameters.integer(name, fallback);
-  if (value > 0) return value;
-  parameters.error(name, "must be positive");
-  return fallback;
+/// The number of a type among `names`, as an enumeration's; none where a type is rendered as another.
+template <class Kind, class Names>
+std::optional<Kind> kind_of(const std::string& type, const Names& names) {
+  const auto found = std::ranges::find(names, type);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<Kind>(found - names.begin()));
 }
 
 void warn(Parameters& parameters, std::string_view name, const std::string& message) {
@@ -53,8 +54,6 @@ void set_sensor(Parameters& parameters, FilmSettings& film) {
   if (std::ranges::find(known, sensor) == known.end())
     return parameters.error("sensor",
                             "is " + in_quotes(sensor) + "; the nearest known name is \"" + nearest_name(sensor, known) + "\"");
-  film.white_balance = parameters.number("whitebalance", 0);
-  if (film.white_balance < 0) parameters.error("whitebalance", "must not be negative");
   if (film.white_balance > 0 && !(film.white_balance >= 1000 && film.white_balance <= 25000))
     parameters.error("whitebalance", must_lie_within(1000, 25000) + " kelvin");
   if (sensor == "cie1931") return;
@@ -111,11 +110,9 @@ std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* i
 Projection projection_of(const std::string& type, Parameters& parameters) {
   if (type == "orthographic") return OrthographicProjection{};
   if (type == "spherical") {
-    const std::string mapping = parameters.text("mapping", "equalarea");
-    if (mapping != "equalarea" && mapping != "equirectangular")
-      parameters.error("mapping", "must be \"equalarea\" or \"equirectangular\"");
-    return SphericalProjection{mapping == "equirectangular" ? SphericalProjection::Mapping::equirectangular
-                                                            : SphericalProjection::Mapping::equal_area};
+    int mapping = 0;
+    FieldReader{parameters}.choice(SphericalProjection::mapping_field, mapping, SphericalProjection::mapping_names);
+    return SphericalProjection{static_cast<SphericalProjection::Mapping>(mapping)};
   }
   const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
   const double degrees = half > 0 ? 2 * half : given;
@@ -140,10 +137,8 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
     else
       camera.screen_window = {v[0], v[1], v[2], v[3]};
   }
-  camera.lens_radius = parameters.number("lensradius", 0);
-  if (camera.lens_radius < 0) parameters.error("lensradius", "must not be negative");
-  camera.focal_distance = positive(parameters, "focaldistance", 1e6);
-  const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean("parallellens", false);
+  Camera::fields(camera, FieldReader{parameters});
+  const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean(Camera::parallel_lens_field.name, false);
   if (is_orthographic(camera) && camera.lens_radius > 0 && !has_parallel_lens) {
     // pbrt-v4's rays then leave one lens around the camera's axis: a perspective through the window at the focal distance.
     camera.projection = PerspectiveProjection{2 * std::atan(1 / camera.focal_distance)};
@@ -166,8 +161,7 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   FilmSettings film;
   film.exposure_time = scene.film.exposure_time;
   film.space = space;
-  film.width = positive_integer(parameters, "xresolution", film.width);
-  film.height = positive_integer(parameters, "yresolution", film.height);
+  FilmSettings::fields(film, FieldReader{parameters});
   film.filename = parameters.text("filename", "pbrt.exr");
   if (const Parameter* bounds = parameters.values("pixelbounds", {"integer"})) {
     const auto& v = bounds->numbers;
@@ -199,7 +193,6 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   }
   positive(parameters, "diagonal", 35);
   parameters.boolean("savefp16", true);
-  film.iso = positive(parameters, "iso", 100);
   set_sensor(parameters, film);
   if (type == "gbuffer") {
     parameters.text("coordinatesystem", "camera");
@@ -210,88 +203,47 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
     warn(parameters, {}, "red, green and blue are written, not the spectrum");
   }
   film.backdrop = backdrop_of(parameters, images);
-  film.least_width = parameters.number("leastwidth", 0);
-  if (!(film.least_width >= 0 && film.least_width <= 64)) parameters.error("leastwidth", "must lie between 0 and 64 pixels");
-  if (parameters.has("maxcomponentvalue")) film.max_component_value = positive(parameters, "maxcomponentvalue", 1);
   parameters.finish();
   scene.film = film;
 }
 
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
   PixelFilter filter;
-  double radius = 2;
-  if (type == "box") {
-    filter.kind = PixelFilter::Kind::box;
-    radius = 0.5;
-  } else if (type == "triangle") {
-    filter.kind = PixelFilter::Kind::triangle;
-  } else if (type == "gaussian") {
-    radius = 1.5;
-    filter.sigma = positive(parameters, "sigma", 0.5);
-  } else if (type == "sinc") {
-    filter.kind = PixelFilter::Kind::sinc;
-    radius = 4;
-    filter.tau = positive(parameters, "tau", 3);
-  } else {
-    filter.kind = PixelFilter::Kind::mitchell;
-    filter.b = parameters.number("B", 1.0 / 3);
-    filter.c = parameters.number("C", 1.0 / 3);
-  }
-  filter.radius_x = positive(parameters, "xradius", radius);
-  filter.radius_y = positive(parameters, "yradius", radius);
+  filter.set_kind(kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind::gaussian));
+  PixelFilter::fields(filter, FieldReader{parameters});
   parameters.finish();
   scene.filter = filter;
 }
 
 std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene) {
-  std::optional<std::uint32_t> seed;
-  if (parameters.has("seed")) seed = static_cast<std::uint32_t>(parameters.integer("seed", 0));
   SamplerSettings sampler;
-  sampler.seed = scene.sampler.seed;
-  if (type == "stratified") {
-    sampler.kind = SamplerSettings::Kind::stratified;
-    sampler.x_strata = positive_integer(parameters, "xsamples", 4);
-    sampler.y_strata = positive_integer(parameters, "ysamples", 4);
+  const bool has_seed = parameters.has("seed");
+  const auto kind = kind_of<SamplerSettings::Kind>(type, sampler_names);
+  sampler.kind = kind.value_or(SamplerSettings::Kind::sobol);
+  SamplerSettings::fields(sampler, FieldReader{parameters});
+  if (!kind) warn(parameters, {}, "rendered by the sampler \"sobol\", whose noise is another");
+  if (sampler.kind == SamplerSettings::Kind::stratified) {
     const std::int64_t samples = std::int64_t{sampler.x_strata} * sampler.y_strata;
     if (samples > INT32_MAX)
       parameters.error("xsamples", "times \"ysamples\" is more than 2^31 samples a pixel");
     else
       sampler.samples_per_pixel = static_cast<int>(samples);
-    sampler.jitter = parameters.boolean("jitter", true);
-  } else {
-    sampler.samples_per_pixel = positive_integer(parameters, "pixelsamples", 16);
-    if (type == "independent") sampler.kind = SamplerSettings::Kind::independent;
-    if (type == "zsobol") sampler.kind = SamplerSettings::Kind::zsobol;
-    if (type == "halton" || type == "paddedsobol" || type == "pmj02bn")
-      warn(parameters, {}, "rendered by the sampler \"sobol\", whose noise is another");
   }
   if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol") parameters.text("randomization", "");
   parameters.finish();
+  const std::uint32_t seed = std::exchange(sampler.seed, scene.sampler.seed);
   scene.sampler = sampler;
-  return seed;
+  return has_seed ? std::optional(seed) : std::nullopt;
 }
 
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
-  using enum IntegratorSettings::Kind;
   IntegratorSettings integrator;
-  if (type == "ambientocclusion")
-    integrator.kind = ambient_occlusion;
-  else if (type == "simplepath")
-    integrator.kind = simple_path;
-  else if (type == "randomwalk")
-    integrator.kind = random_walk;
-  else if (type != "path" && type != "volpath")
-    warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
-  integrator.max_depth = parameters.integer("maxdepth", 5);
-  if (integrator.max_depth < 0) {
-    parameters.error("maxdepth", "must not be negative");
-    integrator.max_depth = 5;
-  }
+  const auto kind = kind_of<IntegratorSettings::Kind>(type == "volpath" ? "path" : type, integrator_names);
+  integrator.kind = kind.value_or(IntegratorSettings::Kind::path);
+  if (!kind) warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
+  IntegratorSettings::fields(integrator, FieldReader{parameters});
+  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) parameters.ignore("maxdepth");
   if (type == "path" || type == "volpath") parameters.text("lightsampler", "bvh");
-  if (type == "simplepath") {
-    integrator.sample_bsdf = parameters.boolean("samplebsdf", true);
-    integrator.sample_lights = parameters.boolean("samplelights", true);
-  }
   if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
     if (parameters.boolean("regularize", false))
       warn(parameters, "regularize", "nothing is made rougher than it is (\"regularize\")");
@@ -299,10 +251,6 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   if (type == "bdpt")
     for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
   if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");
-  if (integrator.kind == ambient_occlusion) {
-    integrator.cosine_sample = parameters.boolean("cossample", true);
-    if (parameters.has("maxdistance")) integrator.max_distance = positive(parameters, "maxdistance", 1);
-  }
   if (type == "mlt")
     for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
       parameters.ignore(name);

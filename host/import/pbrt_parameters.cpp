@@ -309,11 +309,6 @@ bool Parameters::has(std::string_view name) { return find(name) != nullptr; }
 
 const Parameter* Parameters::values(std::string_view name, std::initializer_list<std::string_view> types) {
   Parameter* parameter = find(name);
-  if (notes_types_) {
-    auto& noted = asked_types_[name];
-    for (const std::string_view type : types)
-      if (std::ranges::find(noted, type) == noted.end()) noted.emplace_back(type);
-  }
   if (!parameter || parameter->broken) return nullptr;
   if (parameter->type.empty()) {
     for (const std::string_view type : types) {
@@ -476,16 +471,6 @@ std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_
   if (!parameter || parameter->type != "texture") return std::nullopt;
   const TextureValue* found = textures.find(parameter->strings[0], is_float);
   return found && found->is_float == is_float && found->refusal.empty() ? found->texture : std::nullopt;
-}
-
-std::vector<AskedParameter> Parameters::asked() const {
-  std::vector<AskedParameter> out;
-  for (const std::string_view name : asked_) {
-    if (std::ranges::find(out, name, &AskedParameter::name) != out.end()) continue;
-    const auto noted = asked_types_.find(name);
-    out.push_back({std::string(name), noted == asked_types_.end() ? std::vector<std::string>{} : noted->second});
-  }
-  return out;
 }
 
 void Parameters::refuse(std::string_view name) {

@@ -5,10 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
+#include <glm/matrix.hpp>
 
 #include "base/spelling.h"
 #include "import/detail/pbrt_lights.h"
+#include "import/detail/pbrt_materials.h"
 #include "import/detail/pbrt_media.h"
 #include "import/detail/pbrt_names.h"
 #include "import/detail/pbrt_options.h"
@@ -20,12 +23,6 @@ namespace {
 
 /// Where there are no files.
 const std::string no_file;
-
-/// Reads no images: for what asks for none.
-class NoImages : public ImageReader {
- public:
-  EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError({path.string()}, "not read"); }
-};
 
 void check_type(const ProgramStatement& statement) {
   const std::vector<std::string> known = statement_types(statement.directive);
@@ -53,9 +50,10 @@ pbrt::Parameters parameters_of(const ProgramStatement& statement, std::vector<pb
   return {std::move(own), {}, statement.directive + " \"" + statement.type + "\"", {}, no_file, ColorSpace::srgb, diagnostics};
 }
 
-/// Textures by their numbers.
-pbrt::TextureTable textures_of(const Scene& scene) {
+/// Textures by their numbers; none where the statement names none.
+pbrt::TextureTable textures_for(const ProgramStatement& statement, const Scene& scene) {
   pbrt::TextureTable table;
+  if (std::ranges::none_of(statement.parameters, [](const auto& one) { return one.type == "texture"; })) return table;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     pbrt::TextureValue value;
     value.is_float = scene.textures[i].is_float;
@@ -63,6 +61,12 @@ pbrt::TextureTable textures_of(const Scene& scene) {
     table.add(std::to_string(i), std::move(value));
   }
   return table;
+}
+
+std::optional<std::uint32_t> number_of(const std::string& text) {
+  std::uint32_t out = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(out) : std::nullopt;
 }
 
 template <class Known>
@@ -75,9 +79,7 @@ template <class Known>
 }
 
 Shape read_shape(const ProgramStatement& statement, pbrt::Parameters& parameters, std::uint32_t material, const Scene& scene) {
-  // Most shapes ask for none.
-  const bool is_textured = std::ranges::any_of(statement.parameters, [](const auto& one) { return one.type == "texture"; });
-  const pbrt::TextureTable textures = is_textured ? textures_of(scene) : pbrt::TextureTable();
+  const pbrt::TextureTable textures = textures_for(statement, scene);
   const auto material_named = [&](const std::string& name, const SourceLocation&) {
     const auto found = std::ranges::find(scene.materials, name, &Material::name);
     if (found == scene.materials.end()) unknown_name("material", name, scene.materials);
@@ -113,66 +115,70 @@ auto read(const ProgramStatement& statement, const Work& work) {
   return out;
 }
 
-/// Asks for all that there is to ask for.
-void ask(const ProgramStatement& statement, pbrt::Parameters& parameters) {
-  const NoImages images;
-  Scene scene;
-  pbrt::LightFiles files(images);
-  if (statement.directive == "Shape")
-    read_shape(statement, parameters, 0, scene);
-  else if (statement.directive == "LightSource")
-    pbrt::make_light(statement.type, parameters, glm::dmat4(1), files);
-  else if (statement.directive == "AreaLightSource")
-    pbrt::make_area_emission(parameters, files);
-  else if (statement.directive == "MakeNamedMedium")
-    pbrt::make_medium(statement.type, {}, parameters, glm::dmat4(1));
-  else
-    read_option(statement, parameters, glm::dmat4(1), scene);
-}
-
 }  // namespace
 
-std::vector<std::string> statement_types(const std::string& directive) {
+std::vector<std::string> file_statement_types(const std::string& directive) {
   for (const pbrt::NameTable& table : pbrt::name_tables())
-    if (table.directive == directive) {
-      std::vector<std::string> types = table.accepted;
-      if (directive == "Shape") std::erase_if(types, pbrt::is_file_shape);  // no shape, but a scene
-      return types;
-    }
+    if (table.directive == directive) return table.accepted;
   return {};
 }
 
-std::vector<KnownStatementParameter> statement_parameters(const std::string& directive, const std::string& type) {
-  const ProgramStatement statement{directive, type};
-  check_type(statement);
-  std::vector<KnownStatementParameter> out;
-  // With nothing given, and with everything that was asked for there, but of no value: what is asked for then is more.
-  for (int round = 0; round < 2; ++round) {
-    std::vector<pbrt::Parameter> own;
-    for (const KnownStatementParameter& known : out) {
-      pbrt::Parameter& one = own.emplace_back();
-      one.name = known.name;
-      one.broken = true;
-    }
-    Diagnostics ignored;
-    pbrt::Parameters parameters = parameters_of(statement, std::move(own), ignored);
-    parameters.note_types();
-    try {
-      ask(statement, parameters);
-    } catch (const InputError&) {  // of values that are missing
-    }
-    for (const pbrt::AskedParameter& asked : parameters.asked()) {
-      auto found = std::ranges::find(out, asked.name, &KnownStatementParameter::name);
-      if (found == out.end()) found = out.insert(out.end(), {asked.name, {}});
-      for (const std::string& one : asked.types)
-        if (std::ranges::find(found->types, one) == found->types.end()) found->types.push_back(one);
-    }
+std::vector<std::string> statement_types(const std::string& directive) {
+  std::vector<std::string> types = file_statement_types(directive);
+  if (directive == "Shape") std::erase_if(types, pbrt::is_file_shape);  // no shape, but a scene
+  if (directive == "Material") std::erase(types, "subsurface");         // a material and a medium
+  if (directive == "Texture") {
+    std::erase(types, "constant");  // a number or a spectrum
+    types.emplace_back("normalmap");
   }
-  return out;
+  return types;
+}
+
+std::vector<schema::Parameter> statement_parameters(const std::string& directive, const std::string& type) {
+  check_type({directive, type});
+  return schema::parameters_of(directive, type);
 }
 
 Shape shape_of(const ProgramStatement& statement, std::uint32_t material, const Scene& scene) {
   return read(statement, [&](pbrt::Parameters& parameters) { return read_shape(statement, parameters, material, scene); });
+}
+
+Material material_of(const ProgramStatement& statement, const Scene& scene) {
+  return read(statement, [&](pbrt::Parameters& parameters) {
+    const auto numbered = [&](const std::string& name, std::string& problem) -> std::optional<std::uint32_t> {
+      const std::optional<std::uint32_t> found = number_of(name);
+      // A material that is not there yet may be named: what has its place is checked as a whole.
+      if (!found) problem = "takes the numbers of two materials";
+      return found;
+    };
+    return pbrt::make_program_material(statement.type, parameters, textures_for(statement, scene), numbered);
+  });
+}
+
+Texture texture_of(const ProgramStatement& statement, bool is_float, const glm::dmat4& world_from_texture,
+                   const std::shared_ptr<const TextureImage>& pixels, const Scene& scene, const ImageReader& images) {
+  pbrt::TextureContext context{world_from_texture, glm::inverse(world_from_texture), {}, false};
+  context.images = [&](pbrt::Parameters& parameters, const char* name, const ImageEncoding& encoding, std::string& problem) {
+    std::shared_ptr<const TextureImage> image = pixels;
+    if (pixels && (parameters.has(name) || parameters.has("encoding"))) {
+      problem = "pixels take neither a filename nor an encoding";
+      image = nullptr;
+    } else if (!pixels && !parameters.has(name)) {
+      problem = "there is no filename";
+    } else if (!pixels) {
+      try {
+        image = std::make_shared<TextureImage>(images.read_texture(parameters.text(name, ""), encoding));
+      } catch (const InputError& error) {
+        problem = error.messages().front();
+      }
+    }
+    return image;
+  };
+  return read(statement,
+              [&](pbrt::Parameters& parameters) {
+                return pbrt::make_program_texture(statement.type, is_float, parameters, textures_for(statement, scene), context);
+              })
+      .value();
 }
 
 Light light_of(const ProgramStatement& statement, const glm::dmat4& world_from_light, const ImageReader& images) {

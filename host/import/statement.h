@@ -7,12 +7,14 @@
 
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/image_reader.h"
 #include "scene/scene.h"
+#include "schema/schema.h"
 
 namespace caplet {
 
@@ -32,18 +34,22 @@ struct ProgramStatement {
   std::vector<StatementParameter> parameters = {};
 };
 
-/// The types of a directive that can be rendered.
+/// The types of a directive that scene files may have.
+std::vector<std::string> file_statement_types(const std::string& directive);
+/// Those that a program may state.
 std::vector<std::string> statement_types(const std::string& directive);
 
-struct KnownStatementParameter {
-  std::string name;
-  std::vector<std::string> types;
-};
-/// What a statement of an accepted type asks for, whatever of it is given.
-std::vector<KnownStatementParameter> statement_parameters(const std::string& directive, const std::string& type);
+/// What a statement of a known type may say. Throws InputError for an unknown type.
+std::vector<schema::Parameter> statement_parameters(const std::string& directive, const std::string& type);
 
 // Each throws InputError for an unknown type and with everything that is wrong with the parameters. Materials and objects that
 // parameters name are those of `scene`.
+/// A material without a name or bumps: the materials of a mix
+/// are named by their numbers ("7").
+Material material_of(const ProgramStatement& statement, const Scene& scene);
+/// `pixels`: the image that a texture of images has in place of a file; null: it names one.
+Texture texture_of(const ProgramStatement& statement, bool is_float, const glm::dmat4& world_from_texture,
+                   const std::shared_ptr<const TextureImage>& pixels, const Scene& scene, const ImageReader& images);
 Shape shape_of(const ProgramStatement& statement, std::uint32_t material, const Scene& scene);
 Light light_of(const ProgramStatement& statement, const glm::dmat4& world_from_light, const ImageReader& images);
 AreaEmission emission_of(const ProgramStatement& statement, const ImageReader& images);

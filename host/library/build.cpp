@@ -15,6 +15,7 @@
 #include "library/detail/appearance.h"
 #include "library/detail/inside.h"
 #include "library/detail/places.h"
+#include "library/detail/statements.h"
 #include "present/present.h"
 
 namespace caplet::v0 {
@@ -41,60 +42,12 @@ const char* directive_of(Statement statement) {
       return "Sampler";
     case Statement::integrator:
       return "Integrator";
+    case Statement::material:
+      return "Material";
+    case Statement::texture:
+      return "Texture";
   }
   return "";
-}
-
-/// One parameter, and of its values those from `first` on, `count` of them; all where `count` is 0.
-struct ToStatement {
-  StatementParameter& out;
-  std::size_t first = 0, count = 0;
-
-  template <class T>
-  std::vector<T> cut(const std::vector<T>& values) const {
-    if (count == 0) return values;
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
-  }
-  void operator()(double value) const { out.numbers = {value}; }
-  void operator()(const Rgb& value) const {
-    out.type = "rgb";
-    out.numbers = {value.r, value.g, value.b};
-  }
-  void operator()(const std::string& value) const { out.strings = {value}; }
-  void operator()(bool value) const { out.bools = {value}; }
-  void operator()(const TextureNumber& value) const {
-    out.type = "texture";
-    out.strings = {std::to_string(value.number)};
-  }
-  void operator()(const std::array<double, 3>& value) const { out.numbers = {value.begin(), value.end()}; }
-  void operator()(const std::array<std::uint32_t, 2>& value) const { out.numbers = {value.begin(), value.end()}; }
-  void operator()(const Blackbody& value) const {
-    out.type = "blackbody";
-    out.numbers = {value.kelvin};
-  }
-  void operator()(const std::vector<double>& values) const { out.numbers = cut(values); }
-  void operator()(const std::vector<std::string>& values) const { out.strings = cut(values); }
-  void operator()(const std::shared_ptr<const Pixels>&) const {
-    throw InputError(fmt::format("'{}' is an image, which textures alone have", out.name));
-  }
-};
-
-/// Texts have none of these.
-void check_finite(const std::string& owner, const StatementParameter& given) {
-  for (const double value : given.numbers)
-    if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' is not finite", owner, given.name));
-}
-
-ProgramStatement to_statement(Statement kind, const std::string& type, const Parameters& parameters) {
-  ProgramStatement out{directive_of(kind), type};
-  for (const auto& [name, value] : parameters) {
-    StatementParameter& one = out.parameters.emplace_back();
-    one.name = name;
-    std::visit(ToStatement{one}, value);
-    check_finite(type, one);
-  }
-  return out;
 }
 
 std::size_t length_of(const Parameter& parameter) {
@@ -206,7 +159,7 @@ void set_options(const ShapeOptions& options, const std::optional<AreaEmission>&
 
 std::optional<AreaEmission> emission_for(const ShapeOptions& options) {
   if (!options.emission) return std::nullopt;
-  return emission_of(to_statement(Statement::emission, "diffuse", *options.emission), FileImageReader());
+  return emission_of(to_statement(directive_of(Statement::emission), "diffuse", *options.emission), FileImageReader());
 }
 
 /// The material that shapes have for which none is named.
@@ -243,8 +196,20 @@ std::vector<std::string> statement_types(Statement statement) { return caplet::s
 
 std::vector<KnownParameter> statement_parameters(Statement statement, const std::string& type) {
   std::vector<KnownParameter> out;
-  for (KnownStatementParameter& one : caplet::statement_parameters(directive_of(statement), type))
-    out.push_back({std::move(one.name), std::move(one.types)});
+  for (schema::Parameter& one : caplet::statement_parameters(directive_of(statement), type)) {
+    KnownParameter& to = out.emplace_back(KnownParameter{std::move(one.name), std::move(one.types)});
+    to.doc = std::move(one.doc);
+    to.fallback = std::move(one.fallback);
+    to.low = one.low;
+    to.high = one.high;
+    to.above_low = one.above_low;
+    to.unit = std::move(one.unit);
+    to.choices = std::move(one.choices);
+    to.excludes = std::move(one.excludes);
+    to.has_effect = one.has_effect;
+    // A program makes a texture of the image first.
+    if (statement == Statement::material && to.name == "normalmap") to.types = {"texture"};
+  }
   return out;
 }
 
@@ -268,7 +233,7 @@ std::uint32_t Scene::add_shapes(const std::string& type, std::size_t count, cons
   const caplet::Scene& model = data_->model;
   const std::optional<AreaEmission> emission = emission_for(options);
   const std::uint32_t material = options.materials.empty() ? 0 : options.materials[0];
-  ProgramStatement statement = to_statement(Statement::shape, type, shared);
+  ProgramStatement statement = to_statement(directive_of(Statement::shape), type, shared);
   const std::size_t own = statement.parameters.size();
   for (const auto& [name, values] : each) statement.parameters.emplace_back().name = name;
   std::vector<Shape> shapes;
@@ -277,8 +242,7 @@ std::uint32_t Scene::add_shapes(const std::string& type, std::size_t count, cons
     std::size_t at = own;
     for (const auto& [name, values] : each) {
       const std::size_t width = length_of(values) / count;
-      std::visit(ToStatement{statement.parameters[at], i * width, width}, values);
-      check_finite(type, statement.parameters[at++]);
+      put_values(type, values, statement.parameters[at++], i * width, width);
     }
     Shape shape = shape_of(statement, material, model);
     set_options(options, emission, shape);
@@ -389,7 +353,8 @@ std::uint32_t Scene::add_instances(const std::string& object, std::span<const Tr
 }
 
 std::uint32_t Scene::add_light(const std::string& type, const Parameters& parameters, const Transform& transform) {
-  caplet::Light light = light_of(to_statement(Statement::light, type, parameters), to_model(transform), FileImageReader());
+  caplet::Light light =
+      light_of(to_statement(directive_of(Statement::light), type, parameters), to_model(transform), FileImageReader());
   check_light(light);
   Data& data = changed();
   if (data.studio_light) data.model.lights.clear();
@@ -408,7 +373,8 @@ void Scene::remove_lights() {
 
 std::uint32_t Scene::add_medium(const std::string& name, const std::string& type, const Parameters& parameters,
                                 const Transform& transform) {
-  caplet::Medium medium = medium_of(to_statement(Statement::medium, type, parameters), valid_utf8(name), to_model(transform));
+  caplet::Medium medium =
+      medium_of(to_statement(directive_of(Statement::medium), type, parameters), valid_utf8(name), to_model(transform));
   caplet::Scene one;
   one.media.push_back(medium);
   check_textures(one);
@@ -427,7 +393,7 @@ std::vector<std::string> Scene::media() const {
 void Scene::set_camera(const std::string& type, const Parameters& parameters, const Transform& transform) {
   caplet::Scene one;
   one.film = data_->model.film;
-  caplet::set_option(to_statement(Statement::camera, type, parameters), to_model(transform), one);
+  caplet::set_option(to_statement(directive_of(Statement::camera), type, parameters), to_model(transform), one);
   check_textures(one);
   Data& data = changed();
   one.camera.medium = data.model.camera.medium;
@@ -460,7 +426,7 @@ void Scene::set_option(Statement statement, const std::string& type, const Param
   one.filter = data_->model.filter;
   one.sampler = data_->model.sampler;
   one.integrator = data_->model.integrator;
-  caplet::set_option(to_statement(statement, type, parameters), glm::dmat4(1), one);
+  caplet::set_option(to_statement(directive_of(statement), type, parameters), glm::dmat4(1), one);
   check_textures(one);
   Data& data = changed();
   const bool sky_changes = data.model.film.backdrop.has_value() != one.film.backdrop.has_value();

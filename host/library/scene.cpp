@@ -185,7 +185,7 @@ Transform Scene::instance(std::uint32_t instance) const {
 void Scene::set_instance(std::uint32_t instance, const Transform& to) { changed().edit(InstanceEdit{instance, to_model(to)}); }
 
 void Scene::set_material(std::uint32_t material, const Material& to) {
-  caplet::Material made = to_model(to);
+  caplet::Material made = to_model(to, data_->model);
   check_bends(data_->model, made);
   const MaterialEdit edit{material, std::move(made.model), std::move(made.textures)};
   Data& data = changed();
@@ -199,7 +199,7 @@ void Scene::set_material(std::uint32_t material, const Material& to) {
 }
 
 std::uint32_t Scene::add_material(const std::string& name, const Material& material) {
-  caplet::Material made = to_model(material);
+  caplet::Material made = to_model(material, data_->model);
   check_bends(data_->model, made);
   made.name = valid_utf8(name);
   Data& data = changed();
@@ -216,7 +216,7 @@ std::uint32_t Scene::add_material(const std::string& name, const Material& mater
 }
 
 TextureNumber Scene::add_texture(const NamedTexture& texture) {
-  caplet::Texture made = to_model(texture);
+  caplet::Texture made = to_model(texture, data_->model);
   Data& data = changed();
   const auto number = static_cast<std::uint32_t>(data.model.textures.size());
   data.model.textures.push_back(std::move(made));

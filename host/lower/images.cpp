@@ -15,7 +15,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "scene/texture_visitor.h"
+#include "scene/field.h"
 #include "shared/octahedron.h"
 
 namespace caplet {
@@ -110,16 +110,16 @@ bool has_powers_of_two(const TextureImage& image) {
   return std::has_single_bit(static_cast<unsigned>(image.width)) && std::has_single_bit(static_cast<unsigned>(image.height));
 }
 
-struct Uses : TextureVisitor {
+struct Uses : IgnoresFields {
   ImageNumbers found = {};
   const TextureImage* last = nullptr;
 
-  void image(const std::shared_ptr<const TextureImage>& of) { last = of.get(); }
+  void image(const Field&, const std::shared_ptr<const TextureImage>& of) { last = of.get(); }
   template <class Names>
-  void choice(const char* name, int value, const Names&) {
-    if (std::string_view(name) == "wrap") add(image_use(*last, value));
+  void choice(const Field& field, int value, const Names&) {
+    if (std::string_view(field.name) == "wrap") add(image_use(*last, value));
   }
-  void vectors(const std::shared_ptr<const TextureImage>& of) { add(image_use(*of, std::nullopt)); }
+  void vectors(const Field&, const std::shared_ptr<const TextureImage>& of) { add(image_use(*of, std::nullopt)); }
   void add(const ImageUse& use) { found.try_emplace(use, narrow<std::uint32_t>(found.size())); }
 };
 

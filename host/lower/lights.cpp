@@ -110,9 +110,9 @@ class LightLowering {
       unit = integral_of(light);
     else
       unit = light.per_unit();
-    Emission emission{*this, record, replaced(Model::unit == LightUnit::power ? light_->power : light_->illuminance, unit)};
+    Emission emission(*this, record, replaced(Model::unit == LightUnit::power ? light_->power : light_->illuminance, unit));
     Model::fields(light, emission);
-    if constexpr (HasColors<Model>) emission.emission("", RgbSpectrum{glm::dvec3(1), light.image->space});
+    if constexpr (HasColors<Model>) emission.emission({"filename", ""}, RgbSpectrum{glm::dvec3(1), light.image->space});
     FamilyData data = data_of(record);
     light.data([&](const char* field, const auto& value) { put(data, field, value); });
     data.finish();
@@ -190,24 +190,17 @@ class LightLowering {
   }
 
   /// Takes the spectrum from what scene/lights.def visits.
-  struct Emission {
+  struct Emission : IgnoresFields {
+    Emission(LightLowering& all, LightRecord& to, double times) : lowering(all), record(to), factor(times) {}
     LightLowering& lowering;
     LightRecord& record;
     double factor;
     double luminance = 0;
 
-    void emission(const char*, const Spectrum& spectrum) {
+    void emission(const Field&, const Spectrum& spectrum) {
       lowering.emit(record, spectrum, factor);
       luminance = lowering.luminance(spectrum, record);
     }
-    void position(const char*, const glm::dvec3&) {}
-    void place(const glm::dvec3&, const glm::dmat3&) {}
-    void image(const char*, const std::shared_ptr<const EnvironmentImage>&) {}
-    void directions(const char*, const std::shared_ptr<const EnvironmentImage>&) {}
-    void profile(const char*, const std::shared_ptr<const IesProfile>&) {}
-    void direction(const char*, const char*, const glm::dvec3&) {}
-    void number(const char*, double, double, double) {}
-    void cone(double, double) {}
   };
 
   void emit(LightRecord& record, const Spectrum& spectrum, double factor) {

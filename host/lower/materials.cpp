@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/textures.h"
+#include "scene/field.h"
 
 namespace caplet {
 
@@ -31,7 +32,7 @@ static_assert(0
 static_assert(material_stride <= 32, "MaterialRecord.textured has a bit for each float");
 
 /// Writes the fields that scene/materials.def visits.
-struct MaterialWriter {
+struct MaterialWriter : CompositesInParts<MaterialWriter> {
   FamilyData& data;
   SpectrumTable& spectra;
   MaterialRecord& record;
@@ -57,45 +58,41 @@ struct MaterialWriter {
   }
   bool textured(const std::string& name, TextureUse use) { return textured(name, name, use); }
 
-  void albedo(const std::string& name, const Spectrum& value) {
-    if (!textured(name, TextureUse::albedo)) data.put_index(field_of(name), spectra.add_reflectance(value));
+  void albedo(const Field& field, const Spectrum& value) {
+    if (!textured(field.name, TextureUse::albedo)) data.put_index(field_of(field.name), spectra.add_reflectance(value));
   }
-  void unbounded(const std::string& name, const Spectrum& value) {
-    if (!textured(name, TextureUse::unbounded)) data.put_index(field_of(name), spectra.add_unbounded(value));
+  void unbounded(const Field& field, const Spectrum& value) {
+    if (!textured(field.name, TextureUse::unbounded)) data.put_index(field_of(field.name), spectra.add_unbounded(value));
   }
-  void index(const std::string& name, const Spectrum& value) {
-    data.put_index(field_of(name), spectra.add_unbounded(value));
+  void index(const Field& field, const Spectrum& value) {
+    data.put_index(field_of(field.name), spectra.add_unbounded(value));
     if ((material_traits[record.kind] & trait_dispersive) != 0 && !is_constant(value)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
   }
-  void number(const std::string& name, double value, double, double) {
-    if (!textured(name, TextureUse::number)) data.put(field_of(name), value);
+  void number(const Field& field, double value) {
+    if (!textured(field.name, TextureUse::number)) data.put(field_of(field.name), value);
   }
-  void whole(const char* name, int value, int, int) { data.put(name, value); }
+  void integer(const Field& field, int value) { data.put(field.name, value); }
   /// There is only one flag, so its name is not needed.
-  void flag(const char*, bool on) {
+  void flag(const Field&, bool on) {
     if (on) record.flags |= CAPLET_MATERIAL_MULTISCATTER;
   }
-  void parts(const std::array<std::uint32_t, 2>& materials) {
+  void parts(const Field&, const std::array<std::uint32_t, 2>& materials) {
     data.put_index("first", materials[0]);
     data.put_index("second", materials[1]);
   }
-  void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields& fields, const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
     data.put("is_color", reflectance ? 1 : 0);
-    if (reflectance ? textured("reflectance", "pigment", TextureUse::albedo)
-                    : textured("sigma_a", "pigment", TextureUse::unbounded))
+    if (reflectance ? textured(fields.reflectance.name, "pigment", TextureUse::albedo)
+                    : textured(fields.sigma_a.name, "pigment", TextureUse::unbounded))
       return;
     data.put_index("pigment", reflectance ? spectra.add_reflectance(*reflectance) : spectra.add_unbounded(sigma_a));
   }
-  void roughness(double alpha_u, double alpha_v, const std::string& prefix = "") {
-    number(prefix + "alpha_u", alpha_u, 0, 0);
-    number(prefix + "alpha_v", alpha_v, 0, 0);
-  }
-  void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
-    unbounded(prefix + "eta", reflectance ? ConstantSpectrum{1} : eta);
+  void metal(const MetalFields& fields, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
+    unbounded(fields.eta, reflectance ? ConstantSpectrum{1} : eta);
     if (!reflectance)
-      unbounded(prefix + "k", k);
-    else if (!textured("reflectance", prefix + "k", TextureUse::albedo, texture_extinction))
-      data.put_index(field_of(prefix + "k"), spectra.add_extinction(*reflectance));
+      unbounded(fields.k, k);
+    else if (!textured(fields.reflectance.name, fields.k.name, TextureUse::albedo, texture_extinction))
+      data.put_index(field_of(fields.k.name), spectra.add_extinction(*reflectance));
   }
 };
 
@@ -117,7 +114,7 @@ MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const Ima
       [&](const auto& model) {
         record.kind = material_kinds<std::decay_t<decltype(model)>>;
         FamilyData data(material_fields[record.kind], &out.material_data[record.data]);
-        model.fields(model, MaterialWriter{data, spectra, record, scene, material, images, out});
+        model.fields(model, MaterialWriter{{}, data, spectra, record, scene, material, images, out});
         data.finish();
       },
       material.model);

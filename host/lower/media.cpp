@@ -45,14 +45,15 @@ struct MediumWriter {
     data.put("scale", of.scale);
     data.put("g", of.g);
   }
-  void emission(const char*, const std::optional<Spectrum>& radiance, double scale) {
-    emission("le", radiance);
+  void emission(const Field& field, const std::optional<Spectrum>& radiance, double scale) {
+    emission(field, radiance);
     data.put("le_scale", radiance ? scale : 0);
   }
-  void emission(const char*, const std::optional<Spectrum>& radiance) {
+  void emission(const Field&, const std::optional<Spectrum>& radiance) {
     data.put_index("le", radiance ? spectra.add_illuminant(*radiance) : spectra.add_number(0));
   }
-  void number(const char* name, double value, double, double) {
+  void number(const Field& given, double value) {
+    const char* const name = given.name;
     // pbrt-v4's colours that are no lights' are scaled by the illuminant's own magnitude.
     if (name == std::string_view("Lescale"))
       data.put("le_scale", value * illuminant_magnitude);
@@ -77,13 +78,14 @@ struct MediumWriter {
     data.put_index("ny", narrow<uint>(of[1]));
     data.put_index("nz", narrow<uint>(of[2]));
   }
-  void grid(const std::string& name, const FloatGrid& of, const GridCounts&, bool) {
-    std::string field = name;
+  void grid(const Field& given, const FloatGrid& of, const GridCounts&, bool) {
+    std::string field = given.name;
     std::ranges::transform(field, field.begin(),
                            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     data.put_index(field, of ? add(*of) : CAPLET_NONE);
   }
-  void colors(const char* name, const ColorGrid& of, const GridCounts&) {
+  void grid(const Field& field, const ColorGrid& of, const GridCounts&) {
+    const char* const name = field.name;
     const bool emits = name == std::string_view("Le");
     if (emits) data.put_index("illuminant", spectra.illuminant_table(of.space));
     data.put_index(emits ? "le" : name, of.rgb ? add(grid_spectra(of)) : CAPLET_NONE);

@@ -10,7 +10,7 @@
 #include "base/check.h"
 #include "lower/detail/family_data.h"
 #include "lower/detail/images.h"
-#include "scene/texture_visitor.h"
+#include "scene/field.h"
 
 namespace caplet {
 
@@ -77,7 +77,7 @@ class Steps {
 };
 
 /// Writes the fields that scene/textures.def visits, once the operands are there.
-struct Steps::Writer : TextureVisitor {
+struct Steps::Writer : IgnoresFields {
   Writer(FamilyData& to, const std::map<std::string_view, std::uint32_t>& steps, Steps& all, TextureUse what)
       : data(to), operands(steps), of(all), use(what) {}
   FamilyData& data;
@@ -86,16 +86,16 @@ struct Steps::Writer : TextureVisitor {
   TextureUse use;
   const TextureImage* last = nullptr;  // the image before "wrap"
 
-  void operand(const char* name, const TextureOperand&) { data.put_index(name, operands.at(name)); }
-  void factor(const char* name, const TextureOperand&) { data.put_index(name, operands.at(name)); }
-  void number(const char* name, double value) { data.put(name, value); }
+  void operand(const Field& field, const TextureOperand&) { data.put_index(field.name, operands.at(field.name)); }
+  void factor(const Field& field, const TextureOperand& of_texture) { operand(field, of_texture); }
+  void number(const Field& field, double value) { data.put(field.name, value); }
   template <class Names>
-  void choice(const char* name, int value, const Names&) {
-    data.put_index(name, narrow<std::uint32_t>(value));
-    if (std::string_view(name) == "wrap") data.put_index("image", of.images_.at(image_use(*last, value)));
+  void choice(const Field& field, int value, const Names&) {
+    data.put_index(field.name, narrow<std::uint32_t>(value));
+    if (std::string_view(field.name) == "wrap") data.put_index("image", of.images_.at(image_use(*last, value)));
   }
-  void flag(const char* name, int value) { data.put_index(name, narrow<std::uint32_t>(value)); }
-  void image(const std::shared_ptr<const TextureImage>& image) {
+  void flag(const Field& field, bool value) { data.put_index(field.name, value ? 1 : 0); }
+  void image(const Field&, const std::shared_ptr<const TextureImage>& image) {
     last = image.get();
     data.put_index("use", use == TextureUse::number      ? CAPLET_USE_NUMBER
                           : use == TextureUse::unbounded ? CAPLET_USE_UNBOUNDED
@@ -130,10 +130,10 @@ struct Steps::Writer : TextureVisitor {
     rows_of(m, out.data());
     data.put_floats("place", out);
   }
-  void direction(const char* name, const glm::dvec3& v) { data.put(name, v); }
-  void count(const char* name, int value, int, int) { data.put_index(name, narrow<std::uint32_t>(value)); }
+  void direction(const Field& field, const glm::dvec3& v) { data.put(field.name, v); }
+  void integer(const Field& field, int value) { data.put_index(field.name, narrow<std::uint32_t>(value)); }
   void colors() { data.put_index("uplift", of.spectra_.uplift_table(ColorSpace::srgb)); }
-  void vectors(const std::shared_ptr<const TextureImage>& image) {
+  void vectors(const Field&, const std::shared_ptr<const TextureImage>& image) {
     data.put_index("image", of.images_.at(image_use(*image, std::nullopt)));
   }
 
@@ -154,11 +154,11 @@ std::uint32_t Steps::operand(const TextureOperand& of, TextureUse use) {
 
 /// Calls visit(name, operand, whether it is of floats whatever the texture is of).
 template <class Visit>
-struct Operands : TextureVisitor {
+struct Operands : IgnoresFields {
   explicit Operands(Visit calls) : visit(std::move(calls)) {}
   Visit visit;
-  void operand(const char* name, const TextureOperand& of) { visit(name, of, false); }
-  void factor(const char* name, const TextureOperand& of) { visit(name, of, true); }
+  void operand(const Field& field, const TextureOperand& of) { visit(field.name, of, false); }
+  void factor(const Field& field, const TextureOperand& of) { visit(field.name, of, true); }
 };
 
 std::uint32_t Steps::add(std::uint32_t texture, TextureUse use) {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "scene/texture_visitor.h"
+#include "scene/field.h"
 
 namespace caplet {
 
@@ -17,12 +17,12 @@ namespace {
 std::uint32_t count_of(std::size_t count) { return narrow<std::uint32_t>(count); }
 
 /// Moves the indices that a texture's operands are.
-struct MoveOperands : TextureVisitor {
+struct MoveOperands : IgnoresFields {
   std::uint32_t by = 0;
-  void operand(const char*, TextureOperand& operand) const {
+  void operand(const Field&, TextureOperand& operand) const {
     if (operand.texture) *operand.texture += by;
   }
-  void factor(const char* name, TextureOperand& factor) const { operand(name, factor); }
+  void factor(const Field& field, TextureOperand& factor) const { operand(field, factor); }
 };
 
 class Appending {

@@ -13,6 +13,8 @@
 #include <optional>
 #include <variant>
 
+#include "scene/field.h"
+
 namespace caplet {
 
 struct FilmSettings;
@@ -25,6 +27,8 @@ struct OrthographicProjection {};
 /// All directions from one point, over the whole image.
 struct SphericalProjection {
   enum class Mapping { equal_area, equirectangular } mapping = Mapping::equal_area;
+  static constexpr Field mapping_field = {"mapping", "how directions lie in the picture"};
+  static constexpr std::array mapping_names = {"equalarea", "equirectangular"};
 };
 using Projection = std::variant<PerspectiveProjection, OrthographicProjection, SphericalProjection>;
 
@@ -36,6 +40,14 @@ struct Camera {
   double lens_radius = 0;                              // perspective and orthographic, camera units
   double focal_distance = 1e6;                         // along z, camera units
   std::optional<std::uint32_t> medium = {};            // where no solid holds the camera: index into Scene::media
+
+  static constexpr Field parallel_lens_field = {"parallellens", "rays of a lens stay parallel; else it makes a perspective"};
+  /// The numbers that all cameras have.
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.number({"lensradius", "radius of the lens", 0, no_limit, "camera units"}, self.lens_radius);
+    visit.number({"focaldistance", "distance of what is sharp, along z", 0, no_limit, "camera units", true}, self.focal_distance);
+  }
 };
 
 inline bool is_spherical(const Camera& camera) { return std::holds_alternative<SphericalProjection>(camera.projection); }

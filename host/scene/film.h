@@ -5,13 +5,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 
 #include "scene/backdrop.h"
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
+
+/// Names in scene files, and the radii that pbrt-v4 gives them, by PixelFilter::Kind.
+inline constexpr std::array filter_names = {"box", "triangle", "gaussian", "mitchell", "sinc"};
+inline constexpr std::array filter_radii = {0.5, 2.0, 1.5, 2.0, 4.0};
 
 struct PixelFilter {
   enum class Kind { box, triangle, gaussian, mitchell, sinc } kind = Kind::gaussian;
@@ -19,6 +25,23 @@ struct PixelFilter {
   double sigma = 0.5;                     // gaussian
   double b = 1.0 / 3, c = 1.0 / 3;        // mitchell
   double tau = 3;                         // sinc: cycles until the window's zero
+
+  void set_kind(Kind of) {
+    *this = {};
+    kind = of;
+    radius_x = radius_y = filter_radii[static_cast<std::size_t>(of)];
+  }
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.number({"xradius", "half the width", 0, no_limit, "pixels", true}, self.radius_x);
+    visit.number({"yradius", "half the height", 0, no_limit, "pixels", true}, self.radius_y);
+    if (self.kind == Kind::gaussian) visit.number({"sigma", "standard deviation", 0, no_limit, "pixels", true}, self.sigma);
+    if (self.kind == Kind::mitchell) {
+      visit.number({"B", "share of the B-spline"}, self.b);
+      visit.number({"C", "share of the cardinal spline"}, self.c);
+    }
+    if (self.kind == Kind::sinc) visit.number({"tau", "cycles until the window's zero", 0, no_limit, "", true}, self.tau);
+  }
 };
 
 struct FilmSettings {
@@ -31,6 +54,17 @@ struct FilmSettings {
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
   double least_width = 0;  // pixels: capsules and spheres are drawn no thinner (present/least_width.h); 0: as they are
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.integer({"xresolution", "width", 1, 1 << 28, "pixels"}, self.width);
+    visit.integer({"yresolution", "height", 1, 1 << 28, "pixels"}, self.height);
+    visit.number({"iso", "sensitivity; 100 changes nothing", 0, no_limit, "", true}, self.iso);
+    visit.number({"maxcomponentvalue", "the most that a sample adds; 0: any", 0}, self.max_component_value);
+    visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0, 25000, "kelvin"},
+                 self.white_balance);
+    visit.number({"leastwidth", "capsules and spheres are drawn no thinner", 0, 64, "pixels"}, self.least_width);
+  }
 };
 
 }  // namespace caplet

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/field.h"
 #include "scene/materials.def"
 #include "scene/texture.h"
 
@@ -35,6 +36,12 @@ struct Material {
 
 /// What is said of a number that is not within these: "must lie between", or "must be from ... up" where `high` is infinite.
 std::string must_lie_within(double low, double high);
+/// The same of a field, whose range may be open below.
+std::string must_lie_within(const Field& field);
+/// Whether a value lies within the range of a field; none that is not a number does.
+inline bool is_within(const Field& field, double value) {
+  return (field.above_low ? value > field.low : value >= field.low) && value <= field.high;
+}
 
 /// The texture that a field is, by its index in Scene::textures.
 inline std::optional<std::uint32_t> texture_of(const Material& material, std::string_view field) {

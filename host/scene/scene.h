@@ -20,6 +20,7 @@
 
 #include "base/error.h"
 #include "scene/camera.h"
+#include "scene/field.h"
 #include "scene/film.h"
 #include "scene/light.h"
 #include "scene/material.h"
@@ -50,6 +51,19 @@ struct SamplerSettings {
   std::uint32_t seed = 0;
   int x_strata = 4, y_strata = 4;  // stratified, where their product is samples_per_pixel; else strata_of divides it
   bool jitter = true;              // stratified
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    if (self.kind == Kind::stratified) {
+      visit.integer({"xsamples", "strata along x", 1, 1 << 24}, self.x_strata);
+      visit.integer({"ysamples", "strata along y", 1, 1 << 24}, self.y_strata);
+      visit.flag({"jitter", "samples lie at random in their strata, else in the middle"}, self.jitter);
+    } else {
+      visit.integer({"pixelsamples", "samples of each pixel", 1, most_samples}, self.samples_per_pixel);
+    }
+    visit.seed({"seed", "another one gives other noise"}, self.seed);
+  }
+  static constexpr double most_samples = 2147483647;
 };
 
 /// Names in scene files, by SamplerSettings::Kind.
@@ -64,6 +78,19 @@ struct IntegratorSettings {
   double max_distance = std::numeric_limits<double>::infinity();  // ambient occlusion, scene units
   bool cosine_sample = true;                                      // ambient occlusion: else directions are uniform
   bool sample_bsdf = true, sample_lights = true;                  // simple path
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    if (self.kind == Kind::ambient_occlusion) {
+      visit.flag({"cossample", "directions by the cosine, else uniform"}, self.cosine_sample);
+      visit.number({"maxdistance", "how far what occludes may be", 0, no_limit, "scene units", true}, self.max_distance);
+      return;
+    }
+    visit.integer({"maxdepth", "most scattering events of a path", 0, 10000}, self.max_depth);
+    if (self.kind != Kind::simple_path) return;
+    visit.flag({"samplebsdf", "directions by the BSDF, else uniform"}, self.sample_bsdf);
+    visit.flag({"samplelights", "lights are sampled at each hit"}, self.sample_lights);
+  }
 };
 
 /// Names in scene files, by IntegratorSettings::Kind.

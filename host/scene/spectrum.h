@@ -4,6 +4,7 @@
 // Spectra as a scene file states them; what they become on a device is decided in host/lower.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,8 @@ namespace caplet {
 
 /// pbrt's RGB colour spaces.
 enum class ColorSpace { srgb, dci_p3, rec2020, aces2065_1 };
+/// Names in scene files, by ColorSpace.
+inline constexpr std::array color_space_names = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
 struct ConstantSpectrum {
   double value = 0;

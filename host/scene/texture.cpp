@@ -6,25 +6,25 @@
 #include <cmath>
 #include <set>
 
-#include "scene/texture_visitor.h"
+#include "scene/field.h"
 
 namespace caplet {
 
 namespace {
 
-struct Counter : TextureVisitor {
+struct Counter : IgnoresFields {
   explicit Counter(const std::vector<Texture>& of) : textures(of) {}
   const std::vector<Texture>& textures;
   std::set<std::uint32_t> seen = {};
   std::size_t steps = 0;
 
-  void operand(const char*, const TextureOperand& of) {
+  void operand(const Field&, const TextureOperand& of) {
     if (of.texture)
       add(*of.texture);
     else
       ++steps;
   }
-  void factor(const char* name, const TextureOperand& of) { operand(name, of); }
+  void factor(const Field& field, const TextureOperand& of) { operand(field, of); }
 
   void add(std::uint32_t texture) {
     if (steps > most_texture_steps || !seen.insert(texture).second) return;
@@ -33,12 +33,12 @@ struct Counter : TextureVisitor {
   }
 };
 
-struct Images : TextureVisitor {
+struct Images : IgnoresFields {
   std::vector<const TextureImage*> found = {};
-  void image(const std::shared_ptr<const TextureImage>& of) {
+  void image(const Field&, const std::shared_ptr<const TextureImage>& of) {
     if (of && std::ranges::find(found, of.get()) == found.end()) found.push_back(of.get());
   }
-  void vectors(const std::shared_ptr<const TextureImage>& of) { image(of); }
+  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) { image(field, of); }
 };
 
 }  // namespace

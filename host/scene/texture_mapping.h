@@ -6,6 +6,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "scene/field.h"
+
 namespace caplet {
 
 /// Which coordinates (s, t) a texture has at a point, as pbrt-v4 (10.2): by the surface's (u, v), or by the point in the
@@ -16,6 +18,25 @@ struct TextureMapping {
   double udelta = 0, vdelta = 0;  // planar: (v1 p + udelta, v2 p + vdelta)
   glm::dvec3 v1{1, 0, 0}, v2{0, 1, 0};
   glm::dmat4 texture_from_world{1};  // of all but uv
+
+  static constexpr Field kind_field = {"mapping", "where the texture coordinates (s, t) come from"};
+  static constexpr Field dimension_field = {"dimension", "2, or 3 for cubes in texture space", 2, 3};
+  /// The parameters of its kind; calls number and vector.
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    if (self.kind == Kind::uv) {
+      visit.number({"uscale", "factor of u"}, self.uscale);
+      visit.number({"vscale", "factor of v"}, self.vscale);
+    }
+    if (self.kind == Kind::planar) {
+      visit.vector({"v1", "s is its dot product with the point"}, self.v1);
+      visit.vector({"v2", "t is its dot product with the point"}, self.v2);
+    }
+    if (self.kind == Kind::uv || self.kind == Kind::planar) {
+      visit.number({"udelta", "offset of s"}, self.udelta);
+      visit.number({"vdelta", "offset of t"}, self.vdelta);
+    }
+  }
 };
 /// What scene files call them; "solid" is of textures of space alone.
 inline constexpr std::array<const char*, 4> texture_mapping_names = {"uv", "spherical", "cylindrical", "planar"};

@@ -11,8 +11,8 @@
 #include <map>
 #include <set>
 
+#include "scene/field.h"
 #include "scene/scene.h"
-#include "scene/texture_visitor.h"
 
 namespace caplet {
 
@@ -38,12 +38,12 @@ class Validator {
                  scene_.textures[i].model);
     const bool textures_are_sound = said_.empty();
     for (const Material& material : scene_.materials) {
-      std::visit([&](const auto& m) { m.fields(m, Fields{*this, material.where}); }, material.model);
+      std::visit([&](const auto& m) { m.fields(m, Checks(*this, material.where)); }, material.model);
       if (textures_are_sound) textured(material);
     }
     mixes();
     for (const Medium& medium : scene_.media)
-      std::visit([&](const auto& m) { m.fields(m, MediumFields{*this, medium.where}); }, medium.model);
+      std::visit([&](const auto& m) { m.fields(m, MediumFields(*this, medium.where)); }, medium.model);
     for (const Shape& one : scene_.shapes) shape(one);
     for (const Object& object : scene_.objects)
       for (const Shape& one : object.shapes) shape(one);
@@ -98,90 +98,87 @@ class Validator {
     if (!good) error(where, what + " is not a spectrum of finite values from 0 up");
   }
 
-  /// Of the calls of textures.def.
-  struct TextureFields : TextureVisitor {
-    TextureFields(Validator& of, const Texture& one, std::uint32_t number) : validator(of), texture(one), index(number) {}
+  /// What numbers and spectra may be, of every family.
+  struct Checks : IgnoresFields, CompositesInParts<Checks> {
+    Checks(Validator& all, const SourceLocation& at) : validator(all), where(at) {}
     Validator& validator;
+    const SourceLocation& where;
+
+    using CompositesInParts<Checks>::roughness;
+    using CompositesInParts<Checks>::metal;
+    using CompositesInParts<Checks>::pigment;
+
+    void error(const std::string& message) { validator.error(where, message); }
+    void spectrum(const Field& field, const Spectrum& s) { validator.spectrum(s, where, field.name); }
+    void albedo(const Field& field, const Spectrum& s) { validator.spectrum(s, where, "the " + std::string(field.name)); }
+    void unbounded(const Field& field, const Spectrum& s) { spectrum(field, s); }
+    void index(const Field& field, const Spectrum& s) { spectrum(field, s); }
+    void emission(const Field& field, const Spectrum& s) { spectrum(field, s); }
+    void number(const Field& field, double value) {
+      if (!(is_within(field, value) && std::isfinite(value))) error(std::string(field.name) + ' ' + must_lie_within(field));
+    }
+    void integer(const Field& field, int value) { number(field, value); }
+    template <class Names>
+    void choice(const Field& field, int value, const Names& names) {
+      if (value < 0 || value >= static_cast<int>(names.size())) error(std::string(field.name) + " is none that there is");
+    }
+  };
+
+  /// Of the calls of textures.def.
+  struct TextureFields : Checks {
+    TextureFields(Validator& of, const Texture& one, std::uint32_t number) : Checks(of, one.where), texture(one), index(number) {}
     const Texture& texture;
     std::uint32_t index;
 
-    void operand(const char* name, const TextureOperand& of) { check(name, of, texture.is_float); }
-    void factor(const char* name, const TextureOperand& of) { check(name, of, true); }
-    void number(const char* name, double value) {
-      if (!std::isfinite(value)) validator.error(texture.where, std::string(name) + " is not finite");
-    }
-    template <class Names>
-    void choice(const char* name, int value, const Names& names) {
-      if (value < 0 || value >= static_cast<int>(names.size()))
-        validator.error(texture.where, std::string(name) + " is none that there is");
-    }
-    void image(const std::shared_ptr<const TextureImage>& of) {
+    void operand(const Field& field, const TextureOperand& of) { check(field, of, texture.is_float); }
+    void factor(const Field& field, const TextureOperand& of) { check(field, of, true); }
+    void image(const Field&, const std::shared_ptr<const TextureImage>& of) {
       if (!of || of->width < 1 || of->height < 1 || (of->channels != 1 && of->channels != 3 && of->channels != 4) ||
           (of->bytes.empty() ? of->floats.size() : of->bytes.size()) != of->values())
-        validator.error(texture.where, "the texture's image has the wrong size");
+        error("the texture's image has the wrong size");
     }
+    void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) { image(field, of); }
     void mapping(const TextureMapping& of) {
-      for (const double value : {of.uscale, of.vscale, of.udelta, of.vdelta}) number("the mapping", value);
-      if (!finite(of.v1) || !finite(of.v2)) validator.error(texture.where, "the mapping is not finite");
+      TextureMapping::fields(of, *this);
       if (of.kind != TextureMapping::Kind::uv) place(of.texture_from_world);
     }
     void board(const TextureMapping& of) { mapping(of); }
-    void direction(const char* name, const glm::dvec3& v) {
-      if (!(std::abs(glm::length(v) - 1) < 1e-6))
-        validator.error(texture.where, std::string(name) + " is no direction of unit length");
+    void vector(const Field& field, const glm::dvec3& v) {
+      if (!finite(v)) error(std::string(field.name) + " is not finite");
     }
-    void count(const char* name, int value, int low, int high) {
-      if (value < low || value > high)
-        validator.error(texture.where,
-                        std::string(name) + " must lie between " + std::to_string(low) + " and " + std::to_string(high));
+    void direction(const Field& field, const glm::dvec3& v) {
+      if (!(std::abs(glm::length(v) - 1) < 1e-6)) error(std::string(field.name) + " is no direction of unit length");
     }
     void only(bool is_float) {
-      if (texture.is_float != is_float)
-        validator.error(texture.where, "the texture is of " + std::string(is_float ? "floats" : "spectra") + " alone");
+      if (texture.is_float != is_float) error("the texture is of " + std::string(is_float ? "floats" : "spectra") + " alone");
     }
-    void vectors(const std::shared_ptr<const TextureImage>& of) { image(of); }
     void place(const glm::dmat4& m) {
-      if (!moderate(m))
-        validator.error(texture.where, "the texture's transform has entries beyond 1e18, where 32-bit floats end");
+      if (!moderate(m)) error("the texture's transform has entries beyond 1e18, where 32-bit floats end");
     }
-    void check(const char* name, const TextureOperand& of, bool is_float) {
+    void check(const Field& field, const TextureOperand& of, bool is_float) {
       if (of.texture) {
         if (*of.texture >= index || validator.scene_.textures[*of.texture].is_float != is_float)
-          validator.error(texture.where,
-                          std::string(name) + " is no texture of " + (is_float ? "floats" : "spectra") + " before");
+          error(std::string(field.name) + " is no texture of " + (is_float ? "floats" : "spectra") + " before");
       } else if (!is_float) {
-        validator.spectrum(of.value, texture.where, name);
+        spectrum(field, of.value);
       } else {
         const auto* number_of = std::get_if<ConstantSpectrum>(&of.value);
-        if (!number_of || !std::isfinite(number_of->value))
-          validator.error(texture.where, std::string(name) + " is not a finite number");
+        if (!number_of || !std::isfinite(number_of->value)) error(std::string(field.name) + " is not a finite number");
       }
     }
   };
 
   /// Which parameters of a material may be textures, and whether of floats: of the calls of materials.def.
-  struct TexturedFields {
+  struct TexturedFields : IgnoresFields, CompositesInParts<TexturedFields> {
     std::map<std::string, bool, std::less<>> is_float = {};
 
-    void albedo(const char* name, const Spectrum&) { is_float[name] = false; }
-    void unbounded(const char* name, const Spectrum&) { is_float[name] = false; }
-    void index(const char*, const Spectrum&) {}
-    void number(const char* name, double, double, double) { is_float[name] = true; }
-    void whole(const char*, int, int, int) {}
-    void flag(const char*, bool) {}
-    void parts(const std::array<std::uint32_t, 2>&) {}
-    void pigment(const Spectrum&, const std::optional<Spectrum>& reflectance) {
-      is_float[reflectance ? "reflectance" : "sigma_a"] = false;
-    }
-    void roughness(double, double, const std::string& prefix = "") {
-      is_float[prefix + "alpha_u"] = is_float[prefix + "alpha_v"] = true;
-    }
-    void metal(const Spectrum&, const Spectrum&, const std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
-      if (reflectance)
-        is_float["reflectance"] = false;
-      else
-        is_float[prefix + "eta"] = is_float[prefix + "k"] = false;
-    }
+    using CompositesInParts<TexturedFields>::roughness;
+    using CompositesInParts<TexturedFields>::metal;
+    using CompositesInParts<TexturedFields>::pigment;
+
+    void albedo(const Field& field, const Spectrum&) { is_float[field.name] = false; }
+    void unbounded(const Field& field, const Spectrum&) { is_float[field.name] = false; }
+    void number(const Field& field, double) { is_float[field.name] = true; }
   };
 
   /// A texture of floats at hand, of not too many parts.
@@ -247,45 +244,37 @@ class Validator {
   }
 
   /// Of the calls of media.def.
-  struct MediumFields {
-    Validator& validator;
-    const SourceLocation& where;
+  struct MediumFields : Checks {
+    using Checks::Checks;
+    using Checks::emission;
 
     template <class Preset>
     void scattering(const ScatteringProperties& of, Preset&&) {
-      validator.spectrum(of.sigma_a, where, "sigma_a");
-      validator.spectrum(of.sigma_s, where, "sigma_s");
-      number("scale", of.scale, 0, std::numeric_limits<double>::infinity());
-      number("g", of.g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry);
+      ScatteringProperties::fields(of, *this);
     }
-    void emission(const char* name, const std::optional<Spectrum>& radiance, double scale) {
-      if (radiance) validator.spectrum(*radiance, where, name);
-      number("Lescale", scale, 0, std::numeric_limits<double>::infinity());
+    void emission(const Field& field, const std::optional<Spectrum>& radiance, double scale = 0) {
+      if (radiance) spectrum(field, *radiance);
+      number(radiance_scale_field, scale);
     }
-    void emission(const char* name, const std::optional<Spectrum>& radiance) { emission(name, radiance, 0); }
-    void number(const char* name, double value, double low, double high) {
-      if (!(value >= low && value <= high && std::isfinite(value)))
-        validator.error(where, std::string(name) + ' ' + must_lie_within(low, high));
-    }
-    void asymmetry(double g) { number("g", g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry); }
+    void asymmetry(double g) { number(asymmetry_field, g); }
     void bounds(const MediumBounds& of) {
       for (int k = 0; k < 3; ++k)
         if (!(of.p0[k] < of.p1[k] && of.p0[k] >= -largest_length && of.p1[k] <= largest_length))
-          return validator.error(where, "the medium's box from p0 to p1 has no inside");
+          return error("the medium's box from p0 to p1 has no inside");
       validator.transform(of.world_from_medium, where);
     }
     void counts(const GridCounts& of) {
       for (const int count : of)
-        if (count < 1) return validator.error(where, "a grid must have at least one cell along each side");
+        if (count < 1) return error("a grid must have at least one cell along each side");
     }
-    void grid(const char* name, const FloatGrid& of, const GridCounts& counts, bool is_needed) {
-      if (of || is_needed) values(name, of, counts, 1);
+    void grid(const Field& field, const FloatGrid& of, const GridCounts& counts, bool is_needed) {
+      if (of || is_needed) values(field.name, of, counts, 1);
     }
-    void colors(const char* name, const ColorGrid& of, const GridCounts& counts) {
-      if (of.rgb) values(name, of.rgb, counts, 3);
+    void grid(const Field& field, const ColorGrid& of, const GridCounts& counts) {
+      if (of.rgb) values(field.name, of.rgb, counts, 3);
     }
     void volume(const SparseGridPointer& density, const SparseGridPointer& temperature, const glm::dmat4& world_from_medium) {
-      if (!density || density->bricks.empty()) return validator.error(where, "the medium has no density anywhere");
+      if (!density || density->bricks.empty()) return error("the medium has no density anywhere");
       bounds({density->box.min, density->box.max, world_from_medium});
       for (const SparseGridPointer& grid : {density, temperature}) {
         if (!grid) continue;
@@ -298,29 +287,28 @@ class Validator {
         double spanned = 1;
         for (std::size_t k = 0; k < 3; ++k) spanned *= static_cast<double>(high[k] - low[k] + 1);
         if (spanned > static_cast<double>(most_spanned_bricks) || grid->values.size() != 512 * grid->bricks.size())
-          return validator.error(where, "a grid's bricks span too much, or have the wrong number of values");
+          return error("a grid's bricks span too much, or have the wrong number of values");
         validator.transform(world_from_medium * grid->medium_from_voxels, where);
         for (const float value : grid->values)
-          if (!(value >= 0 && std::isfinite(value)))
-            return validator.error(where, "a grid has values that are negative or not finite");
+          if (!(value >= 0 && std::isfinite(value))) return error("a grid has values that are negative or not finite");
       }
     }
     void heat(const std::optional<Spectrum>& radiance, const FloatGrid& temperature) {
-      if (radiance && temperature) validator.error(where, "a medium cannot have both an \"Le\" and a \"temperature\"");
+      if (radiance && temperature) error("a medium cannot have both an \"Le\" and a \"temperature\"");
     }
     void any_of(const ColorGrid& sigma_a, const ColorGrid& sigma_s, const ColorGrid& radiance) {
-      if (!sigma_a.rgb && !sigma_s.rgb) validator.error(where, "the grid needs a \"sigma_a\" or a \"sigma_s\"");
-      if (radiance.rgb && !sigma_a.rgb) validator.error(where, "an \"Le\" needs a \"sigma_a\"");
+      if (!sigma_a.rgb && !sigma_s.rgb) error("the grid needs a \"sigma_a\" or a \"sigma_s\"");
+      if (radiance.rgb && !sigma_a.rgb) error("an \"Le\" needs a \"sigma_a\"");
     }
     void values(const char* name, const FloatGrid& of, const GridCounts& counts, std::size_t each) {
       const std::size_t expected = each * cells_of(counts), given = of ? of->size() : 0;
       if (given != expected)
-        return validator.error(where, std::string(name) + " has " + std::to_string(given) + " values, but a grid of " +
-                                          std::to_string(counts[0]) + " x " + std::to_string(counts[1]) + " x " +
-                                          std::to_string(counts[2]) + " cells takes " + std::to_string(expected));
+        return error(std::string(name) + " has " + std::to_string(given) + " values, but a grid of " + std::to_string(counts[0]) +
+                     " x " + std::to_string(counts[1]) + " x " + std::to_string(counts[2]) + " cells takes " +
+                     std::to_string(expected));
       for (const float value : *of)
         if (!(value >= 0 && std::isfinite(value)))
-          return validator.error(where, std::string(name) + " has values that are negative or not finite");
+          return error(std::string(name) + " has values that are negative or not finite");
     }
   };
 
@@ -355,67 +343,39 @@ class Validator {
   }
   static constexpr double most_open_edges = 0.1;  // of a mesh that counts as closed but for holes
 
-  /// Of the calls of materials.def and lights.def.
-  struct Fields {
-    Validator& validator;
-    const SourceLocation& where;
+  /// Of the calls of lights.def.
+  struct LightFields : Checks {
+    using Checks::Checks;
 
-    void albedo(const char* name, const Spectrum& s) { validator.spectrum(s, where, "the " + std::string(name)); }
-    void unbounded(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
-    void index(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
-    void number(const char* name, double value, double low, double high) {
-      if (!(value >= low && value <= high && std::isfinite(value)))
-        validator.error(where, std::string(name) + ' ' + must_lie_within(low, high));
+    void position(const Field&, const glm::dvec3& p) {
+      if (!finite(p)) error("the light's position is not finite");
     }
-    void whole(const char* name, int value, int low, int high) { number(name, value, low, high); }
-    void flag(const char*, bool) {}
-    void parts(const std::array<std::uint32_t, 2>&) {}  // mixes()
-    void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
-      unbounded("sigma_a", sigma_a);
-      if (reflectance) albedo("reflectance", *reflectance);
+    void direction(const Field&, const Field&, const glm::dvec3& d) {
+      if (!finite(d)) error("the light's direction is not finite");
     }
-    void roughness(double u, double v, const char* = "") {
-      if (!(u >= 0 && v >= 0 && std::isfinite(u) && std::isfinite(v)))
-        validator.error(where, "the roughness must be finite and from 0 up");
-    }
-    void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance,
-               const std::string& prefix = "") {
-      unbounded((prefix + "eta").c_str(), eta);
-      unbounded((prefix + "k").c_str(), k);
-      if (reflectance) albedo("reflectance", *reflectance);
-    }
-
-    void emission(const char* name, const Spectrum& s) { validator.spectrum(s, where, name); }
-    void position(const char*, const glm::dvec3& p) {
-      if (!finite(p)) validator.error(where, "the light's position is not finite");
-    }
-    void direction(const char*, const char*, const glm::dvec3& d) {
-      if (!finite(d)) validator.error(where, "the light's direction is not finite");
-    }
-    void cone(double, double) {}
     void place(const glm::dvec3& p, const glm::dmat3& turn) {
-      position("from", p);
-      if (!finite(turn[0]) || !finite(turn[1]) || !finite(turn[2])) validator.error(where, "the light's rotation is not finite");
+      if (!finite(p)) error("the light's position is not finite");
+      if (!finite(turn[0]) || !finite(turn[1]) || !finite(turn[2])) error("the light's rotation is not finite");
     }
-    void image(const char*, const std::shared_ptr<const EnvironmentImage>& of) {
-      if (!of) return validator.error(where, "the light has no image");
+    void image(const Field&, const std::shared_ptr<const EnvironmentImage>& of) {
+      if (!of) return error("the light has no image");
       validator.image(*of, where);
     }
-    void directions(const char* name, const std::shared_ptr<const EnvironmentImage>& of) {
-      image(name, of);
-      if (of && of->width != of->height) validator.error(where, "the light's image is not square");
+    void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
+      image(field, of);
+      if (of && of->width != of->height) error("the light's image is not square");
     }
-    void profile(const char*, const std::shared_ptr<const IesProfile>& of) {
-      if (!of) return validator.error(where, "the light has no profile");
+    void profile(const Field&, const std::shared_ptr<const IesProfile>& of) {
+      if (!of) return error("the light has no profile");
       bool good = of->polar.size() >= 2 && !of->azimuths.empty() && of->candela.size() == of->polar.size() * of->azimuths.size();
       for (const auto* angles : {&of->polar, &of->azimuths})
         for (std::size_t i = 0; i < angles->size(); ++i)
           good = good && std::isfinite((*angles)[i]) && (i == 0 || (*angles)[i] > (*angles)[i - 1]);
       for (const double value : of->candela) good = good && std::isfinite(value) && value >= 0;
-      if (!good) validator.error(where, "the light's profile is no table of intensities by ascending angles");
+      if (!good) error("the light's profile is no table of intensities by ascending angles");
     }
     void sky(const InfiniteLight& l) {
-      emission("L", l.radiance);
+      emission(InfiniteLight::radiance_field, l.radiance);
       if (l.image) validator.image(*l.image, where);
       if (l.portal) validator.portal(*l.portal, where);
     }
@@ -544,7 +504,7 @@ class Validator {
 
   void light(const Light& l) {
     if (!(l.scale >= 0 && std::isfinite(l.scale))) error(l.where, "the light's scale must be finite and from 0 up");
-    std::visit([&](const auto& model) { model.fields(model, Fields{*this, l.where}); }, l.model);
+    std::visit([&](const auto& model) { model.fields(model, LightFields(*this, l.where)); }, l.model);
   }
 
   void camera(const SourceLocation& file) {

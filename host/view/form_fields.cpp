@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
+#include "scene/field.h"
 
 namespace caplet::view {
 
@@ -51,44 +52,40 @@ Model model_of(std::size_t which) {
   return Model();
 }
 
+void whole(FormFields& to, const Field& field, int& value) {
+  to.whole(field.name, value, static_cast<int>(field.low), static_cast<int>(field.high));
+}
+
 /// Calls textures "field" what scene files call them.
-class MaterialFields {
+class MaterialFields : public CompositesInParts<MaterialFields> {
  public:
   MaterialFields(FormFields& to, Material& material) : to_(to), material_(material) {}
 
-  void albedo(const char* name, Spectrum& value) { spectrum(name, value, 1); }
-  void unbounded(const char* name, Spectrum& value) { spectrum(name, value, infinity); }
-  void index(const char* name, Spectrum& value) { to_.spectrum(name, value, infinity); }
-  void number(const std::string& name, double& value, double low, double high) {
-    with_slot(name, true, [&](Slot& slot) { to_.number(name, value, low, high, &slot); });
+  void albedo(const Field& field, Spectrum& value) { spectrum(field, value); }
+  void unbounded(const Field& field, Spectrum& value) { spectrum(field, value); }
+  void index(const Field& field, Spectrum& value) { to_.spectrum(field.name, value, field.high); }
+  void number(const Field& field, double& value) {
+    with_slot(field.name, true, [&](Slot& slot) { to_.number(field.name, value, field.low, field.high, &slot); });
   }
-  void whole(const char* name, int& value, int low, int high) { to_.whole(name, value, low, high); }
-  void flag(const char* name, bool& value) { to_.flag(name, value); }
-  void parts(std::array<std::uint32_t, 2>& of) {
+  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
+  void parts(const Field&, std::array<std::uint32_t, 2>& of) {
     to_.material("material 0", of[0]);
     to_.material("material 1", of[1]);
   }
-  void roughness(double& alpha_u, double& alpha_v, const std::string& prefix = "") {
-    number(prefix + "alpha_u", alpha_u, 0, infinity);
-    number(prefix + "alpha_v", alpha_v, 0, infinity);
+  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
+    instead("metal", {std::string(fields.eta.name) + " and k", fields.reflectance.name}, {fields.eta.name, fields.k.name},
+            reflectance);
+    CompositesInParts::metal(fields, eta, k, reflectance);
   }
-  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
-    instead("metal", {prefix + "eta and k", "reflectance"}, {prefix + "eta", prefix + "k"}, reflectance);
-    if (reflectance) return spectrum("reflectance", *reflectance, 1);
-    spectrum(prefix + "eta", eta, infinity);
-    spectrum(prefix + "k", k, infinity);
-  }
-  void pigment(Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
-    instead("pigment", {"sigma_a", "reflectance"}, {"sigma_a"}, reflectance);
-    if (reflectance)
-      spectrum("reflectance", *reflectance, 1);
-    else
-      spectrum("sigma_a", sigma_a, infinity);
+  void pigment(const PigmentFields& fields, Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
+    instead("pigment", {fields.sigma_a.name, fields.reflectance.name}, {fields.sigma_a.name}, reflectance);
+    CompositesInParts::pigment(fields, sigma_a, reflectance);
   }
 
  private:
-  void spectrum(const std::string& name, Spectrum& value, double most) {
-    with_slot(name, false, [&](Slot& slot) { to_.spectrum(name, value, most, &slot); });
+  void spectrum(const Field& field, Spectrum& value) {
+    with_slot(field.name, false, [&](Slot& slot) { to_.spectrum(field.name, value, field.high, &slot); });
   }
   template <class Work>
   void with_slot(const std::string& field, bool is_float, Work&& work) {
@@ -118,96 +115,56 @@ class MaterialFields {
   Material& material_;
 };
 
-/// What a material is where nothing is said of it, as importers have it.
-struct MaterialDefaults {
-  std::uint32_t own = 0;
-  std::size_t materials = 0;
-
-  void albedo(const char*, Spectrum&) {}
-  void unbounded(const char*, Spectrum&) {}
-  void index(const char*, Spectrum&) {}
-  void number(const char*, double&, double, double) {}
-  void whole(const char*, int&, int, int) {}
-  void flag(const char*, bool&) {}
-  void parts(std::array<std::uint32_t, 2>& of) {
-    of[0] = own == 0 ? 1 : 0;
-    of[1] = materials > 2 && own != 1 ? 1 : of[0];
-  }
-  void roughness(double&, double&, const char* = "") {}
-  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>&, const char* = "") {
-    eta = *named_spectrum("metal-Cu-eta");
-    k = *named_spectrum("metal-Cu-k");
-  }
-  // Brown hair (Chiang et al. 2016).
-  void pigment(Spectrum& sigma_a, std::optional<Spectrum>&) {
-    sigma_a = RgbSpectrum{1.3 * glm::dvec3(0.419, 0.697, 1.37), ColorSpace::srgb};
-  }
-};
-
 MaterialModel default_material(std::size_t kind, std::uint32_t own, std::size_t materials) {
   MaterialModel out = model_of<MaterialModel>(kind);
-  std::visit([&](auto& m) { m.fields(m, MaterialDefaults{own, materials}); }, out);
+  if (auto* const mix = std::get_if<MixMaterial>(&out)) {
+    mix->materials[0] = own == 0 ? 1 : 0;
+    mix->materials[1] = materials > 2 && own != 1 ? 1 : mix->materials[0];
+  }
   return out;
 }
 
 /// Not seen, so that files know no shape that has it and parts no media.
 bool bounds_alone(std::size_t kind) { return std::holds_alternative<InterfaceMaterial>(model_of<MaterialModel>(kind)); }
 
-class TextureFields {
+class TextureFields : public IgnoresFields {
  public:
   TextureFields(FormFields& to, bool is_float, std::uint32_t own) : to_(to), is_float_(is_float), own_(own) {}
 
-  void operand(const char* name, TextureOperand& of) {
-    if (is_float_) return factor(name, of);
+  void operand(const Field& field, TextureOperand& of) {
+    if (is_float_) return factor(field, of);
     Slot slot{false, of.texture, own_};
-    to_.spectrum(name, of.value, infinity, &slot);
+    to_.spectrum(field.name, of.value, infinity, &slot);
     of.texture = slot.texture;
   }
-  void factor(const char* name, TextureOperand& of) {
+  void factor(const Field& field, TextureOperand& of) {
     Slot slot{true, of.texture, own_};
     const auto* constant = std::get_if<ConstantSpectrum>(&of.value);
     double value = constant ? constant->value : 0;
-    to_.number(name, value, -infinity, infinity, &slot);
+    to_.number(field.name, value, -infinity, infinity, &slot);
     of.value = ConstantSpectrum{value};
     of.texture = slot.texture;
   }
-  void number(const char* name, double& value) { to_.number(name, value, -infinity, infinity); }
+  void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
+  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  void vector(const Field& field, glm::dvec3& value) { to_.point(field.name, value); }
   template <class Names>
-  void choice(const char* name, int& value, const Names& names) {
-    to_.choice(name, value, std::vector<std::string>(names.begin(), names.end()));
+  void choice(const Field& field, int& value, const Names& names) {
+    to_.choice(field.name, value, std::vector<std::string>(names.begin(), names.end()));
   }
-  void flag(const char* name, int& value) {
-    bool is_set = value != 0;
-    to_.flag(name, is_set);
-    value = is_set ? 1 : 0;
-  }
-  void image(const std::shared_ptr<const TextureImage>& of) { to_.file("filename", of ? of->file : ""); }
+  void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
+  void image(const Field& field, const std::shared_ptr<const TextureImage>& of) { to_.file(field.name, of ? of->file : ""); }
+  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) { image(field, of); }
   void mapping(TextureMapping& of) {
     int kind = static_cast<int>(of.kind);
-    choice("mapping", kind, texture_mapping_names);
+    choice(TextureMapping::kind_field, kind, texture_mapping_names);
     of.kind = static_cast<TextureMapping::Kind>(kind);
-    if (of.kind == TextureMapping::Kind::uv) {
-      number("uscale", of.uscale);
-      number("vscale", of.vscale);
-    }
-    if (of.kind == TextureMapping::Kind::planar) {
-      to_.point("v1", of.v1);
-      to_.point("v2", of.v2);
-    }
-    if (of.kind == TextureMapping::Kind::uv || of.kind == TextureMapping::Kind::planar) {
-      number("udelta", of.udelta);
-      number("vdelta", of.vdelta);
-    }
+    TextureMapping::fields(of, *this);
   }
   void board(TextureMapping& of) {
     if (of.kind != TextureMapping::Kind::solid) mapping(of);
   }
-  void place(const glm::dmat4&) {}
-  void direction(const char* name, glm::dvec3& value) { to_.direction(name, value); }
-  void count(const char* name, int& value, int low, int high) { to_.whole(name, value, low, high); }
-  void only(bool) {}
-  void colors() {}
-  void vectors(const std::shared_ptr<const TextureImage>& of) { image(of); }
+  void direction(const Field& field, glm::dvec3& value) { to_.direction(field.name, value); }
 
  private:
   FormFields& to_;
@@ -216,27 +173,19 @@ class TextureFields {
 };
 
 /// Whether a texture can be made out of nothing: what is of images cannot, and what is of operands alone is a constant then.
-struct TextureKind {
+struct TextureKind : IgnoresFields {
   bool has_image = false, has_more = false;
   std::optional<bool> is_float = {};
 
-  void operand(const char*, const TextureOperand&) {}
-  void factor(const char*, const TextureOperand&) {}
-  void number(const char*, double) { has_more = true; }
-  template <class Names>
-  void choice(const char*, int, const Names&) {
-    has_more = true;
-  }
-  void flag(const char*, int) { has_more = true; }
-  void image(const std::shared_ptr<const TextureImage>&) { has_image = true; }
+  void number(const Field&, double) { has_more = true; }
+  void integer(const Field&, int) { has_more = true; }
   void mapping(const TextureMapping&) { has_more = true; }
   void board(const TextureMapping&) { has_more = true; }
   void place(const glm::dmat4&) { has_more = true; }
-  void direction(const char*, const glm::dvec3&) { has_more = true; }
-  void count(const char*, int, int, int) { has_more = true; }
+  void direction(const Field&, const glm::dvec3&) { has_more = true; }
+  void image(const Field&, const std::shared_ptr<const TextureImage>&) { has_image = true; }
+  void vectors(const Field&, const std::shared_ptr<const TextureImage>&) { has_image = true; }
   void only(bool of_floats) { is_float = of_floats; }
-  void colors() {}
-  void vectors(const std::shared_ptr<const TextureImage>&) { has_image = true; }
 };
 
 TextureKind texture_kind(const TextureModel& model) {
@@ -248,35 +197,60 @@ TextureKind texture_kind(const TextureModel& model) {
 struct LightFields {
   FormFields& to;
 
-  void emission(const char* name, Spectrum& value) { to.spectrum(name, value, infinity); }
-  void position(const char* name, glm::dvec3& value) { to.point(name, value); }
-  void direction(const char*, const char*, glm::dvec3& value) { to.direction("direction", value); }
-  void number(const char* name, double& value, double low, double high) { to.number(name, value, low, high); }
+  void emission(const Field& field, Spectrum& value) { to.spectrum(field.name, value, infinity); }
+  void position(const Field& field, glm::dvec3& value) { to.point(field.name, value); }
+  void direction(const Field&, const Field&, glm::dvec3& value) { to.direction("direction", value); }
+  void number(const Field& field, double& value) { to.number(field.name, value, field.low, field.high); }
   void place(glm::dvec3& at, const glm::dmat3&) { to.point("from", at); }
-  void image(const char* name, const std::shared_ptr<const EnvironmentImage>& of) { to.file(name, of ? of->file : ""); }
-  void directions(const char* name, const std::shared_ptr<const EnvironmentImage>& of) { image(name, of); }
-  void profile(const char* name, const std::shared_ptr<const IesProfile>& of) { to.file(name, of ? of->file : ""); }
+  void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { to.file(field.name, of ? of->file : ""); }
+  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { image(field, of); }
+  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) { to.file(field.name, of ? of->file : ""); }
   void cone(double& total_angle, double& falloff_start_angle) {
     const double edge_before = std::max(0.0, total_angle - falloff_start_angle), total_before = total_angle;
     double edge = edge_before;
-    angle("coneangle", total_angle, 180);
-    angle("conedeltaangle", edge, 180);
+    angle(SpotLight::cone_field, total_angle);
+    angle(SpotLight::delta_field, edge);
     if (edge != edge_before || total_angle != total_before) falloff_start_angle = std::max(0.0, total_angle - edge);
   }
   void sky(InfiniteLight& light) {
     if (light.image)
-      image("filename", light.image);
+      image(InfiniteLight::image_field, light.image);
     else
-      emission("L", light.radiance);
+      emission(InfiniteLight::radiance_field, light.radiance);
   }
 
  private:
-  void angle(const char* name, double& radians, double most) {
+  void angle(const Field& field, double& radians) {
     const double before = radians / degree;
     double now = before;
-    to.number(name, now, 0, most);
+    to.number(field.name, now, field.low, field.high);
     if (now != before) radians = now * degree;
   }
+};
+
+/// What options' `fields` visit.
+class OptionFields {
+ public:
+  explicit OptionFields(FormFields& to) : to_(to) {}
+
+  void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
+  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
+  /// An integer, as scene files say it.
+  void seed(const Field& field, std::uint32_t& value) {
+    int seed = static_cast<int>(value);
+    to_.whole(field.name, seed, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+    value = static_cast<std::uint32_t>(seed);
+  }
+  template <class Kind, class Names>
+  Kind kind(const char* name, Kind now, const Names& names) {
+    int number = static_cast<int>(now);
+    to_.choice(name, number, {names.begin(), names.end()});
+    return static_cast<Kind>(number);
+  }
+
+ private:
+  FormFields& to_;
 };
 
 /// What lights of different kinds have alike.
@@ -285,37 +259,33 @@ struct LightTraits {
   std::optional<glm::dvec3> at = {}, towards = {};
 };
 /// Takes them, or puts them.
-struct LightCopy {
-  LightTraits& traits;
-  bool puts = false;
+struct LightCopy : IgnoresFields {
+  explicit LightCopy(LightTraits& of, bool puts = false) : traits_(of), puts_(puts) {}
 
+  void emission(const Field&, Spectrum& value) { pass(value, traits_.spectrum); }
+  void position(const Field&, glm::dvec3& value) { pass(value, traits_.at); }
+  void direction(const Field&, const Field&, glm::dvec3& value) { pass(value, traits_.towards); }
+  void place(glm::dvec3& at, const glm::dmat3&) { pass(at, traits_.at); }
+  void sky(InfiniteLight& light) {
+    if (!light.image) pass(light.radiance, traits_.spectrum);
+  }
+
+ private:
   template <class T>
   void pass(T& value, std::optional<T>& kept) {
-    if (!puts)
+    if (!puts_)
       kept = value;
     else if (kept)
       value = *kept;
   }
-  void emission(const char*, Spectrum& value) { pass(value, traits.spectrum); }
-  void position(const char*, glm::dvec3& value) { pass(value, traits.at); }
-  void direction(const char*, const char*, glm::dvec3& value) { pass(value, traits.towards); }
-  void number(const char*, double, double, double) {}
-  void place(glm::dvec3& at, const glm::dmat3&) { pass(at, traits.at); }
-  template <class Image>
-  void image(const char*, const Image&) {}
-  template <class Image>
-  void directions(const char*, const Image&) {}
-  template <class Profile>
-  void profile(const char*, const Profile&) {}
-  void cone(double, double) {}
-  void sky(InfiniteLight& light) {
-    if (!light.image) pass(light.radiance, traits.spectrum);
-  }
+
+  LightTraits& traits_;
+  bool puts_;
 };
 
 LightModel light_of(std::size_t kind, LightTraits& traits) {
   LightModel out = model_of<LightModel>(kind);
-  std::visit([&](auto& m) { m.fields(m, LightCopy{traits, true}); }, out);
+  std::visit([&](auto& m) { m.fields(m, LightCopy(traits, true)); }, out);
   return out;
 }
 
@@ -410,7 +380,7 @@ void visit_form(FormFields& fields, Light& light) {
   fields.choice(kind_field, kind, light_kinds);
   if (kind != before) {
     LightTraits traits;
-    std::visit([&](auto& m) { m.fields(m, LightCopy{traits}); }, light.model);
+    std::visit([&](auto& m) { m.fields(m, LightCopy(traits)); }, light.model);
     light.model = light_of(static_cast<std::size_t>(kind), traits);
     light.power = light.illuminance = std::nullopt;
     return;
@@ -502,64 +472,30 @@ void visit_form(FormFields& fields, Shape& shape) {
 }
 
 void visit_form(FormFields& fields, ViewEdit& view, Part::Kind of) {
+  OptionFields options(fields);
   if (of == Part::Kind::film) {
     FilmSettings& film = view.film;
-    constexpr int most_pixels_along = 1 << 16;
     const int width = film.width, height = film.height;
-    fields.whole("xresolution", film.width, 1, most_pixels_along);
-    fields.whole("yresolution", film.height, 1, most_pixels_along);
+    FilmSettings::fields(film, options);
     if (film.width != width || film.height != height) film.crop.reset();  // a part of the picture that was
-    fields.number("iso", film.iso, 0, infinity);
     fields.number("exposure time", film.exposure_time, 0, infinity);
-    fields.number("whitebalance", film.white_balance, 0, 1e6);
-    fields.number("maxcomponentvalue", film.max_component_value, 0, infinity);
-    int space = static_cast<int>(film.space);
-    fields.choice("colorspace", space, {"srgb", "dci-p3", "rec2020", "aces2065-1"});
-    film.space = static_cast<ColorSpace>(space);
+    film.space = options.kind("colorspace", film.space, color_space_names);
   } else if (of == Part::Kind::filter) {
-    PixelFilter& filter = view.filter;
-    static const std::array<double, 5> radii = {0.5, 2, 1.5, 2, 4};  // pbrt-v4's
-    const auto before = static_cast<int>(filter.kind);
-    int kind = before;
-    fields.choice(kind_field, kind, {"box", "triangle", "gaussian", "mitchell", "sinc"});
-    if (kind != before) {
-      filter = PixelFilter{};
-      filter.kind = static_cast<PixelFilter::Kind>(kind);
-      filter.radius_x = filter.radius_y = radii[static_cast<std::size_t>(kind)];
-      return;
-    }
-    fields.number("xradius", filter.radius_x, 0, 64);
-    fields.number("yradius", filter.radius_y, 0, 64);
-    if (filter.kind == PixelFilter::Kind::gaussian) fields.number("sigma", filter.sigma, 0, 64);
-    if (filter.kind == PixelFilter::Kind::mitchell) {
-      fields.number("B", filter.b, -infinity, infinity);
-      fields.number("C", filter.c, -infinity, infinity);
-    }
-    if (filter.kind == PixelFilter::Kind::sinc) fields.number("tau", filter.tau, 0, 64);
+    const auto kind = options.kind(kind_field, view.filter.kind, filter_names);
+    if (kind != view.filter.kind) return view.filter.set_kind(kind);
+    PixelFilter::fields(view.filter, options);
   } else if (of == Part::Kind::sampler) {
-    int kind = static_cast<int>(view.sampler.kind);
-    fields.choice(kind_field, kind, {sampler_names.begin(), sampler_names.end()});
-    view.sampler.kind = static_cast<SamplerSettings::Kind>(kind);
-    fields.whole("pixelsamples", view.sampler.samples_per_pixel, 1, 1 << 24);
-    if (view.sampler.kind == SamplerSettings::Kind::stratified) fields.flag("jitter", view.sampler.jitter);
-    int seed = static_cast<int>(view.sampler.seed);  // as scene files say it
-    fields.whole("seed", seed, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
-    view.sampler.seed = static_cast<std::uint32_t>(seed);
+    SamplerSettings& sampler = view.sampler;
+    const auto kind = options.kind(kind_field, sampler.kind, sampler_names);
+    const std::array<int, 2> strata = strata_of(sampler);
+    sampler.kind = kind;
+    sampler.x_strata = strata[0];
+    sampler.y_strata = strata[1];
+    SamplerSettings::fields(sampler, options);
+    if (kind == SamplerSettings::Kind::stratified) sampler.samples_per_pixel = sampler.x_strata * sampler.y_strata;
   } else {
-    IntegratorSettings& integrator = view.integrator;
-    int kind = static_cast<int>(integrator.kind);
-    fields.choice(kind_field, kind, {integrator_names.begin(), integrator_names.end()});
-    integrator.kind = static_cast<IntegratorSettings::Kind>(kind);
-    if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) {
-      fields.flag("cossample", integrator.cosine_sample);
-      fields.number("maxdistance", integrator.max_distance, 0, infinity);
-      return;
-    }
-    fields.whole("maxdepth", integrator.max_depth, 0, 10000);
-    if (integrator.kind == IntegratorSettings::Kind::simple_path) {
-      fields.flag("samplebsdf", integrator.sample_bsdf);
-      fields.flag("samplelights", integrator.sample_lights);
-    }
+    view.integrator.kind = options.kind(kind_field, view.integrator.kind, integrator_names);
+    IntegratorSettings::fields(view.integrator, options);
   }
 }
 

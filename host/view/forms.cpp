@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "lower/color.h"
 #include "lower/identity.h"
+#include "scene/field.h"
 #include "view/detail/form_fields.h"
 #include "view/detail/scene_text.h"
 
@@ -25,7 +26,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t longest_text = 100;
 constexpr std::size_t most_mix_depth = 8;
-constexpr std::array<const char*, 4> space_names = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
 /// What scene files call these samples; empty: nothing.
 std::string name_of(const SampledSpectrum& spectrum) {
@@ -43,7 +43,7 @@ std::string name_of(const SampledSpectrum& spectrum) {
 Json spectrum_text(const Spectrum& spectrum) {
   if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return {{"constant", constant->value}};
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum))
-    return {{"rgb", to_json(rgb->rgb)}, {"space", space_names[static_cast<std::size_t>(rgb->space)]}};
+    return {{"rgb", to_json(rgb->rgb)}, {"space", color_space_names[static_cast<std::size_t>(rgb->space)]}};
   if (const auto* black = std::get_if<BlackbodySpectrum>(&spectrum)) return {{"blackbody", black->kelvin}};
   const auto& sampled = std::get<SampledSpectrum>(spectrum);
   const std::string name = name_of(sampled);
@@ -218,35 +218,30 @@ class Setter final : public FormFields {
 };
 
 /// A colour to know a material by, in linear sRGB: of its first spectrum.
-struct Swatch {
+struct Swatch : IgnoresFields {
+  explicit Swatch(const Scene& of, std::size_t within = 0) : scene(of), depth(within) {}
   const Scene& scene;
+  std::size_t depth;
   std::optional<glm::dvec3> color = {};
-  std::size_t depth = 0;
 
-  void albedo(const char*, const Spectrum& value) { take(of(value)); }
-  void unbounded(const char*, const Spectrum&) {}
-  void index(const char*, const Spectrum&) {}
-  void number(const char*, double, double, double) {}
-  void whole(const char*, int, int, int) {}
-  void flag(const char*, bool) {}
-  void parts(const std::array<std::uint32_t, 2>& materials) {
+  void albedo(const Field&, const Spectrum& value) { take(of(value)); }
+  void parts(const Field&, const std::array<std::uint32_t, 2>& materials) {
     glm::dvec3 sum(0);
     for (const std::uint32_t part : materials) {
-      Swatch one{scene, {}, depth + 1};
+      Swatch one(scene, depth + 1);
       if (depth < most_mix_depth && part < scene.materials.size())
         std::visit([&](const auto& m) { m.fields(m, one); }, scene.materials[part].model);
       sum += 0.5 * one.color.value_or(clear);
     }
     take(sum);
   }
-  void pigment(const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields&, const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
     if (reflectance) return take(of(*reflectance));
     const glm::dvec3 absorbed = of(sigma_a);
     take({std::exp(-2 * absorbed.x), std::exp(-2 * absorbed.y), std::exp(-2 * absorbed.z)});
   }
-  void roughness(double, double, const char* = "") {}
   /// At normal incidence.
-  void metal(const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance, const char* = "") {
+  void metal(const MetalFields&, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
     if (reflectance) return take(of(*reflectance));
     const glm::dvec3 n = of(eta), e = of(k);
     glm::dvec3 out;
@@ -267,7 +262,7 @@ struct Swatch {
 };
 
 Json swatch(const Scene& scene, const Material& material) {
-  Swatch out{scene};
+  Swatch out(scene);
   std::visit([&](const auto& m) { m.fields(m, out); }, material.model);
   return to_json(glm::clamp(out.color.value_or(Swatch::clear), 0.0, 1.0));
 }

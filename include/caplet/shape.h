@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,15 +54,24 @@ struct ShapeOptions {
   std::string object = {};  // the object definition that it becomes part of; empty: the world
 };
 
-/// What scene files know by a type and parameters, beside materials and textures.
-enum class Statement { shape, light, emission, medium, camera, film, filter, sampler, integrator };
+/// What scene files know by a type and parameters.
+enum class Statement { shape, light, emission, medium, camera, film, filter, sampler, integrator, material, texture };
 
 /// As scene files name them (docs/formats/pbrt.md).
 CAPLET_API std::vector<std::string> statement_types(Statement statement);
 
 struct KnownParameter {
   std::string name;
-  std::vector<std::string> types;  // pbrt's names: "float", "point3", "rgb", ...; none where it goes without
+  std::vector<std::string> types;  // pbrt's names: "float", "point3", "rgb", ...
+  std::string doc = {};            // what it is
+  std::string fallback = {};       // what it is where it is left out, as scene files would have it; empty: nothing
+  // The range of numbers: both ends are in it, but for `low` where above_low.
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  bool above_low = false;
+  std::string unit = {};
+  std::vector<std::string> choices = {};   // all that there are; empty: any
+  std::vector<std::string> excludes = {};  // not together with these
+  bool has_effect = true;                  // else it is read and ignored
 };
 /// Throws InputError for an unknown type.
 CAPLET_API std::vector<KnownParameter> statement_parameters(Statement statement, const std::string& type);

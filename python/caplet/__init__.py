@@ -46,7 +46,7 @@ def shape_types():
 
 def shape_parameters(type):
     """The parameters of a type of shape: [(name, types of values)]."""
-    return [(name, tuple(kinds)) for name, kinds in _caplet.statement_parameters("shape", type)]
+    return [(one["name"], tuple(one["types"])) for one in _caplet.statement_parameters("shape", type)]
 
 
 __all__ = ["Blackbody", "CROSSING", "Camera", "Error", "Image", "InputError", "Light", "Material", "Medium", "Report", "RunError", "Scene",

@@ -14,20 +14,35 @@ def spelled(name):
 
 def types(kind):
     """The names of the library's list."""
-    if kind == "material":
-        return _caplet.material_types()
-    if kind == "texture":
-        return _caplet.texture_types()
     return _caplet.statement_types(kind)
+
+
+def described_parameters(kind, type):
+    """What the library says of each parameter: dicts with name, types, doc, default, low, high, above_low, unit, choices, excludes."""
+    return [one for one in _caplet.statement_parameters(kind, type) if one["has_effect"]]
 
 
 def known_parameters(kind, type):
     """[(name, (types of values))] of the library's list."""
-    if kind == "material":
-        return [(name, ()) for name in _caplet.material_parameters(type)] + [("displacement", ("texture",)), ("normalmap", ("texture",))]
-    if kind == "texture":
-        return [(name, ()) for name in _caplet.texture_parameters(type)]
-    return [(name, tuple(kinds)) for name, kinds in _caplet.statement_parameters(kind, type)]
+    return [(one["name"], tuple(one["types"])) for one in described_parameters(kind, type)]
+
+
+def meaning(parameter):
+    """A line of help: what a parameter is, its default and its range."""
+    said = [parameter["doc"] or "of scene files"]
+    if parameter["choices"]:
+        said.append("one of " + ", ".join(repr(one) for one in parameter["choices"]))
+    low, high, unit = parameter["low"], parameter["high"], parameter["unit"]
+    least = f"above {low:g}" if parameter["above_low"] else f"from {low:g}"
+    if low > float("-inf"):
+        said.append(f"{least} to {high:g}" if high < float("inf") else f"{least} up")
+    elif high < float("inf"):
+        said.append(f"at most {high:g}")
+    if unit:
+        said.append(unit)
+    if parameter["default"]:
+        said.append("default " + parameter["default"])
+    return "; ".join(said)
 
 
 # What constructors take besides, with what they are left at.

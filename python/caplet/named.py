@@ -6,7 +6,7 @@ import inspect
 import numpy as np
 
 from .errors import InputError
-from .lists import EXTRA, known_parameters, signature, spelled, types
+from .lists import EXTRA, described_parameters, known_parameters, meaning, signature, spelled, types
 
 _FILES = "docs/formats/pbrt.md"
 
@@ -112,8 +112,9 @@ def constructor(kind, type):
     make.__signature__ = inspect.Signature([inspect.Parameter(key, only, default=None) for key in names] +
                                            [inspect.Parameter(key, only, default=value) for key, value in extra])
     lines = [f"The {kind} {type!r} ({_FILES}). What is left out is as in scene files that leave it out.", ""]
-    for key, _, kinds in asked:
-        lines.append(f"{key}: " + ("GGX's, along both directions" if key == "alpha" and kinds == () else " or ".join(kinds) or "a number, a colour or a name"))
+    said = {one["name"]: meaning(one) for one in described_parameters(kind, type)}
+    for key, name, _ in asked:
+        lines.append(f"{key}: {said.get(name, 'GGX alpha along both directions')}")
     lines += [f"{key}: {_SAID[key]}" for key, _ in extra]
     make.__doc__ = "\n".join(lines)
     return make

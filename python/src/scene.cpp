@@ -142,9 +142,10 @@ nb::ndarray<nb::numpy, double, nb::ndim<2>> transform_array(const caplet::Transf
 caplet::Statement statement_named(const std::string& name) {
   using caplet::Statement;
   static const std::vector<std::pair<const char*, Statement>> names = {
-      {"shape", Statement::shape},   {"light", Statement::light},     {"emission", Statement::emission},
-      {"medium", Statement::medium}, {"camera", Statement::camera},   {"film", Statement::film},
-      {"filter", Statement::filter}, {"sampler", Statement::sampler}, {"integrator", Statement::integrator}};
+      {"shape", Statement::shape},       {"light", Statement::light},     {"emission", Statement::emission},
+      {"medium", Statement::medium},     {"camera", Statement::camera},   {"film", Statement::film},
+      {"filter", Statement::filter},     {"sampler", Statement::sampler}, {"integrator", Statement::integrator},
+      {"material", Statement::material}, {"texture", Statement::texture}};
   for (const auto& [known, statement] : names)
     if (name == known) return statement;
   throw nb::value_error("no such kind of statement");
@@ -219,15 +220,24 @@ void bind_scene(nb::module_& m) {
   using caplet::Scene;
   m.def("statement_types", [](const std::string& kind) { return caplet::statement_types(statement_named(kind)); });
   m.def("statement_parameters", [](const std::string& kind, const std::string& type) {
-    std::vector<std::pair<std::string, std::vector<std::string>>> out;
-    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement_named(kind), type))
-      out.emplace_back(one.name, one.types);
+    nb::list out;
+    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement_named(kind), type)) {
+      nb::dict row;
+      row["name"] = one.name;
+      row["types"] = one.types;
+      row["doc"] = one.doc;
+      row["default"] = one.fallback;
+      row["low"] = one.low;
+      row["high"] = one.high;
+      row["above_low"] = one.above_low;
+      row["unit"] = one.unit;
+      row["choices"] = one.choices;
+      row["excludes"] = one.excludes;
+      row["has_effect"] = one.has_effect;
+      out.append(row);
+    }
     return out;
   });
-  m.def("material_types", &caplet::material_types);
-  m.def("texture_types", &caplet::texture_types);
-  m.def("material_parameters", &caplet::material_parameters);
-  m.def("texture_parameters", &caplet::texture_parameters);
   m.def("color_map", [](double part) {
     const caplet::Rgb color = caplet::color_map(part);
     return nb::make_tuple(color.r, color.g, color.b);

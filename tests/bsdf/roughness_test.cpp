@@ -40,13 +40,12 @@ struct Straight {
 };
 
 Straight straight_back(double alpha_u, double alpha_v) {
-  ConductorMaterial metal;
+  Scene scene;
+  auto& metal = scene.materials.emplace_back().model.emplace<ConductorMaterial>();
   metal.eta = ConstantSpectrum{0.2};
   metal.k = ConstantSpectrum{3.9};
   metal.alpha_u = alpha_u;
   metal.alpha_v = alpha_v;
-  Scene scene;
-  scene.materials.emplace_back().model = metal;
   scene.shapes.emplace_back().geometry = SphereShape{1};
   FlatScene flat = lower(scene);
   flat.spectrum_tables.push_back(0);  // never empty

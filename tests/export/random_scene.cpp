@@ -91,7 +91,9 @@ struct Files {
   mutable std::shared_ptr<const IesProfile> lamp = {};
 };
 
-struct FillTexture {
+struct FillTexture : IgnoresFields {
+  FillTexture(Random& draws, const Files& from, const Scene& of, bool floats)
+      : random(draws), files(from), scene(of), is_float(floats) {}
   Random& random;
   const Files& files;
   const Scene& scene;
@@ -104,20 +106,20 @@ struct FillTexture {
       if (scene.textures[i].is_float == floats && texture_steps(scene.textures, i) < 8) return i;
     return std::nullopt;
   }
-  void operand(const char*, TextureOperand& of) { put(of, is_float); }
-  void factor(const char*, TextureOperand& of) { put(of, true); }
+  void operand(const Field&, TextureOperand& of) { put(of, is_float); }
+  void factor(const Field&, TextureOperand& of) { put(of, true); }
   void put(TextureOperand& of, bool floats) {
     of.value = floats ? Spectrum(ConstantSpectrum{random.uniform(0.1, 0.9)}) : random.spectrum(0.9);
     // The first is a texture, for what is of constants alone is read as one.
     if (operands++ == 0 || random.one_in(4)) of.texture = other(floats);
   }
-  void number(const char*, double& value) { value = random.uniform(0.2, 2); }
+  void number(const Field&, double& value) { value = random.uniform(0.2, 2); }
   template <class Names>
-  void choice(const char*, int& value, const Names& names) {
+  void choice(const Field&, int& value, const Names& names) {
     value = static_cast<int>(random.below(names.size()));
   }
-  void flag(const char*, int& value) { value = static_cast<int>(random.below(2)); }
-  void image(std::shared_ptr<const TextureImage>& of) {
+  void flag(const Field&, bool& value) { value = random.one_in(2); }
+  void image(const Field&, std::shared_ptr<const TextureImage>& of) {
     const ImageEncoding encodings[] = {{}, {ImageEncoding::Kind::linear, 1}, {ImageEncoding::Kind::gamma, 2.1}};
     of = files.texture("colors.png", encodings[random.below(3)]);
   }
@@ -136,16 +138,14 @@ struct FillTexture {
     of.texture_from_world = random.transform();
   }
   void place(glm::dmat4& of) { of = random.transform(); }
-  void direction(const char*, glm::dvec3& of) { of = random.direction(); }
-  void count(const char*, int& value, int low, int high) {
-    value = low + 1 + static_cast<int>(random.below(static_cast<std::size_t>(std::min(high - low, 6))));
-  }
+  void direction(const Field&, glm::dvec3& of) { of = random.direction(); }
+  void integer(const Field& field, int& value) { value = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(6)); }
   void only(bool floats) { fits = fits && floats == is_float; }
-  void colors() {}
-  void vectors(std::shared_ptr<const TextureImage>&) { fits = false; }
+  void vectors(const Field&, std::shared_ptr<const TextureImage>&) { fits = false; }
 };
 
-struct FillMaterial {
+struct FillMaterial : CompositesInParts<FillMaterial> {
+  FillMaterial(Random& draws, const Scene& of, Material& to) : random(draws), scene(of), material(to) {}
   Random& random;
   const Scene& scene;
   Material& material;
@@ -159,35 +159,28 @@ struct FillMaterial {
     material.textures.push_back({field, fitting[random.below(fitting.size())]});
     return true;
   }
-  void albedo(const std::string& name, Spectrum& of) {
-    if (!textured(name, false)) of = random.spectrum(0.99);
+  void albedo(const Field& field, Spectrum& of) {
+    if (!textured(field.name, false)) of = random.spectrum(0.99);
   }
-  void unbounded(const std::string& name, Spectrum& of) {
-    if (!textured(name, false)) of = random.spectrum(3);
+  void unbounded(const Field& field, Spectrum& of) {
+    if (!textured(field.name, false)) of = random.spectrum(3);
   }
-  void index(const char*, Spectrum& of) {
+  void index(const Field&, Spectrum& of) {
     of = random.one_in(2) ? Spectrum(ConstantSpectrum{random.uniform(1.1, 2)}) : SampledSpectrum{{400, 700}, {1.6, 1.5}};
   }
-  void number(const std::string& name, double& of, double low, double high) {
-    if (!textured(name, true)) of = random.within(low, high);
+  void number(const Field& field, double& of) {
+    if (!textured(field.name, true)) of = random.within(field.low, field.high);
   }
-  void whole(const char*, int& of, int low, int) { of = low + 1 + static_cast<int>(random.below(9)); }
-  void flag(const char*, bool& of) { of = random.one_in(2); }
-  void parts(std::array<std::uint32_t, 2>& of) { of = {0, 1}; }
-  void pigment(Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
-    if (random.one_in(2)) return unbounded("sigma_a", sigma_a);
-    albedo("reflectance", reflectance.emplace(ConstantSpectrum{0.5}));
+  void integer(const Field& field, int& of) { of = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(9)); }
+  void flag(const Field&, bool& of) { of = random.one_in(2); }
+  void parts(const Field&, std::array<std::uint32_t, 2>& of) { of = {0, 1}; }
+  void pigment(const PigmentFields& fields, Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
+    if (random.one_in(2)) reflectance = ConstantSpectrum{0.5};
+    CompositesInParts::pigment(fields, sigma_a, reflectance);
   }
-  void roughness(double& u, double& v, const std::string& prefix = "") {
-    number(prefix + "alpha_u", u, 0, 1);
-    number(prefix + "alpha_v", v, 0, 1);
-  }
-  void metal(Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance, const std::string& prefix = "") {
-    eta = *named_spectrum("metal-Cu-eta");
-    k = *named_spectrum("metal-Cu-k");
-    if (random.one_in(2)) return albedo("reflectance", reflectance.emplace(ConstantSpectrum{0.5}));
-    unbounded(prefix + "eta", eta);
-    unbounded(prefix + "k", k);
+  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
+    if (random.one_in(2)) reflectance = ConstantSpectrum{0.5};
+    CompositesInParts::metal(fields, eta, k, reflectance);
   }
 };
 
@@ -201,25 +194,25 @@ struct FillMedium {
     of = {random.spectrum(2), random.spectrum(2), random.uniform(0.5, 2), random.uniform(-0.9, 0.9)};
   }
   void asymmetry(double& g) { g = random.uniform(-0.9, 0.9); }
-  void emission(const char*, std::optional<Spectrum>& of) {
+  void emission(const Field&, std::optional<Spectrum>& of) {
     if (random.one_in(2)) of = random.spectrum(2);
   }
-  void emission(const char* name, std::optional<Spectrum>& of, double& scale) {
-    emission(name, of);
+  void emission(const Field& field, std::optional<Spectrum>& of, double& scale) {
+    emission(field, of);
     scale = random.uniform(0.1, 2);
   }
   void bounds(MediumBounds& of) { of = {random.direction() - 2.0, random.direction() + 2.0, random.transform()}; }
   void counts(GridCounts& of) { of = counts_ = {2, 3, 1 + static_cast<int>(random.below(3))}; }
-  void grid(const char* name, FloatGrid& of, const GridCounts&, bool is_needed) {
-    if (is_needed || std::string(name) != "temperature") of = values(1);
+  void grid(const Field& field, FloatGrid& of, const GridCounts&, bool is_needed) {
+    if (is_needed || std::string(field.name) != "temperature") of = values(1);
   }
-  void colors(const char*, ColorGrid& of, const GridCounts&) { of = {values(3), static_cast<ColorSpace>(random.below(4))}; }
+  void grid(const Field&, ColorGrid& of, const GridCounts&) { of = {values(3), static_cast<ColorSpace>(random.below(4))}; }
   FloatGrid values(std::size_t each) {
     std::vector<float> out(each * cells_of(counts_));
     for (float& value : out) value = static_cast<float>(random.uniform(0, 2));
     return std::make_shared<const std::vector<float>>(std::move(out));
   }
-  void number(const char*, double& of, double low, double high) { of = random.within(low, high); }
+  void number(const Field& field, double& of) { of = random.within(field.low, field.high); }
   void volume(SparseGridPointer&, SparseGridPointer&, glm::dmat4&) { fits = false; }  // of files: round_trip_test.cpp
   void heat(const std::optional<Spectrum>&, const FloatGrid&) {}
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
@@ -229,17 +222,17 @@ struct FillLight {
   Random& random;
   const Files& files;
 
-  void emission(const char*, Spectrum& of) { of = random.spectrum(5); }
-  void position(const char*, glm::dvec3& of) { of = 7.0 * random.direction(); }
-  void direction(const char*, const char*, glm::dvec3& of) { of = random.direction(); }
-  void number(const char*, double& of, double low, double high) { of = random.uniform(low, high); }
+  void emission(const Field&, Spectrum& of) { of = random.spectrum(5); }
+  void position(const Field&, glm::dvec3& of) { of = 7.0 * random.direction(); }
+  void direction(const Field&, const Field&, glm::dvec3& of) { of = random.direction(); }
+  void number(const Field& field, double& of) { of = random.uniform(field.low, field.high); }
   void place(glm::dvec3& at, glm::dmat3& turn) {
     at = 7.0 * random.direction();
     turn = random.turn();
   }
-  void image(const char*, std::shared_ptr<const EnvironmentImage>& of) { of = read("wide.exr"); }
-  void directions(const char*, std::shared_ptr<const EnvironmentImage>& of) { of = read("square.exr"); }
-  void profile(const char*, std::shared_ptr<const IesProfile>& of) {
+  void image(const Field&, std::shared_ptr<const EnvironmentImage>& of) { of = read("wide.exr"); }
+  void directions(const Field&, std::shared_ptr<const EnvironmentImage>& of) { of = read("square.exr"); }
+  void profile(const Field&, std::shared_ptr<const IesProfile>& of) {
     if ((of = files.lamp)) return;
     auto made = std::make_shared<IesProfile>();
     made->file = files.named("lamp.ies");
@@ -287,14 +280,14 @@ class Maker {
   void textures() {
     for (const bool is_float : {true, false}) {
       BilerpTexture first;
-      FillTexture fill{random_, files_, scene_, is_float};
+      FillTexture fill(random_, files_, scene_, is_float);
       BilerpTexture::fields(first, fill);
       scene_.textures.push_back({first, is_float, "first", {}});
     }
 #define TEXTURE_MODEL(row, Type)                                                                    \
   for (const bool is_float : {true, false}) {                                                       \
     Type model;                                                                                     \
-    FillTexture fill{random_, files_, scene_, is_float};                                            \
+    FillTexture fill(random_, files_, scene_, is_float);                                            \
     Type::fields(model, fill);                                                                      \
     if (fill.fits) scene_.textures.push_back({model, is_float, random_.one_in(3) ? "" : #row, {}}); \
   }
@@ -307,7 +300,7 @@ class Maker {
   for (int i = 0; i < 2; ++i) {                                                                              \
     Material material;                                                                                       \
     Type model;                                                                                              \
-    Type::fields(model, FillMaterial{random_, scene_, material});                                            \
+    Type::fields(model, FillMaterial(random_, scene_, material));                                            \
     material.model = model;                                                                                  \
     material.name = i == 0 ? #row : "two of \"" #row "\"";                                                   \
     if (!std::is_same_v<Type, InterfaceMaterial>) bend(material);                                            \

@@ -98,7 +98,7 @@ TEST_F(LightFiles, WhatIsWrongHasItsPlace) {
       only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float fov\" 180"),
       "scene.pbrt:2:" +
           std::to_string(std::string("LightSource \"projection\" \"string filename\" \"wide.exr\" ").size() + at.size() + 1) +
-          ": LightSource \"projection\": \"fov\" must lie between 0.001000 and 179.999000");
+          ": LightSource \"projection\": \"fov\" must lie between 0.001 and 179.999");
   EXPECT_THAT(only("LightSource \"projection\" \"string filename\" \"@wide.exr\" \"float scale\" -1"),
               HasSubstr("\"scale\" must not be negative"));
   EXPECT_THAT(only("Scale 1 2 1 LightSource \"goniometric\" \"string filename\" \"@square.exr\""),

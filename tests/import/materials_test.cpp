@@ -266,6 +266,23 @@ TEST(Hair, ColoursAndShape) {
   EXPECT_FALSE(scene.shapes[5].one_sided);
 }
 
+TEST(Materials, AlphaIsGgxsOwn) {
+  const Scene scene = scene_of(
+      "WorldBegin\nMaterial \"conductor\" \"float alpha_u\" .3 \"float alpha_v\" .2 Shape \"sphere\"\n"
+      "Material \"coatedconductor\" \"float interface.alpha_v\" .4 \"float conductor.roughness\" .25 Shape \"sphere\"");
+  const auto& metal = std::get<ConductorMaterial>(scene.materials[scene.shapes[0].material].model);
+  EXPECT_EQ(metal.alpha_u, 0.3);
+  EXPECT_EQ(metal.alpha_v, 0.2);
+  const auto& coated = std::get<CoatedConductorMaterial>(scene.materials[scene.shapes[1].material].model);
+  EXPECT_EQ(coated.interface_alpha_u, 0);
+  EXPECT_EQ(coated.interface_alpha_v, 0.4);
+  EXPECT_EQ(coated.alpha_u, 0.5);  // remapped
+  EXPECT_THAT(complaint_of([] {
+                scene_of("WorldBegin\nMaterial \"conductor\" \"float alpha_u\" .3 \"float roughness\" .2 Shape \"sphere\"");
+              }),
+              testing::HasSubstr("\"roughness\" cannot be combined with \"alpha_u\""));
+}
+
 TEST(Materials, WrongNumbersHaveTheirPlace) {
   const auto said = [](const std::string& text) {
     return complaints("WorldBegin\nMaterial " + text + "\nShape \"sphere\"").front();

@@ -42,7 +42,7 @@ TEST(Sensors, UnknownOnesAndWhites) {
   EXPECT_THAT(said_of("Film \"rgb\" \"string sensor\" \"nikon_d85\"\n" + std::string(ball)),
               HasSubstr("scene.pbrt:1:12: Film \"rgb\": \"sensor\" is \"nikon_d85\"; the nearest known name is \"nikon_d850\""));
   EXPECT_THAT(said_of("Film \"rgb\" \"float whitebalance\" -1\n" + std::string(ball)),
-              HasSubstr("scene.pbrt:1:12: Film \"rgb\": \"whitebalance\" must not be negative"));
+              HasSubstr("scene.pbrt:1:12: Film \"rgb\": \"whitebalance\" must lie between 0 and 25000"));
   EXPECT_THAT(said_of("Film \"rgb\" \"float whitebalance\" 500\n" + std::string(ball)), HasSubstr("must lie between 1000"));
 }
 
@@ -180,7 +180,7 @@ TEST(Cameras, Spherical) {
   EXPECT_EQ(of(" \"string mapping\" \"equalarea\" \"float lensradius\" 1"), SphericalProjection::Mapping::equal_area);
   EXPECT_EQ(of(" \"string mapping\" \"equirectangular\""), SphericalProjection::Mapping::equirectangular);
   EXPECT_THAT(said_of("Camera \"spherical\" \"string mapping\" \"mercator\"\n" + std::string(ball)),
-              HasSubstr("\"mapping\" must be \"equalarea\" or \"equirectangular\""));
+              HasSubstr("\"mapping\" is \"mercator\"; the nearest known name is \"equalarea\""));
   EXPECT_THAT(said_of("Camera \"spherical\" \"float fov\" 40\n" + std::string(ball)), HasSubstr("unknown parameter \"fov\""));
 }
 
@@ -194,7 +194,7 @@ TEST(Films, CropsAreRoundedUp) {
 
 TEST(Cameras, LensesHaveARadius) {
   EXPECT_THAT(said_of("Camera \"perspective\" \"float lensradius\" -.5\n" + std::string(ball)),
-              HasSubstr("scene.pbrt:1:22: Camera \"perspective\": \"lensradius\" must not be negative"));
+              HasSubstr("scene.pbrt:1:22: Camera \"perspective\": \"lensradius\" must be finite and from 0 up"));
 }
 
 TEST(Cameras, HalfTheFieldOfView) {

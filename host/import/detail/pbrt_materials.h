@@ -20,6 +20,7 @@ using TextureImages = std::function<std::shared_ptr<const TextureImage>(Paramete
 struct TextureContext {
   glm::dmat4 world_from_texture, texture_from_world;
   TextureImages images;
+  bool needs_files = true;  // an image without a "filename" is an error
 };
 
 /// The "encoding" of an image.
@@ -36,5 +37,13 @@ using PartFinder = std::function<std::optional<std::uint32_t>(const std::string&
 /// the medium behind its boundary.
 Material make_material(const std::string& type, Parameters& parameters, const TextureTable& textures, const TextureImages& images,
                        const PartFinder& part_named, Scene& scene, std::optional<Medium>& within);
+
+/// A material that a program states: as make_material, but what bends its normals is for others to say, and textures that it
+/// would need beside those of `textures` are errors.
+Material make_program_material(const std::string& type, Parameters& parameters, const TextureTable& textures,
+                               const PartFinder& part_named);
+/// A texture that a program states, "normalmap" among them; none with what is wrong reported.
+std::optional<Texture> make_program_texture(const std::string& texture_class, bool is_float, Parameters& parameters,
+                                            const TextureTable& textures, const TextureContext& context);
 
 }  // namespace caplet::pbrt

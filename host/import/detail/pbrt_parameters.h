@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <forward_list>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -81,12 +80,6 @@ void add_errors(const InputError& problem, const SourceLocation& where, Diagnost
 /// Finds files that statements name: beside the file with the statement, else beside the scene's main file.
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
 
-/// What a statement asks for: a parameter, and the types that it may have; none where only its being there was asked for.
-struct AskedParameter {
-  std::string name;
-  std::vector<std::string> types;
-};
-
 /// One statement's parameters. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). Reading
 /// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback. Names asked for are literals:
 /// they are kept as they are.
@@ -115,11 +108,8 @@ class Parameters {
   void ignore(std::string_view name);
   /// Everything not asked for is an error that lists the nearest name asked for.
   void finish();
-  /// What was asked for by now, in order.
-  std::vector<AskedParameter> asked() const;
-
-  /// A name that is no literal, to ask for.
-  const char* kept(std::string name) { return kept_.emplace_front(std::move(name)).c_str(); }
+  /// The names that were asked for by now, in order; some more than once.
+  std::vector<std::string> asked() const { return {asked_.begin(), asked_.end()}; }
 
   /// `kind` as for Diagnostics::error.
   void error(std::string_view name, const std::string& message, const std::string& kind = {});
@@ -131,8 +121,6 @@ class Parameters {
   /// The colour space at the statement.
   ColorSpace space() const { return space_; }
   Diagnostics& diagnostics() { return *diagnostics_; }
-  /// From now on types that are asked for are noted, for asked().
-  void note_types() { notes_types_ = true; }
   /// Errors from now on go there.
   void report_to(Diagnostics& diagnostics) { diagnostics_ = &diagnostics; }
 
@@ -149,9 +137,6 @@ class Parameters {
   ColorSpace space_;
   Diagnostics* diagnostics_;
   std::vector<std::string_view> asked_;
-  std::map<std::string_view, std::vector<std::string>> asked_types_;
-  bool notes_types_ = false;
-  std::forward_list<std::string> kept_;
 };
 
 }  // namespace caplet::pbrt

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "scene/field.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
 
@@ -17,8 +18,8 @@ struct DistantLight {
   static constexpr LightUnit unit = LightUnit::illuminance;
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.emission("L", self.irradiance);
-    visit.direction("from", "to", self.direction);
+    visit.emission({"L", "irradiance at right angles", 0}, self.irradiance);
+    visit.direction({"from", "a point"}, {"to", "a point towards which light goes from there"}, self.direction);
   }
   double per_unit() const { return 1; }
   double power(double radius) const { return std::numbers::pi * radius * radius; }

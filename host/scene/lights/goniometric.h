@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "scene/field.h"
 #include "scene/light_image.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
@@ -22,9 +23,9 @@ struct GoniometricLight {
   static constexpr LightUnit unit = LightUnit::power;
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.emission("I", self.intensity);
+    visit.emission({"I", "radiant intensity, times the image's", 0}, self.intensity);
     visit.place(self.position, self.world_from_light);
-    visit.directions("filename", self.image);
+    visit.directions({"filename", "image over all directions, square, equal-area"}, self.image);
   }
   double solid_angle(double, double) const { return 4 * std::numbers::pi; }
   LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0, solid_angle(0, 0)}; }

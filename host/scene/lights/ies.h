@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/field.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
 
@@ -53,9 +54,9 @@ struct IesLight {
   static constexpr LightUnit unit = LightUnit::power;
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.emission("I", self.intensity);
+    visit.emission({"I", "radiant intensity for each candela", 0}, self.intensity);
     visit.place(self.position, self.world_from_light);
-    visit.profile("filename", self.profile);
+    visit.profile({"filename", "the luminaire's IES profile"}, self.profile);
   }
   double per_unit() const { return profile->flux(); }
   LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0, 4 * std::numbers::pi}; }

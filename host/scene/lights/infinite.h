@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "scene/field.h"
 #include "scene/light_image.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
@@ -24,6 +25,11 @@ struct InfiniteLight {
   std::shared_ptr<const EnvironmentImage> image;
   glm::dmat3 world_from_light{1};       // rotation, possibly mirroring
   std::optional<LightPortal> portal{};  // through which alone it is seen
+
+  static constexpr Field radiance_field = {"L", "radiance, the same in all directions", 0};
+  static constexpr Field image_field = {"filename", "image over all directions: square equal-area, or 2:1 latitude-longitude"};
+  static constexpr Field preset_field = {"preset", "a sky of Caplet's own by its name"};
+  static constexpr Field portal_field = {"portal", "corners of a rectangle through which alone it is seen"};
 
   static constexpr LightUnit unit = LightUnit::illuminance;
   template <class Self, class Visit>

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "scene/field.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
 
@@ -17,8 +18,8 @@ struct PointLight {
   static constexpr LightUnit unit = LightUnit::power;
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.emission("I", self.intensity);
-    visit.position("from", self.position);
+    visit.emission({"I", "radiant intensity", 0}, self.intensity);
+    visit.position({"from", "position"}, self.position);
   }
   double per_unit() const { return 4 * std::numbers::pi; }
   double power(double) const { return per_unit(); }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "scene/field.h"
 #include "scene/light_image.h"
 #include "scene/lights/unit.h"
 
@@ -24,8 +25,8 @@ struct ProjectionLight {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.place(self.position, self.world_from_light);
-    visit.image("filename", self.image);
-    visit.number("fov", self.fov, 0.001, 179.999);
+    visit.image({"filename", "the picture that is projected"}, self.image);
+    visit.number({"fov", "field of view of the picture's shorter side", 0.001, 179.999, "degrees"}, self.fov);
   }
   /// Cubed cosine of the place at distance 1 (Pharr, Jakob and Humphreys 2023, section 12.2.2).
   double solid_angle(double u, double v) const {

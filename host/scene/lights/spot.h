@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "scene/field.h"
 #include "scene/lights/unit.h"
 #include "scene/spectrum.h"
 
@@ -19,12 +20,15 @@ struct SpotLight {
   double total_angle = 0.5235987755982988;          // half angle of the cone
   double falloff_start_angle = 0.4363323129985824;  // where the smooth falloff starts (smoothstep in cos, as pbrt-v4)
 
+  static constexpr Field cone_field = {"coneangle", "half angle of the cone", 0, 180, "degrees"};
+  static constexpr Field delta_field = {"conedeltaangle", "width of the smooth edge within the cone", 0, 180, "degrees"};
+
   static constexpr LightUnit unit = LightUnit::power;
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.emission("I", self.intensity);
-    visit.position("from", self.position);
-    visit.direction("from", "to", self.direction);
+    visit.emission({"I", "radiant intensity on the axis", 0}, self.intensity);
+    visit.position({"from", "position"}, self.position);
+    visit.direction({"from", "position"}, {"to", "a point on the axis"}, self.direction);
     visit.cone(self.total_angle, self.falloff_start_angle);
   }
   /// The solid angle of the cone. The mean of the smooth edge is a half.

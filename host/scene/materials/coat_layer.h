@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -21,11 +22,11 @@ struct CoatLayer {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.number("thickness", self.thickness, 0, std::numeric_limits<double>::infinity());
-    visit.albedo("albedo", self.albedo);
-    visit.number("g", self.g, -most_asymmetry, most_asymmetry);
-    visit.whole("maxdepth", self.max_depth, 0, most_walks);
-    visit.whole("nsamples", self.samples, 1, most_walks);
+    visit.number({"thickness", "thickness of the coat in mean free paths", 0}, self.thickness);
+    visit.albedo({"albedo", "albedo of scattering within the coat", 0, 1}, self.albedo);
+    visit.number({"g", "mean cosine of a scattering within the coat", -most_asymmetry, most_asymmetry}, self.g);
+    visit.integer({"maxdepth", "most events of a walk between coat and base", 0, most_walks}, self.max_depth);
+    visit.integer({"nsamples", "walks whose mean is a value", 1, most_walks}, self.samples);
   }
 };
 

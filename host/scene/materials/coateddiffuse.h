@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/materials/coat_layer.h"
+#include "scene/materials/composites.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -16,9 +17,9 @@ struct CoatedDiffuseMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.albedo("reflectance", self.reflectance);
-    visit.index("eta", self.eta);
-    visit.roughness(self.alpha_u, self.alpha_v);
+    visit.albedo({"reflectance", "reflectance of the base", 0, 1}, self.reflectance);
+    visit.index({"eta", "index of refraction of the coat", 0}, self.eta);
+    visit.roughness(surface_roughness, self.alpha_u, self.alpha_v);
     CoatLayer::fields(self.layer, visit);
   }
 };

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/materials/composites.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -14,9 +15,9 @@ struct DielectricMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.index("eta", self.eta);
-    visit.roughness(self.alpha_u, self.alpha_v);
-    visit.flag("multiscatter", self.multiscatter);
+    visit.index({"eta", "index of refraction inside, relative to outside", 0}, self.eta);
+    visit.roughness(surface_roughness, self.alpha_u, self.alpha_v);
+    visit.flag(multiscatter_field, self.multiscatter);
   }
 };
 

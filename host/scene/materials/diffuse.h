@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -11,7 +12,7 @@ struct DiffuseMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.albedo("reflectance", self.reflectance);
+    visit.albedo({"reflectance", "share of the light that is reflected", 0, 1}, self.reflectance);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -15,9 +16,9 @@ struct DiffuseTransmissionMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.albedo("reflectance", self.reflectance);
-    visit.albedo("transmittance", self.transmittance);
-    visit.number("scale", self.scale, 0, std::numeric_limits<double>::infinity());
+    visit.albedo({"reflectance", "share of the light that is reflected", 0, 1}, self.reflectance);
+    visit.albedo({"transmittance", "share of the light that is transmitted", 0, 1}, self.transmittance);
+    visit.number({"scale", "factor of both", 0}, self.scale);
   }
 };
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "scene/field.h"
+
 namespace caplet {
 
 /// Now one material, now the other: the second with the probability `amount`. They are indices into Scene::materials, and a mix
@@ -15,8 +17,8 @@ struct MixMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.parts(self.materials);
-    visit.number("amount", self.amount, 0, 1);
+    visit.parts({"materials", "names of the two materials"}, self.materials);
+    visit.number({"amount", "probability of the second", 0, 1}, self.amount);
   }
 };
 

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -12,7 +13,7 @@ struct ThinDielectricMaterial {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.index("eta", self.eta);
+    visit.index({"eta", "index of refraction of the pane", 0}, self.eta);
   }
 };
 

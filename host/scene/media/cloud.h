@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scene/field.h"
 #include "scene/media/grid.h"
 #include "scene/media/scattering.h"
 
@@ -17,12 +18,11 @@ struct CloudMedium {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    constexpr double most = std::numeric_limits<double>::infinity();
     visit.scattering(self.scattering, unit_scattering);
     visit.bounds(self.bounds);
-    visit.number("density", self.density, 0, most);
-    visit.number("wispiness", self.wispiness, 0, most);
-    visit.number("frequency", self.frequency, 0, most);
+    visit.number({"density", "density of the cloud's bulk", 0}, self.density);
+    visit.number({"wispiness", "how far noise moves the cloud's edges", 0}, self.wispiness);
+    visit.number({"frequency", "frequency of the noise", 0}, self.frequency);
   }
 };
 

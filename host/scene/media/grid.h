@@ -21,6 +21,9 @@ struct MediumBounds {
 
 /// How many cells a box is cut into, along x, y and z.
 using GridCounts = std::array<int, 3>;
+/// Names in scene files.
+inline constexpr std::array grid_count_names = {"nx", "ny", "nz"};
+
 inline std::size_t cells_of(const GridCounts& counts) {
   return static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(counts[2]);
 }

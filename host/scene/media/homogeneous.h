@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "scene/field.h"
 #include "scene/media/scattering.h"
 #include "scene/spectrum.h"
 
@@ -18,7 +19,7 @@ struct HomogeneousMedium {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.scattering(self.scattering, milk);
-    visit.emission("Le", self.radiance, self.radiance_scale);
+    visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance, self.radiance_scale);
   }
   /// What has no parameters: a glass of milk in millimetres, as pbrt-v4 has it.
   static ScatteringProperties milk() { return *named_scattering("Wholemilk"); }

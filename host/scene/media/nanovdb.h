@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scene/field.h"
 #include "scene/media/scattering.h"
 #include "scene/media/sparse_grid.h"
 
@@ -18,12 +19,11 @@ struct NanovdbMedium {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    constexpr double most = std::numeric_limits<double>::infinity();
     visit.scattering(self.scattering, unit_scattering);
     visit.volume(self.density, self.temperature, self.world_from_medium);
-    visit.number("Lescale", self.radiance_scale, 0, most);
-    visit.number("temperaturescale", self.temperature_scale, -most, most);
-    visit.number("temperatureoffset", self.temperature_offset, -most, most);
+    visit.number(radiance_scale_field, self.radiance_scale);
+    visit.number({"temperaturescale", "factor of the temperatures"}, self.temperature_scale);
+    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"}, self.temperature_offset);
   }
 };
 

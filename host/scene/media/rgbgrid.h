@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scene/field.h"
 #include "scene/media/grid.h"
 #include "scene/media/scattering.h"
 
@@ -20,15 +21,14 @@ struct RgbGridMedium {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    constexpr double most = std::numeric_limits<double>::infinity();
-    visit.number("scale", self.scale, 0, most);
+    visit.number({"scale", "factor of both coefficients", 0}, self.scale);
     visit.asymmetry(self.g);
     visit.bounds(self.bounds);
     visit.counts(self.counts);
-    visit.colors("sigma_a", self.sigma_a, self.counts);
-    visit.colors("sigma_s", self.sigma_s, self.counts);
-    visit.colors("Le", self.radiance, self.counts);
-    visit.number("Lescale", self.radiance_scale, 0, most);
+    visit.grid({"sigma_a", "absorption of the cells, x fastest", 0}, self.sigma_a, self.counts);
+    visit.grid({"sigma_s", "scattering of the cells, x fastest", 0}, self.sigma_s, self.counts);
+    visit.grid({"Le", "radiance that the cells emit per absorption", 0}, self.radiance, self.counts);
+    visit.number(radiance_scale_field, self.radiance_scale);
     visit.any_of(self.sigma_a, self.sigma_s, self.radiance);
   }
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/field.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -18,7 +19,20 @@ struct ScatteringProperties {
   double scale = 1, g = 0;
 
   static constexpr double most_asymmetry = 0.999999;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit.unbounded({"sigma_a", "absorption per unit of length", 0}, self.sigma_a);
+    visit.unbounded({"sigma_s", "scattering per unit of length", 0}, self.sigma_s);
+    visit.number({"scale", "factor of both coefficients", 0}, self.scale);
+    visit.asymmetry(self.g);
+  }
 };
+
+inline constexpr Field asymmetry_field = {"g", "mean cosine of a scattering", -ScatteringProperties::most_asymmetry,
+                                          ScatteringProperties::most_asymmetry};
+inline constexpr Field scattering_preset_field = {"preset", "a measured stuff by its name, in place of sigma_a and sigma_s"};
+inline constexpr Field radiance_scale_field = {"Lescale", "factor of what it emits", 0};
 
 /// 1 of each, for all light.
 inline ScatteringProperties unit_scattering() { return {}; }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "scene/field.h"
 #include "scene/media/grid.h"
 #include "scene/media/scattering.h"
 #include "scene/spectrum.h"
@@ -23,16 +24,15 @@ struct UniformGridMedium {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    constexpr double most = std::numeric_limits<double>::infinity();
     visit.scattering(self.scattering, unit_scattering);
     visit.bounds(self.bounds);
     visit.counts(self.counts);
-    visit.grid("density", self.density, self.counts, true);
-    visit.emission("Le", self.radiance);
-    visit.grid("Lescale", self.radiance_scale, self.counts, false);
-    visit.grid("temperature", self.temperature, self.counts, false);
-    visit.number("temperaturescale", self.temperature_scale, -most, most);
-    visit.number("temperatureoffset", self.temperature_offset, -most, most);
+    visit.grid({"density", "densities of the cells, x fastest", 0}, self.density, self.counts, true);
+    visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance);
+    visit.grid({"Lescale", "factor of what each cell emits", 0}, self.radiance_scale, self.counts, false);
+    visit.grid({"temperature", "temperatures of the cells", 0, no_limit, "kelvin"}, self.temperature, self.counts, false);
+    visit.number({"temperaturescale", "factor of the temperatures"}, self.temperature_scale);
+    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"}, self.temperature_offset);
     visit.heat(self.radiance, self.temperature);
   }
 };

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_mapping.h"
 #include "scene/texture_operand.h"
 
@@ -14,10 +15,10 @@ struct BilerpTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("v00", self.v00);
-    visit.operand("v01", self.v01);
-    visit.operand("v10", self.v10);
-    visit.operand("v11", self.v11);
+    visit.operand({"v00", "value at (0, 0)"}, self.v00);
+    visit.operand({"v01", "value at (0, 1)"}, self.v01);
+    visit.operand({"v10", "value at (1, 0)"}, self.v10);
+    visit.operand({"v11", "value at (1, 1)"}, self.v11);
     visit.mapping(self.mapping);
   }
 };

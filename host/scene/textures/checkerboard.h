@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_mapping.h"
 #include "scene/texture_operand.h"
 
@@ -14,8 +15,8 @@ struct CheckerboardTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("tex1", self.tex1);
-    visit.operand("tex2", self.tex2);
+    visit.operand({"tex1", "value of the even squares"}, self.tex1);
+    visit.operand({"tex2", "value of the odd squares"}, self.tex2);
     visit.board(self.mapping);
   }
 };

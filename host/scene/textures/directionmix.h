@@ -4,6 +4,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "scene/field.h"
 #include "scene/texture_operand.h"
 
 namespace caplet {
@@ -15,9 +16,9 @@ struct DirectionmixTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("tex1", self.tex1);
-    visit.operand("tex2", self.tex2);
-    visit.direction("dir", self.dir);
+    visit.operand({"tex1", "value where the normal lies along dir"}, self.tex1);
+    visit.operand({"tex2", "value where the normal is across dir"}, self.tex2);
+    visit.direction({"dir", "direction in texture space"}, self.dir);
   }
 };
 

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_mapping.h"
 #include "scene/texture_operand.h"
 
@@ -14,8 +15,8 @@ struct DotsTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("inside", self.inside);
-    visit.operand("outside", self.outside);
+    visit.operand({"inside", "value inside the dots"}, self.inside);
+    visit.operand({"outside", "value outside the dots"}, self.outside);
     visit.mapping(self.mapping);
   }
 };

@@ -4,6 +4,8 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "scene/field.h"
+
 namespace caplet {
 
 /// Octaves of noise, each `roughness` times as high as the last.
@@ -15,8 +17,8 @@ struct FbmTexture {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.only(true);
-    visit.count("octaves", self.octaves, 0, 64);
-    visit.number("roughness", self.roughness);
+    visit.integer({"octaves", "octaves of noise", 0, 64}, self.octaves);
+    visit.number({"roughness", "height of each octave relative to the last"}, self.roughness);
     visit.place(self.texture_from_world);
   }
 };

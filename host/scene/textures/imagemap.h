@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "scene/field.h"
 #include "scene/texture_image.h"
 #include "scene/texture_mapping.h"
 #include "scene/texture_operand.h"
@@ -20,17 +21,17 @@ struct ImagemapTexture {
   std::shared_ptr<const TextureImage> image;
   int wrap = 0, filter = 1;
   double maxanisotropy = 8, scale = 1;
-  int invert = 0;
+  bool invert = false;
   TextureMapping mapping = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.image(self.image);
-    visit.choice("wrap", self.wrap, texture_wrap_names);
-    visit.choice("filter", self.filter, texture_filter_names);
-    visit.number("maxanisotropy", self.maxanisotropy);
-    visit.number("scale", self.scale);
-    visit.flag("invert", self.invert);
+    visit.image({"filename", "the image"}, self.image);
+    visit.choice({"wrap", "what lies beyond the image's edges"}, self.wrap, texture_wrap_names);
+    visit.choice({"filter", "how texels are filtered"}, self.filter, texture_filter_names);
+    visit.number({"maxanisotropy", "greatest ratio of a footprint's sides, for EWA"}, self.maxanisotropy);
+    visit.number({"scale", "factor of the image's values"}, self.scale);
+    visit.flag({"invert", "1 less the value, from 0 up"}, self.invert);
     visit.mapping(self.mapping);
   }
 };

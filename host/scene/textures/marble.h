@@ -4,6 +4,8 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "scene/field.h"
+
 namespace caplet {
 
 /// Layers along y of the point times `scale`, moved by `variation` times octaves of noise.
@@ -15,10 +17,10 @@ struct MarbleTexture {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.only(false);
-    visit.count("octaves", self.octaves, 0, 64);
-    visit.number("roughness", self.roughness);
-    visit.number("scale", self.scale);
-    visit.number("variation", self.variation);
+    visit.integer({"octaves", "octaves of noise", 0, 64}, self.octaves);
+    visit.number({"roughness", "height of each octave relative to the last"}, self.roughness);
+    visit.number({"scale", "factor of the point"}, self.scale);
+    visit.number({"variation", "how far noise moves the layers"}, self.variation);
     visit.colors();
     visit.place(self.texture_from_world);
   }

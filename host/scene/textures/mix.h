@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_operand.h"
 
 namespace caplet {
@@ -12,9 +13,9 @@ struct MixTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("tex1", self.tex1);
-    visit.operand("tex2", self.tex2);
-    visit.factor("amount", self.amount);
+    visit.operand({"tex1", "value where amount is 0"}, self.tex1);
+    visit.operand({"tex2", "value where amount is 1"}, self.tex2);
+    visit.factor({"amount", "share of tex2"}, self.amount);
   }
 };
 

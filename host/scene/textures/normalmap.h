@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "scene/field.h"
 #include "scene/texture_image.h"
 
 namespace caplet {
@@ -14,7 +15,7 @@ struct NormalmapTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.vectors(self.image);
+    visit.vectors({"filename", "the image of normals"}, self.image);
   }
 };
 

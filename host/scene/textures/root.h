@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_operand.h"
 
 namespace caplet {
@@ -13,7 +14,7 @@ struct RootTexture {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.only(true);
-    visit.operand("tex", self.tex);
+    visit.operand({"tex", "value whose square root is taken"}, self.tex);
   }
 };
 

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #pragma once
 
+#include "scene/field.h"
 #include "scene/texture_operand.h"
 
 namespace caplet {
@@ -12,8 +13,8 @@ struct ScaleTexture {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.operand("tex", self.tex);
-    visit.factor("scale", self.scale);
+    visit.operand({"tex", "value"}, self.tex);
+    visit.factor({"scale", "factor"}, self.scale);
   }
 };
 
