@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "base/spelling.h"
@@ -37,6 +38,14 @@ NameTable table_of(std::string directive, std::vector<std::string> accepted, std
   return {std::move(directive), std::move(accepted), std::move(refused)};
 }
 
+/// What is rendered, and what is rendered as one of that.
+template <class Names>
+std::vector<std::string> with(const Names& names, std::initializer_list<const char*> aliases) {
+  std::vector<std::string> out(names.begin(), names.end());
+  out.insert(out.end(), aliases.begin(), aliases.end());
+  return out;
+}
+
 }  // namespace
 
 bool is_file_shape(std::string_view type) {
@@ -56,9 +65,8 @@ const std::vector<NameTable>& name_tables() {
       {"Camera", {"orthographic", "perspective", "spherical"}, {"realistic"}},
       table_of("ColorSpace", {color_space_names.begin(), color_space_names.end()}, {}),
       {"Film", {"gbuffer", "rgb", "spectral"}, {}},
-      {"Integrator",
-       {"ambientocclusion", "bdpt", "lightpath", "mlt", "path", "randomwalk", "simplepath", "simplevolpath", "sppm", "volpath"},
-       {"function"}},
+      table_of("Integrator", with(integrator_names, {"bdpt", "lightpath", "mlt", "simplevolpath", "sppm", "volpath"}),
+               {"function"}),
       table_of("LightSource",
                {
 #define LIGHT_MODEL(name, Type) #name,
@@ -84,7 +92,7 @@ const std::vector<NameTable>& name_tables() {
         "pixelstats", "rendercoordsys", "seed", "wavefront"},
        {"msereferenceimage", "msereferenceout"}},
       table_of("PixelFilter", {filter_names.begin(), filter_names.end()}, {}),
-      {"Sampler", {"halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"}, {}},
+      table_of("Sampler", with(sampler_names, {"halton", "paddedsobol", "pmj02bn"}), {}),
       {"Shape", shape_types(), {}},
       table_of("Texture",
                {

@@ -33,27 +33,15 @@ Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), 
 namespace {
 
 void lower_sampler(const SamplerSettings& sampler, ViewRecord& out) {
-  using enum SamplerSettings::Kind;
   out.seed = sampler.seed;
-  switch (sampler.kind) {
-    case sobol:
-      out.sampler = sampler_sobol;
-      break;
-    case independent:
-      out.sampler = sampler_independent;
-      break;
-    case stratified: {
-      const std::array<int, 2> strata = strata_of(sampler);
-      out.sampler = sampler_stratified;
-      out.sampler_x = narrow<uint>(strata[0]);
-      out.sampler_y = narrow<uint>(strata[1]);
-      if (!sampler.jitter) out.strategy |= CAPLET_STRATEGY_UNJITTERED;
-      break;
-    }
-    case zsobol:
-      out.sampler = sampler_zsobol;
-      out.sampler_x = narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));
-      break;
+  out.sampler = static_cast<uint>(sampler.kind);  // both are rows of samplers.def
+  if (sampler.kind == SamplerSettings::Kind::stratified) {
+    const std::array<int, 2> strata = strata_of(sampler);
+    out.sampler_x = narrow<uint>(strata[0]);
+    out.sampler_y = narrow<uint>(strata[1]);
+    if (!sampler.jitter) out.strategy |= CAPLET_STRATEGY_UNJITTERED;
+  } else {
+    out.sampler_x = narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));  // zsobol
   }
 }
 

@@ -18,6 +18,9 @@ std::string text_of(double value) {
 
 }  // namespace
 
+Spectrum copper_eta() noexcept { return *named_spectrum("metal-Cu-eta"); }
+Spectrum copper_k() noexcept { return *named_spectrum("metal-Cu-k"); }
+
 std::string must_lie_within(double low, double high) {
   if (std::isinf(low) && std::isinf(high)) return "must be finite";
   if (std::isinf(high)) return "must be finite and from " + text_of(low) + " up";

@@ -46,7 +46,11 @@ struct Instance {
 // --- Sampler, integrator ---
 
 struct SamplerSettings {
-  enum class Kind { sobol, independent, stratified, zsobol } kind = Kind::sobol;
+  enum class Kind {
+#define SAMPLER(name) name,
+#include "shared/samplers.def"
+#undef SAMPLER
+  } kind = Kind::sobol;
   int samples_per_pixel = 16;
   std::uint32_t seed = 0;
   int x_strata = 4, y_strata = 4;  // stratified, where their product is samples_per_pixel; else strata_of divides it
@@ -67,7 +71,11 @@ struct SamplerSettings {
 };
 
 /// Names in scene files, by SamplerSettings::Kind.
-inline constexpr std::array sampler_names = {"sobol", "independent", "stratified", "zsobol"};
+inline constexpr std::array sampler_names = {
+#define SAMPLER(name) #name,
+#include "shared/samplers.def"
+#undef SAMPLER
+};
 
 /// Strata along x and y whose product is samples_per_pixel: the sampler's own, or else those nearest to a square.
 std::array<int, 2> strata_of(const SamplerSettings& sampler);

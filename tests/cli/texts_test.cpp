@@ -183,6 +183,7 @@ TEST(Texts, ManPageHasAllOptions) {
 TEST(Texts, CompletionsHaveAllOptions) {
   const Bash bash;
   const std::string zsh = output_of({"describe", "zsh"}), fish = output_of({"describe", "fish"});
+  EXPECT_THAT(between(zsh, "'*.(", ")(-.)'") + "|", testing::AllOf(HasSubstr("(pbrt|"), HasSubstr("|swc|")));
   for (const auto& [command, options] : options_by_command()) {
     EXPECT_THAT(bash.offers({command, "-"}), testing::UnorderedElementsAreArray(options)) << command;
     // No value follows a flag.

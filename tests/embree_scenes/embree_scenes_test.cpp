@@ -258,6 +258,21 @@ TEST(EmbreeScenes, WhatIsNamedIsPlacedAgain) {
   EXPECT_EQ(dvec3(scene.instances[2].world_from_object[3]), dvec3(2, 0, 0));
 }
 
+// Columns of the turn, then the place: a quarter turn around z, then a stretch along x.
+TEST(EmbreeScenes, PlacesMayBeInTheCompanion) {
+  const float places[] = {0, 1, 0, -1, 0, 0, 0, 0, 1, 1, 2, 3, 5, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6};
+  write_file("p.bin", std::string(reinterpret_cast<const char*>(places), sizeof places));
+  const Scene scene =
+      scene_of("<MultiTransform><AffineSpaceArray ofs=\"0\" size=\"2\"/>" + kTriangle + "</MultiTransform>", "p.xml");
+  ASSERT_EQ(scene.instances.size(), 2u);
+  const auto image = [&](std::size_t i, const dvec3& p) {
+    return dvec3(scene.instances[i].world_from_object * glm::dvec4(p, 1));
+  };
+  EXPECT_EQ(image(0, {1, 0, 0}), dvec3(1, 3, 3));
+  EXPECT_EQ(image(0, {0, 1, 1}), dvec3(0, 2, 4));
+  EXPECT_EQ(image(1, {1, 1, 1}), dvec3(9, 6, 7));
+}
+
 TEST(EmbreeScenes, MaterialsLightsAndCamera) {
   const Scene scene = scene_of(
       "<assign type=\"material\" id=\"red\"><material><code>\"OBJ\"</code><parameters><float3 name=\"Kd\">1 0 0</float3>"

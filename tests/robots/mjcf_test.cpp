@@ -303,6 +303,27 @@ TEST(Mjcf, HeightFieldsAreSolid) {
   EXPECT_EQ(mesh.triangles.size(), 4U + 4U + 12U);
 }
 
+// MuJoCo's own files: two whole numbers, then the heights as hfield_data has them, rows from the least y.
+TEST(Mjcf, HeightFieldsOfBinaryFiles) {
+  const std::int32_t counts[] = {2, 3};
+  const float heights[] = {5, 6, 7, 8, 9, 10};
+  std::string bytes(reinterpret_cast<const char*>(counts), sizeof counts);
+  bytes.append(reinterpret_cast<const char*>(heights), sizeof heights);
+  const std::string path = test::write_file("h.hfield", bytes).string();
+  const std::string text = "<asset><hfield name='h' file='" + path +
+                           "' size='1 2 3 .1'/></asset><worldbody><geom type='hfield' hfield='h'/></worldbody>";
+  const Scene scene = scene_of_text(text);
+  const auto& mesh = std::get<TriangleMeshShape>(scene.shapes[0].geometry);
+  ASSERT_EQ(mesh.positions.size(), 12U);
+  expect_near(mesh.positions[0], {-1, -2, 0}, 1e-6);
+  expect_near(mesh.positions[1], {0, -2, 0.6}, 1e-6);
+  expect_near(mesh.positions[5], {1, 2, 3}, 1e-6);
+  for (const std::string& wrong : {bytes.substr(0, 28), bytes + "1234", bytes.substr(0, 7)}) {
+    std::ofstream(path, std::ios::binary) << wrong;
+    EXPECT_THAT(complaint([&] { scene_of_text(text); }), HasSubstr("h.hfield")) << wrong.size();
+  }
+}
+
 TEST(Mjcf, GroupsAndAlphaSayWhatIsSeen) {
   const std::string text =
       R"(<geom size="1" name="a"/><geom size="1" name="b" group="3"/><geom size="1" name="c" group="2" contype="0" conaffinity="0"/>

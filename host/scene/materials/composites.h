@@ -31,8 +31,8 @@ inline constexpr MetalFields coated_metal = {{"conductor.eta", "real part of the
                                              metal_reflectance};
 
 /// What a metal is of which nothing is said.
-inline Spectrum copper_eta() { return *named_spectrum("metal-Cu-eta"); }
-inline Spectrum copper_k() { return *named_spectrum("metal-Cu-k"); }
+Spectrum copper_eta() noexcept;
+Spectrum copper_k() noexcept;
 
 inline constexpr Field multiscatter_field = {"multiscatter", "restore the energy that one scattering at facets loses"};
 
