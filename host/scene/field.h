@@ -10,6 +10,7 @@
 namespace caplet {
 
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
+inline constexpr double most_integer = 2147483647;
 
 /// A parameter. name: what scene files call it. doc: what it is, for people, as a phrase without a stop. low, high: the range of
 /// a number, both ends included (above_low: but for `low` itself). unit: of a number, as people write it.

@@ -63,11 +63,10 @@ struct SamplerSettings {
       visit.integer({"ysamples", "strata along y", 1, 1 << 24}, self.y_strata);
       visit.flag({"jitter", "samples lie at random in their strata, else in the middle"}, self.jitter);
     } else {
-      visit.integer({"pixelsamples", "samples of each pixel", 1, most_samples}, self.samples_per_pixel);
+      visit.integer({"pixelsamples", "samples of each pixel", 1, most_integer}, self.samples_per_pixel);
     }
     visit.seed({"seed", "another one gives other noise"}, self.seed);
   }
-  static constexpr double most_samples = 2147483647;
 };
 
 /// Names in scene files, by SamplerSettings::Kind.
@@ -94,7 +93,7 @@ struct IntegratorSettings {
       visit.number({"maxdistance", "how far what occludes may be", 0, no_limit, "scene units", true}, self.max_distance);
       return;
     }
-    visit.integer({"maxdepth", "most scattering events of a path", 0, 10000}, self.max_depth);
+    visit.integer({"maxdepth", "most scattering events of a path", 0, most_integer}, self.max_depth);
     if (self.kind != Kind::simple_path) return;
     visit.flag({"samplebsdf", "directions by the BSDF, else uniform"}, self.sample_bsdf);
     visit.flag({"samplelights", "lights are sampled at each hit"}, self.sample_lights);

@@ -48,7 +48,7 @@ TEST(Signals, NohupIsHeard) {
 TEST(Signals, TheSecondEndsAtOnce) {
   const fs::path folder = test::folder_with_scene();
   // One pass of many pixels, so that the first signal cannot end the program before the second comes.
-  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--size", "4096x4096"}, folder);
+  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--size", "2048x2048"}, folder);
   ASSERT_TRUE(running.wait_for_stderr("samples per pixel on"));
   running.send(SIGINT);
   running.send(SIGTERM);
