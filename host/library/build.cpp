@@ -210,6 +210,11 @@ std::vector<KnownParameter> statement_parameters(Statement statement, const std:
     // A program makes a texture of the image first.
     if (statement == Statement::material && to.name == "normalmap") to.types = {"texture"};
   }
+  if (statement == Statement::texture && std::ranges::find(out, "filename", &KnownParameter::name) != out.end()) {
+    KnownParameter& pixels = out.emplace_back(KnownParameter{"pixels", {}});
+    pixels.doc = "an image in memory: rows of pixels of 1, 3 or 4 numbers";
+    pixels.excludes = {"filename", "encoding"};
+  }
   return out;
 }
 

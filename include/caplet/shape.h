@@ -62,7 +62,7 @@ CAPLET_API std::vector<std::string> statement_types(Statement statement);
 
 struct KnownParameter {
   std::string name;
-  std::vector<std::string> types;  // pbrt's names: "float", "point3", "rgb", ...
+  std::vector<std::string> types;  // pbrt's names: "float", "point3", "rgb", ...; none of what scene files have not
   std::string doc = {};            // what it is
   std::string fallback = {};       // what it is where it is left out, as scene files would have it; empty: nothing
   // The range of numbers: both ends are in it, but for `low` where above_low.

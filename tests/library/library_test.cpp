@@ -470,7 +470,8 @@ TEST_F(LibraryAppearance, EveryTypeIsThere) {
                                             "normalmap"));
   EXPECT_THAT(caplet::texture_parameters("checkerboard"),
               testing::IsSupersetOf({"tex1", "tex2", "dimension", "mapping", "uscale", "v1"}));
-  EXPECT_THAT(caplet::texture_parameters("imagemap"), testing::IsSupersetOf({"filename", "encoding", "wrap", "invert"}));
+  EXPECT_THAT(caplet::texture_parameters("imagemap"),
+              testing::IsSupersetOf({"filename", "encoding", "wrap", "invert", "pixels"}));
 }
 
 TEST_F(LibraryAppearance, WhatThereIsNoneOfIsToldWithTheNearest) {
