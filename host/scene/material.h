@@ -30,7 +30,7 @@ struct Material {
   std::string name;
   SourceLocation where;
   std::vector<TexturedField> textures = {};  // fields that textures replace
-  // What bends the surface's normal, by index in Scene::textures: heights along it (floats), or a NormalmapTexture; not both.
+  // Indices into Scene::textures; at most one is set: heights along the normal (floats), or a NormalmapTexture.
   std::optional<std::uint32_t> displacement = {}, normalmap = {};
 };
 
