@@ -21,7 +21,7 @@ namespace caplet {
 
 namespace {
 
-/// Where there are no files.
+/// Statements of programs have no files.
 const std::string no_file;
 
 void check_type(const ProgramStatement& statement) {

@@ -183,7 +183,7 @@ class Parser {
   Unproven in_file_;
 };
 
-/// Gives samples without a radius one, and warns.
+/// Gives a radius to samples without one, and warns.
 void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name) {
   std::vector<float> known;
   const SwcSample* first = nullptr;

@@ -191,7 +191,7 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
 
 VerifyRay RaySource::ray(std::uint64_t index) const {
   Random random(seed_, 0, index);
-  // Of sixteen rays, two come from the camera, three are bounces, two are chords, and the others are hard.
+  // Two rays in sixteen come from the camera, three are bounces, two are chords, and the others are hard.
   constexpr std::array<RayFamily, 16> turns = {
       RayFamily::camera, RayFamily::camera,   RayFamily::bounce,   RayFamily::bounce,    RayFamily::bounce,  RayFamily::chord,
       RayFamily::chord,  RayFamily::touching, RayFamily::touching, RayFamily::grazing,   RayFamily::grazing, RayFamily::rim,

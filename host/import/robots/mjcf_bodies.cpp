@@ -26,7 +26,7 @@ struct Scope {
   std::string name(const char* own) const { return prefix + own + suffix; }
 };
 
-/// The numbers of a pose, joint by joint in the order of the file.
+/// Hands out the numbers of a pose, joint by joint in the order of the file.
 class ElementValues {
  public:
   ElementValues(const Model& model, const Pose& pose) : pose_(pose) {

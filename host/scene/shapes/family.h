@@ -3,28 +3,28 @@
 //
 // The functions that each geometry defines in shapes/NAME.h, and helpers for them. For every row of geometries.def there are
 //
-//   std::size_t count_of(const Type&)                       primitives in it
-//   std::size_t surfaces_of(const Type&)                    material slots
-//   bool closed(const Type&)                                whether it has an inside: csg can combine it
-//   Bounds bounds_under(const Type&, const dmat4& m)        exact, of its image
-//   void check(const Type&, ShapeCheck&)                    what of it cannot be rendered
-//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` where nothing is closed
-//   Type drawn(std::type_identity<Type>, Draws&)            one at random, for hard scenes; csg has it where its operands are
-//                                                           drawn, verify/torture.cpp
+//   std::size_t count_of(const Type&)                       the number of primitives
+//   std::size_t surfaces_of(const Type&)                    the number of material slots
+//   bool closed(const Type&)                                whether it has an inside, so that csg can combine it
+//   Bounds bounds_under(const Type&, const dmat4& m)        exact bounds of its image
+//   void check(const Type&, ShapeCheck&)                    reports what cannot be rendered
+//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` for open geometries
+//   Type drawn(std::type_identity<Type>, Draws&)            a random one, for hard scenes; csg has it in
+//                                                           verify/torture.cpp, which draws the operands
 //
-// found by their type: one that is missing does not compile. Lengths and points are in the shape's own space.
+// which are found by type: a missing one is a compile error. Lengths and points are in the shape's own space.
 //
-// A convex solid may be told by its surfaces, each of which bounds it alone by a convex function (FacedSolid). Then it needs no
-// `beyond`, and its witness and the rays that try devices follow from what its file says:
+// A convex solid may be defined by its surfaces, each of which bounds it by a convex function (FacedSolid). It needs no
+// `beyond`, and its witness and the rays that test devices follow from these functions:
 //
-//   double outside(const Type&, int surface, const dvec3& p)    growing by no more than the way gone; the solid is where all are
+//   double outside(const Type&, int surface, const dvec3& p)    grows no faster than distance; in the solid all are
 //                                                               at most 0
-//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   unit, outward, at a point of the surface
+//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   the unit outward normal at a point of the surface
 //   dvec2 uv_on(const Type&, int surface, const dvec3& p)       docs/shapes.md
 //   double tilt_of(const Type&, double moved)                   radians by which its surfaces turn when its points move by
 //   `moved`
 //
-// A geometry that scene files give by a few numbers may name them (FieldedShape), and is then read without a reader of its own:
+// A geometry of a few numbers may name them as fields (FieldedShape), and then needs no reader of its own:
 //
 //   void fields(Type&, auto& each)                          each.corners("p0", "p1", box.p0, box.p1), ...: see Fields
 #pragma once
