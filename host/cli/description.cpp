@@ -96,7 +96,7 @@ CommandText describe_command(const CLI::App& command) {
     if (option->get_group().empty()) continue;
     (option->nonpositional() ? out.options : out.arguments).push_back(describe_option(*option));
   }
-  // The group of --help comes last, because every command has it.
+  // The option --help comes last, because every command has it.
   std::ranges::stable_partition(
       out.options, [](const OptionText& option) { return std::ranges::find(option.names, "--help") == option.names.end(); });
   return out;
