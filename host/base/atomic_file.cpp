@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What two names of one file share: its device and inode; of a file that is not there yet those of its folder, and its name.
+/// Identifies a file by device and inode, whatever its name; one that does not exist yet by those of its folder, and its name.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -54,7 +54,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int operator()() const { return number_; }
-  /// The result of close(2), which may report the error of an earlier write.
+  /// Returns the result of close(2), which may report the error of an earlier write.
   int close() { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
 
  private:
@@ -75,7 +75,7 @@ int standard_stream(const struct stat& status) {
   return -1;
 }
 
-/// For a path without a file: the path itself, or the one that its symbolic links end at.
+/// For a path without a file: returns the path itself, or the one that its symbolic links end at.
 fs::path end_of_links(fs::path path) {
   std::error_code error;
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
@@ -121,7 +121,7 @@ Place place_of(const fs::path& target) {
   return out;
 }
 
-/// No value when the folder of a file that is not there yet cannot be read.
+/// Returns no value when the folder of a file that does not exist yet cannot be read.
 std::optional<Identity> identity_of(const Place& place) {
   if (place.kind != Kind::fresh) return Identity{place.status.st_dev, place.status.st_ino, {}};
   struct stat folder {};
@@ -142,7 +142,7 @@ Inputs& inputs() {
   return all;
 }
 
-/// The name under which a regular file was read.
+/// Returns the name under which a regular file was read.
 std::optional<std::string> input_at(const Place& place) {
   if (place.kind != Kind::file && place.kind != Kind::stream) return std::nullopt;
   const std::lock_guard lock(inputs().mutex);
@@ -180,7 +180,7 @@ void copy(int from, int to, const fs::path& target) {
   }
 }
 
-/// Writes into a fifo, a device or a standard stream: first into a temporary file without a name, which is then copied.
+/// Writes into a fifo, a device or a standard stream: first into an unnamed temporary file, which is then copied.
 void write_through(const Place& place, const fs::path& target, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "caplet-XXXXXX").string();
@@ -200,17 +200,17 @@ void write_through(const Place& place, const fs::path& target, const std::functi
   if (to.close() != 0) fail(target, "cannot be written", errno);
 }
 
-/// The mode and, where allowed, the owner of the file that it is to replace.
+/// Copies the mode and, if permitted, the owner of the file that is to be replaced.
 void set_owner_and_mode(int file, const Place& place) {
   if (place.kind == Kind::fresh) return;
-  // Users who may not change the owner keep the file. The mode comes last: a change of the owner clears bits of it.
+  // Users who may not change the owner keep the file. The mode comes last, because a change of the owner clears bits of it.
   if (::fchown(file, place.status.st_uid, place.status.st_gid) != 0 &&
       ::fchown(file, static_cast<uid_t>(-1), place.status.st_gid) != 0)
     errno = 0;
   ::fchmod(file, place.status.st_mode & 07777);
 }
 
-/// For targets that no file can be renamed to, such as mount points.
+/// Copies over targets that no file can be renamed to, such as mount points.
 void copy_over(const fs::path& temporary, const fs::path& target) {
   const Descriptor from(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
   Descriptor to(::open(target.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
@@ -227,7 +227,7 @@ struct Slot {
 std::array<Slot, 8> slots;
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
-/// While the object lives, remove_temporary_files removes this file. A ninth one at a time, or one with a longer name, it leaves.
+/// Lets remove_temporary_files remove this file during the object's lifetime, except a ninth file, or one with a longer name.
 class Listed {
  public:
   explicit Listed(const fs::path& path) {
@@ -251,7 +251,7 @@ class Listed {
   Slot* slot_ = nullptr;
 };
 
-// --- Temporary files, .STEM.PID.NUMBER.partEXTENSION, and those that killed processes left ---
+// --- Temporary files, .STEM.PID.NUMBER.partEXTENSION, also those of killed processes ---
 
 struct TemporaryName {
   explicit TemporaryName(const fs::path& path)
@@ -262,12 +262,12 @@ struct TemporaryName {
     static std::atomic<int> serial = 0;
     return fmt::format("{}{}.{}{}", before, ::getpid(), serial++, after);
   }
-  /// Whether it is a name for the same target in any process.
+  /// Returns whether it is a temporary name for the same target, of any process.
   bool is_one(std::string_view name) const {
     if (name.size() < before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return false;
     return are_numbers(name.substr(before.size(), name.size() - before.size() - after.size()));
   }
-  /// Whether it is such a name for whatever target.
+  /// Returns whether it is a temporary name for any target.
   static bool is_any(std::string_view name) {
     const std::size_t part = name.rfind(".part");
     if (!name.starts_with('.') || part == std::string_view::npos) return false;
@@ -279,7 +279,7 @@ struct TemporaryName {
  private:
   static constexpr std::size_t longest = 100;  // file systems have limits
 
-  /// "PID.NUMBER"
+  /// The text is "PID.NUMBER".
   static bool are_numbers(std::string_view text) {
     const std::size_t point = text.find('.');
     const auto is_number = [](std::string_view one) {
@@ -291,8 +291,8 @@ struct TemporaryName {
   std::string before, after;
 };
 
-/// Temporary files that lie in a folder when this process first writes there: what is newer is of processes that live, or died
-/// since, and is for the next run.
+/// Returns the temporary files in a folder when this process first writes there. Newer ones belong to live processes, or to
+/// processes that died since; the next run removes those.
 std::vector<std::string>& found_in(const fs::path& folder) {
   static std::map<fs::path, std::vector<std::string>> all;
   const auto [at, is_new] = all.try_emplace(folder);
@@ -304,7 +304,7 @@ std::vector<std::string>& found_in(const fs::path& folder) {
   return at->second;
 }
 
-/// Removes this user's temporary file if nobody holds its lock: its process is gone.
+/// Removes this user's temporary file if its lock is free, which means that its process has ended.
 void remove_if_left(const fs::path& file) {
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   struct stat status {};
@@ -326,7 +326,7 @@ void remove_left_of(const fs::path& path) {
   });
 }
 
-/// A temporary file beside its target, locked for as long as the object lives. The lock goes with the process however it ends.
+/// A temporary file beside its target, locked during the object's lifetime. The lock ends with the process in any case.
 class Temporary {
  public:
   Temporary(const Place& place, const fs::path& target) {
@@ -343,9 +343,9 @@ class Temporary {
   const fs::path& path() const { return path_; }
 
  private:
-  /// False where another process took the file for one that was left, between its making and its lock, and has removed it.
+  /// Returns false if another process found the file between its creation and its lock, took it for abandoned and removed it.
   bool is_ours() const {
-    if (::flock((*descriptor_)(), LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // file systems without locks
+    if (::flock((*descriptor_)(), LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // some file systems have no locks
     struct stat status {};
     return ::fstat((*descriptor_)(), &status) != 0 || status.st_nlink > 0;
   }
@@ -380,7 +380,7 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
     fs::remove(temporary, error);
     throw;
   }
-  fs::remove(temporary, error);  // it still exists only after copy_over
+  fs::remove(temporary, error);  // it exists only after copy_over
 }
 
 void remove_temporary_files() noexcept {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Output files: written beside their target and renamed into place, so that a killed run never leaves a broken file; streamed
-// into what is no regular file. Nothing that a run reads or writes elsewhere is written over.
+// Output files are written beside their target and renamed into place, so that a killed run never leaves a broken file; other
+// targets than regular files are streams. A run's inputs and other outputs are never overwritten.
 #pragma once
 
 #include <sys/stat.h>
@@ -15,10 +15,10 @@
 
 namespace caplet {
 
-/// Makes `target` hold what `write` writes to the path it is called with, which is a regular file to be opened for writing.
-/// Symbolic links are followed, also to a file that is not there yet.
-/// - A new or a regular file: a file beside it is renamed over it. A new file's mode is by the umask; an old one's mode stays,
-/// and
+/// Calls `write` with the path of a regular file to be opened for writing, and makes its content that of `target`. Symbolic links
+/// are followed, even if their target does not exist yet.
+/// - A new or a regular file: a file beside it is renamed over it. A new file's mode is by the umask; an old one keeps its
+///   mode, and
 ///   its owner where that is allowed. When `write` throws, the target is as before. Where a rename is refused (a mount point),
 ///   the contents are copied into the target. A process that is killed meanwhile leaves that file, `.STEM.PID.N.partEXT`: the
 ///   next one that writes to the same name removes it, as nobody holds its lock.
@@ -26,23 +26,23 @@ namespace caplet {
 /// Throws RunError when that fails, and for a target that is a folder, a block device, a socket or a noted input (NotedInputs).
 void write_atomically(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);
 
-/// The same for contents that are in memory.
+/// Does the same for contents in memory.
 void write_bytes(const std::filesystem::path& target, std::string_view bytes);
 
-/// Removes the files that write_atomically is writing in this process, for ends that run no destructors. Safe in handlers of
-/// signals.
+/// Removes the files that write_atomically is writing in this process, for exits that run no destructors. It is safe in signal
+/// handlers.
 void remove_temporary_files() noexcept;
 
-/// Throws InputError naming `flag` when write_atomically could not write there (missing folder, no permission, a folder, a block
-/// device, a loop of links, a name too long).
+/// Throws InputError that names `flag` when write_atomically could not write there (missing folder, no permission, a folder, a
+/// block device, a loop of links, a name too long).
 void check_writable(const std::filesystem::path& target, const std::string& flag);
 
-/// Whether something that is no regular file stands there, such as a device, or one of this process's standard streams: its name
-/// then says nothing of a format.
+/// Returns whether the path is a device or another non-regular file, or one of this process's standard streams: its name then
+/// does not determine a format.
 bool is_stream(const std::filesystem::path& target);
 
-/// While one lives, files that are read are noted, and write_atomically and Outputs refuse to replace them: a command of the
-/// program has one. Where there is none, as in the library, a file may be read, changed and written over.
+/// While an instance exists, files that are read are noted, and write_atomically and Outputs refuse to replace them. Each command
+/// of the program has one. Without one, as in the library, a file may be read, changed and overwritten.
 class NotedInputs {
  public:
   NotedInputs();
@@ -51,19 +51,19 @@ class NotedInputs {
   NotedInputs& operator=(const NotedInputs&) = delete;
 };
 
-/// To be called for each file that is read. A file that does not exist is ignored.
+/// Must be called for each file that is read. A file that does not exist is ignored.
 void note_input(const std::filesystem::path& path);
-/// A file that has been read may be replaced from now on.
+/// Allows replacing a file that has been read.
 void forget_input(const std::filesystem::path& path);
-/// The names of the files that are noted, sorted.
+/// Returns the names of the noted files, sorted.
 std::vector<std::string> noted_inputs();
 
-/// The outputs of a run, by option. No two may be the same file, whatever their names and links, nor one that is read.
+/// The outputs of a run, by option. They must differ from each other and from all inputs, whatever their names and links.
 class Outputs {
  public:
-  /// Throws InputError naming `flag` when check_writable does, and when `target` is an earlier output.
+  /// Throws InputError that names `flag` when check_writable does, and when `target` is an earlier output.
   void add(const std::string& flag, const std::filesystem::path& target);
-  /// Throws InputError naming the output that is among the files noted as input.
+  /// Throws InputError that names an output which is also a noted input.
   void check_inputs() const;
 
  private:

@@ -25,7 +25,7 @@
 
 namespace caplet {
 
-/// Integer conversion that throws std::logic_error when the value does not fit.
+/// Converts integers and throws std::logic_error when the value does not fit.
 template <class To, class From>
 To narrow(From value) {
   if (!std::in_range<To>(value))

@@ -12,7 +12,7 @@
 
 namespace {
 
-/// `line` as a C++ string literal. Bytes outside printable ASCII become three-digit octal escapes.
+/// Returns `line` as a C++ string literal. Bytes outside printable ASCII become three-digit octal escapes.
 std::string literal(const std::string& line) {
   std::string out = "\"";
   for (const char c : line) {

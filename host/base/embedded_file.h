@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Files that are part of the program, in tables that are made at build (host/base/embed_main.cpp).
+// Files that are embedded in the program; the build makes tables of them (host/base/embed_main.cpp).
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 namespace caplet {
 
 struct EmbeddedFile {
-  std::string_view path;  // from the folder of all of them
+  std::string_view path;  // relative to their common folder
   std::string_view text;
 };
 

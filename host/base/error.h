@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Errors with a place (caplet/error.h), and a collection of them. Exceptions inside, one catch per door (host/cli).
+// Errors with a place (caplet/error.h), and a collection of them. Each interface (host/cli) catches the exceptions once.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@
 
 namespace caplet {
 
-/// Collects input errors so that several are reported at once. Errors of one kind are one line, the first, with the number of the
-/// others; of what goes beyond `limit` lines only the number is said.
+/// Collects input errors so that several are reported at once. Errors of one kind share a line, that of the first, with the
+/// number of the others. Beyond `limit` lines only the number of errors is reported.
 class Diagnostics {
  public:
-  /// With so many errors there is no use in reading on: `error` throws.
+  /// `error` throws at so many errors, because reading on is useless.
   static constexpr std::size_t most_errors = 100'000;
 
   explicit Diagnostics(std::size_t limit = 20) : limit_(limit) {}
-  /// `kind` is what groups errors, such as a feature that is not rendered yet; empty: the error has a line of its own. Throws
-  /// InputError with all errors when they are `most_errors`.
+  /// `kind` groups errors, such as an unsupported feature; if it is empty, the error has its own line. Throws InputError with all
+  /// errors when there are `most_errors`.
   void error(const SourceLocation& where, const std::string& message, const std::string& kind = {});
-  /// Counts errors whose messages were never made.
+  /// Counts errors without messages.
   void add_more(std::size_t count);
   void warning(const SourceLocation& where, const std::string& message);  // logged at once
   bool has_errors() const { return count_ > 0; }
   std::size_t error_count() const { return count_; }
-  /// True when no further line will be shown, so that no work need go into its text.
+  /// Returns true when no further line will be shown, so that its text need not be made.
   bool is_full() const { return lines_.size() >= limit_; }
   /// Throws InputError with all errors, if there are any.
   void finish() const;
@@ -40,7 +40,7 @@ class Diagnostics {
   };
   std::size_t limit_;
   std::vector<Line> lines_;
-  std::size_t count_ = 0, beyond_ = 0;  // beyond_: those that are in no line
+  std::size_t count_ = 0, beyond_ = 0;  // beyond_: those without a line
   bool stopped_ = false;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 volatile std::sig_atomic_t requested = 0;
 
-volatile std::sig_atomic_t asked = 0;  // by SIGINT or SIGTERM
+volatile std::sig_atomic_t asked = 0;  // set by SIGINT or SIGTERM
 
 void on_signal(int number) {
   requested = 1;
@@ -30,7 +30,7 @@ void on_signal(int number) {
 void install_interrupt_handlers() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup ignores SIGHUP
 }
 bool interrupt_requested() { return requested != 0; }
 void set_interrupt_requested(bool value) { requested = value ? 1 : 0; }

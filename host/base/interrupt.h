@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Ctrl-C asks for an orderly end; a second one ends the process at once.
+// Ctrl-C requests an orderly end; a second one ends the process at once.
 #pragma once
 
 namespace caplet {
 
-/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless that is ignored, as nohup asks) that set the flag. After a SIGINT or
-/// SIGTERM the next one has its default action; SIGHUP comes more than once when a terminal closes, and only sets the flag.
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless ignored, as by nohup) that set the flag. After a SIGINT or SIGTERM
+/// the next one has its default action; SIGHUP may come repeatedly when a terminal closes, and only sets the flag.
 void install_interrupt_handlers();
 bool interrupt_requested();
 /// Sets or clears the flag, for tests.

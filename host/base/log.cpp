@@ -17,7 +17,7 @@ std::atomic<int> errors{0};
 std::atomic<LogLevel> least{LogLevel::warning};
 std::mutex writing;
 
-/// Lasts as long as the process: what is destroyed at its end may still have something to say.
+/// The sink is never destroyed, because destructors at the end of the process may still log.
 LogSink& sink() {
   static auto* set = new LogSink;
   return *set;

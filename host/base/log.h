@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Diagnostics, one line each: to stderr unless a sink is set (caplet/log.h); results never are.
+// Diagnostics, one line each, on stderr unless a sink is set (caplet/log.h). Results are never logged.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,9 +13,9 @@
 
 namespace caplet::log {
 
-/// Warnings and errors only, or what is told at `info` as well.
+/// Shows only warnings and errors, or also `info`.
 inline void set_quiet(bool quiet) { set_log_level(quiet ? LogLevel::warning : LogLevel::info); }
-/// Number of errors logged since the start; tests fail when it moved unexpectedly.
+/// Returns the number of errors logged since the start; tests fail when it changes unexpectedly.
 int error_count();
 
 bool is_shown(LogLevel level);
@@ -29,7 +29,7 @@ template <class... Values>
 void warn(fmt::format_string<Values...> text, Values&&... values) {
   if (is_shown(LogLevel::warning)) write(LogLevel::warning, fmt::format(text, std::forward<Values>(values)...));
 }
-/// Counted whether it is shown or not.
+/// Errors are counted whether they are shown or not.
 template <class... Values>
 void error(fmt::format_string<Values...> text, Values&&... values) {
   write(LogLevel::error, fmt::format(text, std::forward<Values>(values)...));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where this code is installed.
+// Finds where this code is installed.
 #pragma once
 
 #include <filesystem>
 
 namespace caplet {
 
-/// The program or shared library that this code is in, as an absolute path without links; empty where that cannot be told.
+/// Returns the program or shared library that contains this code, as an absolute path without links; empty if unknown.
 std::filesystem::path own_file();
 
 }  // namespace caplet

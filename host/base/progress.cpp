@@ -104,7 +104,7 @@ void ProgressReporter::update(double fraction, double paths_per_second, const st
     write_(progress_line(state) + "\n");
     return;
   }
-  // Lines count their interval from the start, so that short tasks print the end alone.
+  // Lines count their interval from the start, so that short tasks print only the end.
   const double interval = style_ == Style::bar ? 0.2 : 5.0;
   const Clock::time_point last = drawn_ ? *drawn_ : (style_ == Style::bar ? now - std::chrono::hours(1) : start_);
   if (std::chrono::duration<double>(now - last).count() < interval) return;

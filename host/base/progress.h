@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Progress of a long task on stderr: a bar redrawn in place on a terminal, plain lines elsewhere.
+// Reports the progress of a long task on stderr: a bar on a terminal, plain lines elsewhere.
 #pragma once
 
 #include <chrono>
@@ -19,16 +19,16 @@ struct ProgressState {
   std::string detail;           // "12/64 samples"
 };
 
-/// "1:23:45", "3:07" or "0.4 s".
+/// Returns "1:23:45", "3:07" or "0.4 s".
 std::string duration_text(double seconds);
-/// "12.3 Mpaths/s", "8.1 kpaths/s".
+/// Returns "12.3 Mpaths/s", "8.1 kpaths/s".
 std::string rate_text(double paths_per_second);
-/// Seconds left if the rest goes as fast as what is done; no value before 0.1 % is done.
+/// Returns the seconds left at the present speed; no value before 0.1 % is done.
 std::optional<double> time_left(double fraction, double seconds);
 
-/// One line without line break, of at most `columns` characters: bar, percent, detail, rate, time left.
+/// Returns one line without line break, of at most `columns` characters: bar, percent, detail, rate, time left.
 std::string progress_bar(const ProgressState& state, int columns);
-/// The same in words.
+/// Returns the same in words.
 std::string progress_line(const ProgressState& state);
 
 class ProgressReporter {
@@ -36,10 +36,10 @@ class ProgressReporter {
   enum class Style { none, lines, bar };
   using Clock = std::chrono::steady_clock;
 
-  /// Bar on a terminal, lines otherwise, nothing when quiet.
+  /// Chooses a bar on a terminal, lines otherwise, and nothing when quiet.
   static Style style_for_stderr(bool quiet);
 
-  /// To stderr when `write` is empty. `now` is for tests.
+  /// Writes to stderr when `write` is empty. `now` is for tests.
   explicit ProgressReporter(Style style, std::function<void(std::string_view)> write = {},
                             std::function<Clock::time_point()> now = Clock::now);
   /// Clears the bar.
@@ -47,8 +47,8 @@ class ProgressReporter {
   ProgressReporter(const ProgressReporter&) = delete;
   ProgressReporter& operator=(const ProgressReporter&) = delete;
 
-  /// Draws when the last drawing is 0.2 s (bar) or 5 s (lines) old; the end of the task is always drawn as a line.
-  /// A fraction of 0 starts the clock anew: what went before the task does not count.
+  /// Draws when the last drawing is 0.2 s (bar) or 5 s (lines) old; the end of the task is always drawn as a line. A fraction of
+  /// 0 restarts the clock, so that earlier work does not count.
   void update(double fraction, double paths_per_second, const std::string& detail);
 
  private:

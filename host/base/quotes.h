@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Errors quote a file only after it has shown itself to be of its format. A scene may name other files, such as those of other
-// users that a service may read; of these, errors name the place and show nothing.
+// Errors quote a file only after part of it was valid in its format. A scene may name any file, such as those of other users that
+// a service can read; errors in such files give the place without the text.
 #pragma once
 
 namespace caplet {
 
-/// Made where this thread begins to read a file. Until prove() is called, what the file holds is shown nowhere: may_quote is
-/// false. Where files name each other the innermost counts.
+/// Marks the start of reading a file on this thread. Until prove() is called, may_quote is false, and no text of the file is
+/// shown. If files include each other, the innermost one counts.
 class Unproven {
  public:
   Unproven();
@@ -16,7 +16,7 @@ class Unproven {
   Unproven(const Unproven&) = delete;
   Unproven& operator=(const Unproven&) = delete;
 
-  /// Something in it could be read as its format has it.
+  /// Part of the file was valid in its format.
   void prove() { is_proven_ = true; }
   bool is_proven() const { return is_proven_; }
 
@@ -25,10 +25,10 @@ class Unproven {
   bool is_proven_ = false;
 };
 
-/// Whether words of the file that this thread reads may be shown. Of what no file holds they may.
+/// Returns whether errors may show text of the file that this thread reads; text from no file may always be shown.
 bool may_quote();
 
-/// Stands for words that may not.
+/// This replaces text that may not be shown.
 inline constexpr const char* withheld = "...";
 
 }  // namespace caplet

@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int most_links = 40;  // as Linux has it
+constexpr int most_links = 40;  // as in Linux
 
-thread_local std::optional<fs::path> beneath;  // none: anything may be read
+thread_local std::optional<fs::path> beneath;  // none: any file may be read
 
 }  // namespace
 

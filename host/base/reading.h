@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A scene's files may name anything, or only what lies beneath the scene's own folder. Importers ask here before they open or
-// look for a file; tools/doors.py sees to it.
+// Restricts the files that a scene may name, to those beneath its own folder, or not at all. Importers ask here before they open
+// or look for a file; tools/doors.py checks that they do.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace caplet {
 
-/// While one lives, this thread may read what lies beneath the folder of `scene` alone, wherever links lead. What holds for a
-/// service that renders files of strangers: they can be changed before they are read, but not while they are.
+/// While an instance exists, this thread may read only files beneath the folder of `scene`, after links are resolved. For
+/// services that render untrusted files: these may change before they are read, but not during reading.
 class ReadingBeneath {
  public:
   explicit ReadingBeneath(const std::filesystem::path& scene);
@@ -25,7 +25,7 @@ class ReadingBeneath {
   std::optional<std::filesystem::path> before_;
 };
 
-/// While one lives, this thread may read anything: what the user has named, not the scene.
+/// While an instance exists, this thread may read any file: the user named it, not the scene.
 class ReadingAnywhere {
  public:
   ReadingAnywhere();
@@ -37,21 +37,21 @@ class ReadingAnywhere {
   std::optional<std::filesystem::path> before_;
 };
 
-/// Throws InputError at `where` (or of the file itself, where that is empty) for a file that may not be read, whether it exists
-/// or not.
+/// Throws InputError at `where` (or of the file itself, where that is empty) for a file that may not be read, whether or not it
+/// exists.
 void check_may_read(const std::filesystem::path& path, const SourceLocation& where = {});
 
-/// Whether check_may_read lets it pass.
+/// Returns whether check_may_read accepts the path.
 bool may_read(const std::filesystem::path& path);
 
-/// To be called before a file is opened: check_may_read and note_input (atomic_file.h).
+/// Must be called before a file is opened: check_may_read and note_input (atomic_file.h).
 void begin_reading(const std::filesystem::path& path, const SourceLocation& where = {});
 
-/// check_may_read, then whether something is there; of the second a regular file.
+/// Call check_may_read, then return whether the path exists, or is a regular file.
 bool is_there(const std::filesystem::path& path, const SourceLocation& where);
 bool is_file(const std::filesystem::path& path, const SourceLocation& where);
 
-/// `path` without links, "." and "..", also where it, or what a link leads to, does not exist; empty where links go in a circle.
+/// Resolves links, "." and ".." in `path`, even if it or a link's target does not exist; empty for a loop of links.
 std::filesystem::path without_links(const std::filesystem::path& path);
 
 }  // namespace caplet

@@ -8,7 +8,7 @@ namespace caplet {
 
 namespace {
 
-/// Edit distance (Levenshtein 1966) of strings cut to 64 characters.
+/// Returns the edit distance (Levenshtein 1966) of strings cut to 64 characters.
 std::size_t distance(std::string_view a, std::string_view b) {
   a = a.substr(0, 64);
   b = b.substr(0, 64);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How names are written, and what was meant by one that is not known.
+// Spelling of names, and suggestions for unknown ones.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace caplet {
 
-/// The known name with the smallest edit distance; empty if there is none. Takes time by the number of names: pointless for an
-/// error that is not shown (Diagnostics::is_full).
+/// Returns the known name with the smallest edit distance; empty if there is none. The time grows with the number of names, so
+/// skip it for an error that is not shown (Diagnostics::is_full).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// A to Z as a to z; other bytes stay.
+/// Converts A to Z to lower case; other bytes stay.
 std::string lower_case(std::string text);
 
 }  // namespace caplet

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view replacement_text = "\xef\xbf\xbd";
 
-/// What a first byte announces (Unicode 15, table 3-7): further bytes, and the range of the first of them.
+/// The meaning of a first byte (Unicode 15, table 3-7): the number of further bytes, and the range of the first of them.
 struct Lead {
   std::size_t more = 0;  // 0: no sequence begins with it
   unsigned char low = 0x80, high = 0xbf;

@@ -46,7 +46,7 @@ struct Bench {
   double seconds;
   bool by_shape = false;  // ids of the peer are not primitive ids
 
-  /// Alternates both until the time is up, three rounds at least. `ours`: the same rays, perhaps in another order.
+  /// Alternates between both until the time is up, at least three rounds. `ours`: the same rays, possibly in another order.
   void run(const std::string& name, DeviceTracer& tracer, const std::vector<RayRecord>& ours,
            const std::vector<RayRecord>& theirs, Question question = Question::closest) {
     if (ours.empty()) return;
@@ -68,7 +68,7 @@ struct Bench {
       ask_peer();
       b.push_back(static_cast<double>(theirs.size()) / seconds_since(start) * 1e-6);
     }
-    // `found` is the result of each ray, in the peer's terms.
+    // `found` is the result of each ray, with the peer's numbering.
     std::vector<std::uint32_t> found;
     if (any) {
       for (const int one : tracer.any()) found.push_back(one != 0 ? 1 : 0);
@@ -90,7 +90,7 @@ struct Bench {
   }
 };
 
-/// As a renderer traces: camera rays through a stage of their own.
+/// Traces like a renderer: camera rays have a stage of their own.
 struct Tracers {
   DeviceTracer camera, others;
 
@@ -129,7 +129,7 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
   bench.run(kind + " any", tracers.others, scattered, scattered, Question::any);
 }
 
-/// Seconds of `work` on so many threads, which may be more than there are cores.
+/// Returns the seconds of `work` on this number of threads, which may exceed the number of cores.
 template <class Work>
 double seconds_on(int threads, const Work& work) {
   const tbb::global_control most(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -137,7 +137,7 @@ double seconds_on(int threads, const Work& work) {
   return arena.execute(work);
 }
 
-/// Trees by 1 to options.builders threads, Embree's after ours each time: medians.
+/// Measures tree builds on 1 to options.builders threads, each followed by Embree's; reports medians.
 void run_builders(std::span<const FlatPrimitive> primitives, int kind_bits, const Options& options, const Say& line) {
   constexpr int repetitions = 7;
   const bool beside = Peer::is_there() && !options.alone;
@@ -196,7 +196,7 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
   }
 }
 
-/// As lowering has them: all around, of one side.
+/// Makes tree lights as lowering does: they shine in all directions, from one side.
 TreeLights tree_lights(std::span<const FlatPrimitive> primitives) {
   TreeLights out;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -209,11 +209,11 @@ TreeLights tree_lights(std::span<const FlatPrimitive> primitives) {
   return out;
 }
 
-/// Processor seconds of the whole program, the system's included.
+/// Returns the processor seconds of the whole program, including system time.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// What emissive capsules take beside those that are not, in processor seconds and in bytes on a device: the light tree beside
-/// the tree of the same capsules, and all that a light needs beside the scene without lights. Medians of five.
+/// Measures the cost of emissive capsules, in processor seconds and in device bytes: the light tree compared with the tree of the
+/// same capsules, and all data of lights compared with the scene without lights. Reports medians of five.
 void run_lights(const Options& options, const Say& line) {
   constexpr int repetitions = 5;
   const auto primitives = walk_capsules(options.count);

@@ -9,8 +9,8 @@
 namespace caplet::bench {
 namespace {
 
-// Stages as a renderer has them, with a struct of their own for what they take. Not several work-items in one vector
-// (kernels/stages/kernel.cl): Intel's compiler of 2025 crashes on this kernel without the hint.
+// These stages are like a renderer's, with a struct for their arguments. They disable putting several work-items into one vector
+// (kernels/stages/kernel.cl): Intel's compiler of 2025 crashes on this kernel otherwise.
 const char* const kernels = R"(
 #include "groups.cl"
 typedef struct {

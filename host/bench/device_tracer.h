@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Rays through the traversal kernels, without the renderer around them.
+// Traces rays with the traversal kernels, without the rest of the renderer.
 #pragma once
 
 #include <span>
@@ -15,16 +15,16 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
-  /// How rays of width 8 go through the tree (kernels/trace/many.cl): many at once, as a renderer's do; as its camera rays; or
-  /// one after the other, as on devices that are no good at the former.
+  /// How rays of width 8 traverse the tree (kernels/trace/many.cl): many at once, as a renderer's rays do; as its camera rays do;
+  /// or one after the other, for devices that are slow at tracing many.
   enum class Manner { pool, stream, one_by_one };
 
-  /// width: CAPLET_REAL_WIDTH, 8 or 1. For the shapes of `rows`.
+  /// `width`: CAPLET_REAL_WIDTH, 8 or 1. The kernels support the shapes of `rows`.
   DeviceTracer(const Device& device, int width, const std::string& options = "", const RowMasks& rows = {},
                Manner manner = Manner::pool);
   void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
-  /// Runs over the rays set before; blocks.
+  /// Traces the rays that were set before, and blocks.
   void run_closest();
   void run_any();
   std::vector<HitRecord> hits() const;

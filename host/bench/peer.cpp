@@ -19,7 +19,7 @@
 namespace caplet::bench {
 namespace {
 
-/// One for the program: scenes are cheap, devices are not.
+/// The program shares one device: scenes are cheap, devices are not.
 RTCDevice device() {
   static const struct Owner {
     RTCDevice handle = rtcNewDevice(nullptr);
@@ -52,7 +52,7 @@ struct Peer::Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Seconds it took.
+  /// Returns the seconds that it took.
   double build(RTCGeometry geometry, PeerMode mode) {
     rtcSetSceneFlags(handle, mode == PeerMode::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     const Clock::time_point start = Clock::now();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// In place of peer.cpp where Embree is not there.
+// Replaces peer.cpp in builds without Embree.
 #include <stdexcept>
 
 #include "bench/peer.h"

@@ -46,7 +46,7 @@ void walk(std::size_t count, const Step& step) {
 
 Vec vec(const float* p) { return {p[0], p[1], p[2]}; }
 
-/// Towards the side of `from`.
+/// Returns the normal on the side of `from`.
 Vec normal_at(const FlatPrimitive& p, Vec x, Vec from) {
   Vec n;
   if (p.shape == shape_triangle) {
@@ -113,7 +113,7 @@ CapsulesShape one_capsule(Vec a, Vec b, float r0, float r1) {
   return capsule;
 }
 
-/// An octahedron around the middle of the step.
+/// Returns an octahedron around the middle of the step.
 PolyhedronShape octahedron(Vec a, Vec b, float radius) {
   PolyhedronShape out;
   const glm::dvec3 center = wide(0.5f * (a + b));
@@ -227,7 +227,7 @@ std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives, st
     const Vec x = o + hits[i].t * d;
     const Vec n = normal_at(primitives[primitive_of[hits[i].slot]], x, o);
     const float phi = 6.2831853f * u(engine), z = 2 * u(engine) - 1, s = std::sqrt(1 - z * z);
-    // A point of the unit sphere standing on the surface: cosine-distributed seen from the point of contact.
+    // The direction leads to a point of the unit sphere that touches the surface here, so it is cosine-distributed.
     const Vec w = n + 0.9999f * Vec{s * std::cos(phi), s * std::sin(phi), z};
     const Vec b = normalize(w), start = x + 1e-5f * n;
     out.push_back({start.x, start.y, start.z, 0, b.x, b.y, b.z, inf});

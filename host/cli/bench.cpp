@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet bench`: hands over to caplet_bench, the benchmark program built beside this one.
+// `caplet bench`: starts caplet_bench, the benchmark program built beside this one.
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The subcommands: each adds itself to the program, with its options and what it does. main.cpp catches their errors.
+// The subcommands: each adds itself to the program, with its options and its action. main.cpp catches their errors.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,10 +10,10 @@
 
 namespace caplet::cli {
 
-/// How the program was called, for metadata and errors.
+/// The program's command line, for metadata and errors.
 struct Invocation {
   std::vector<std::string> arguments;  // arguments[0] is the program
-  /// As one would type it into a shell.
+  /// Returns the command line quoted for a shell.
   std::string command_line() const;
 };
 
@@ -25,7 +25,7 @@ void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_verify(CLI::App& app);
-void add_view(CLI::App& app);        // where it is built (CAPLET_WITH_VIEW)
+void add_view(CLI::App& app);        // only if it is built (CAPLET_WITH_VIEW)
 void add_try_device(CLI::App& app);  // hidden: see trial.h
 void add_describe(CLI::App& app);    // hidden: the man page and the completions
 

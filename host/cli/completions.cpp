@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Completions for bash, zsh and fish.
+// Writes completions for bash, zsh and fish.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,7 +14,7 @@ namespace caplet::cli {
 
 namespace {
 
-/// In single quotes, as all three shells read them.
+/// Quotes text with single quotes, which all three shells read alike.
 std::string in_quotes(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -42,14 +42,14 @@ std::vector<std::string> option_names(const CommandText& command) {
 
 bool is_long(const std::string& name) { return name.starts_with("--"); }
 
-/// What one may type of the arguments that are no options.
+/// Returns the possible values of the positional arguments.
 Values values_of_arguments(const CommandText& command) {
   return command.arguments.empty() ? Values{} : values_of(command.arguments.front().type);
 }
 
 // --- bash ---
 
-/// Calls of the functions below that add what can be typed.
+/// Returns calls of the functions below that add the possible values.
 std::string bash_values(const Values& values) {
   std::string out;
   if (!values.words.empty()) out += fmt::format("_caplet_words {}; ", in_quotes(joined(values.words)));
@@ -101,7 +101,7 @@ std::string bash_command(const CommandText& command) {
       fmt::format("    {})\n      options={}\n      case $previous in\n", command.name, in_quotes(joined(option_names(command))));
   for (const OptionText& option : command.options) {
     if (option.type.empty()) continue;
-    // A value that may be left out is no reason to offer no options.
+    // Options are still offered where the value may be omitted.
     const std::string guard = option.value_is_optional ? "[ \"${_caplet_cur#-}\" != \"$_caplet_cur\" ] || { " : "";
     out += fmt::format("        {}) {}{}{} ;;\n", fmt::join(option.names, " | "), guard, bash_values(values_of(option.type)),
                        option.value_is_optional ? "return; }" : "return");
@@ -111,7 +111,7 @@ std::string bash_command(const CommandText& command) {
 
 // --- zsh ---
 
-/// Text in the brackets of a specification of _arguments.
+/// Escapes text inside the brackets of a specification of _arguments.
 std::string zsh_text(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -179,7 +179,7 @@ std::string fish_option(const std::string& command, const OptionText& option) {
   if (!option.type.empty()) {
     const Values values = values_of(option.type);
     const std::string words = fish_values(values);
-    // -r: a value must follow, -f and -F: it is no file, it may be one.
+    // -r requires a value; -f excludes files, and -F allows them.
     out += option.value_is_optional ? "" : " -r";
     out += values.files ? " -F" : " -f";
     if (!words.empty()) out += " -a " + in_quotes(words);

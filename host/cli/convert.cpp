@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet convert`: any scene file in, pbrt text out.
+// `caplet convert`: converts any scene file to pbrt text.
 #include <CLI/CLI.hpp>
 #include <memory>
 

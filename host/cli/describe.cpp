@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet describe`: the man page and the completions, which the build makes by it.
+// `caplet describe`: writes the man page and the completions during the build.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ struct Text {
 constexpr std::array<Text, 4> texts = {
     {{"man", man_page}, {"bash", bash_completion}, {"zsh", zsh_completion}, {"fish", fish_completion}}};
 
-/// What CLI11 itself says of each command, which the tests compare the texts with.
+/// Returns CLI11's own help of each command, which tests compare with our texts.
 std::string own_words(const CLI::App& app) {
   std::string out;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))

@@ -32,11 +32,11 @@ bool has_capitals(const std::string& text) {
   return std::ranges::any_of(text, [](unsigned char c) { return std::isupper(c); });
 }
 
-/// CLI11 adds to the name what each check says, behind a colon.
+/// CLI11 appends the description of each check to the name, after a colon.
 std::string type_of(const CLI::Option& option) {
   std::string checks;
   try {
-    // It has no constant access to checks, and no number of them.
+    // CLI11 offers neither constant access to checks nor their number.
     for (int i = 0;; ++i)
       if (const std::string says = const_cast<CLI::Option&>(option).get_validator(i)->get_description(); !says.empty())
         checks += ":" + says;
@@ -96,7 +96,7 @@ CommandText describe_command(const CLI::App& command) {
     if (option->get_group().empty()) continue;
     (option->nonpositional() ? out.options : out.arguments).push_back(describe_option(*option));
   }
-  // Every command has the help's own option; it is the least of them.
+  // The option --help comes last, because every command has it.
   std::ranges::stable_partition(
       out.options, [](const OptionText& option) { return std::ranges::find(option.names, "--help") == option.names.end(); });
   return out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet devices`: the OpenCL devices there are, and how fast they are.
+// `caplet devices`: lists the OpenCL devices and their speed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ namespace caplet::cli {
 
 namespace {
 
-/// 4,096 capsules in studio light.
+/// Returns a scene of 4,096 capsules in studio light.
 Scene measured_scene() {
   CapsulesShape capsules;
   for (int i = 0; i < 4096; ++i) {
@@ -46,7 +46,7 @@ Scene measured_scene() {
   return scene;
 }
 
-/// Rays a second, of all kinds, of a render of a second. Throws RunError.
+/// Returns the rays per second, of all kinds, in a render of one second. Throws RunError.
 double measured_speed(int index) {
   const Scene scene = measured_scene();
   const FlatScene flat = lower(scene);
@@ -57,7 +57,7 @@ double measured_speed(int index) {
     const RayCounts rays = session.rays();
     return static_cast<double>(rays.camera + rays.bounce + rays.shadow);
   };
-  session.render(1);  // what is done at the first time only
+  session.render(1);  // excludes the work of the first pass
   const double before = all();
   const Clock::time_point start = Clock::now();
   session.render(1u << 24, {}, 1.0);
@@ -67,7 +67,7 @@ double measured_speed(int index) {
 struct Listed {
   DeviceInfo info;
   double rays_a_second = 0;
-  std::string why_not;  // it could not be measured
+  std::string why_not;  // why it could not be measured
 };
 
 std::vector<Listed> list(bool measure) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet doctor`: what is there, what is wrong, what to do.
+// `caplet doctor`: reports the installation, its problems and their solutions.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ namespace {
 void print_line(const doctor::Finding& finding) {
   fmt::print("{:<6} {}: {}\n", doctor::name_of(finding.state), one_line(finding.about), one_line(finding.what));
   if (!finding.fix.empty()) fmt::print("       fix: {}\n", one_line(finding.fix));
-  std::fflush(stdout);  // a self-test takes a while, and children must not print what waits
+  std::fflush(stdout);  // a self-test takes a while, and children must not print buffered text
 }
 
 void print_diagnosis_json(const doctor::Diagnosis& diagnosis) {

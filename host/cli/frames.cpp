@@ -49,7 +49,7 @@ const Container* container_of(const fs::path& path) {
   return nullptr;
 }
 
-/// The program in one of PATH's folders; empty: in none.
+/// Finds the program in the folders of PATH; empty: in none.
 fs::path in_path(const std::string& program) {
   const char* folders = std::getenv("PATH");
   for (std::string_view rest = folders ? folders : ""; !rest.empty();) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Pictures that follow each other: which, what their files are called, and a movie of them.
+// Sequences of frames: their selection, file names, and movies.
 #pragma once
 
 #include <cstdint>
@@ -14,35 +14,35 @@
 
 namespace caplet::cli {
 
-/// Which frames are made, from 1; `count`: how many there are (of a turn, of a file), where that is known.
+/// The frames to render, from 1. `count`: the number of frames of a turn or a file, if known.
 struct FrameRange {
   std::uint32_t first = 1, last = 1, count = 1;
 };
 
-/// "A-B", or "A": whole numbers from 1, the second not below the first. None where it is "all". Throws InputError naming
+/// Parses "A-B" or "A": integers from 1, the second not below the first. Returns no value for "all". Throws InputError that names
 /// --frames.
 std::optional<FrameRange> parse_frames(const std::string& text);
 
-/// Whether a name has a place for a number: "####" (so many digits at least) or "%d", "%04d".
+/// Returns whether a name has a place for a number: "####" (at least so many digits) or "%d", "%04d".
 bool is_numbered(const std::string& name);
-/// The last such place of its file name filled in; without one the name as it is.
+/// Fills in the last such place of the file name; a name without one stays as it is.
 std::filesystem::path numbered(const std::filesystem::path& name, std::uint32_t number);
 
-/// Whether a name is one of a movie: .mp4, .mov, .mkv, .webm, .gif.
+/// Returns whether the extension is that of a movie: .mp4, .mov, .mkv, .webm, .gif.
 bool is_movie(const std::filesystem::path& path);
 
-/// Pictures in a folder of their own until ffmpeg makes one file of them.
+/// Collects pictures in a temporary folder, from which ffmpeg makes a movie.
 class Movie {
  public:
-  /// Throws InputError naming `flag` where there is no ffmpeg.
+  /// Throws InputError that names `flag` if ffmpeg is missing.
   Movie(std::filesystem::path path, double frames_a_second, const std::string& flag);
   ~Movie();
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
 
-  /// Where the next frame's picture is to be written.
+  /// Returns the path for the next frame's picture.
   std::filesystem::path next();
-  /// Writes the movie. Throws RunError with what ffmpeg says.
+  /// Writes the movie. Throws RunError with ffmpeg's message.
   void finish();
 
  private:

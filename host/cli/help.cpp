@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The text of --help, in 80 columns.
+// Writes the text of --help, in 80 columns.
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t width = 80, help_column = 26;
 
-/// "  NAME    HELP": the help begins in its column, on the next line where the name does not leave room for it.
+/// Returns "  NAME    HELP". The help begins in its column, on the next line if the name is too long.
 std::string row(const std::string& name, const std::string& help) {
   std::vector<std::string> names = filled(name, width - 6);
   for (std::size_t i = 0; i < names.size(); ++i) names[i].insert(0, i == 0 ? 2 : 6, ' ');
@@ -85,7 +85,7 @@ std::string help_text(const CommandText& command, const std::string& name, const
 }
 
 void use_help_text(CLI::App& app) {
-  // Later versions of CLI11 have other names for what has no group.
+  // Later versions of CLI11 use other names for options without a group.
   app.option_defaults()->group("Options");
   app.formatter(std::make_shared<HelpText>());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet info`: what is in a scene, without rendering it.
+// `caplet info`: describes a scene without rendering it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

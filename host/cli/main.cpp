@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The program's door: subcommands in, exit codes out (0 done, 1 failed while working, 2 wrong input or usage, 3 `verify`
-// found disagreement).
+// The main program: dispatches subcommands and returns exit codes (0 done, 1 failed while working, 2 wrong input or usage, 3
+// `verify` found disagreement).
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
-/// Prints one line. Control characters in names and files would break the line, or the terminal: they become blanks.
+/// Prints one line. Control characters of names and files, which could break the line or the terminal, become blanks.
 void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str()); }
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
@@ -44,14 +44,14 @@ int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return exit_wrong_input;
 }
 
-/// The number of a standard stream that is closed would go to the next file that is opened. A closed stdout stays one that cannot
-/// be written, which end() reports.
+/// If a standard stream is closed, its number would be given to the next opened file. A closed stdout is replaced by one that
+/// cannot be written, which end() reports.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream) return;
 }
 
-/// `code`, or exit_failed when results did not reach stdout.
+/// Returns `code`, or exit_failed when results did not reach stdout.
 int end(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
@@ -65,7 +65,7 @@ int run(CLI::App& app, int argc, char** argv) {
     return 0;
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
-  } catch (const CLI::RuntimeError& end) {  // a command's own exit code; it has printed everything
+  } catch (const CLI::RuntimeError& end) {  // a command's own exit code; its output is complete
     return end.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return print_usage_error(app, error);
@@ -73,7 +73,7 @@ int run(CLI::App& app, int argc, char** argv) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
   } catch (const caplet::DriverError& error) {
-    // A driver's compiler may fail because of the signal: then the interrupt is the reason, not the driver.
+    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the driver.
     if (caplet::interrupt_requested()) {
       print_error("interrupted; nothing is written");
     } else {
@@ -91,7 +91,7 @@ int run(CLI::App& app, int argc, char** argv) {
 int whole_program(int argc, char** argv) {
   open_standard_streams();
   caplet::log::set_quiet(false);
-  // A closed pipe and a file size limit shall be write errors, not signals: there are other outputs, and files to remove.
+  // A closed pipe and the file size limit become write errors, not signals: other outputs remain, and files must be removed.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   const caplet::SecondTry second_try(argv);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The man page, in the macros of man(7).
+// Writes the man page in the macros of man(7).
 #include <algorithm>
 
 #include "cli/description.h"
@@ -10,7 +10,7 @@ namespace caplet::cli {
 
 namespace {
 
-/// Text as roff takes it: it prints a plain `-` as a hyphen that cannot be typed, and has macros in lines that begin with a dot.
+/// Escapes text for roff, which prints a plain `-` as a hyphen that cannot be typed, and takes a leading dot for a macro.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -43,7 +43,7 @@ std::string escaped(const std::string& text) {
   return out.starts_with('.') ? "\\&" + out : out;
 }
 
-/// What an option takes: words in bold, what stands for something in italics. A line may be broken behind each `|`.
+/// Formats an option's values: literals in bold, placeholders in italics. A line may break after each `|`.
 std::string type_in_fonts(const std::string& type) {
   std::string out, word;
   const auto end_word = [&] {
@@ -98,7 +98,7 @@ bool are_same(const std::vector<OptionText>& a, const std::vector<OptionText>& b
   });
 }
 
-/// A group that more than one command has is described once, behind the commands.
+/// A group of several commands is described once, after the commands.
 struct SharedGroup {
   std::string name;
   std::vector<OptionText> options;

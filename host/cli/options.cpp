@@ -25,7 +25,7 @@ namespace {
 constexpr long long max_pixels = 1LL << 28;
 constexpr const char* usual_device = "a GPU where there is one";
 
-/// All of `text` as whole numbers separated by `separator`; empty when it is anything else.
+/// Parses `text` as integers separated by `separator`; empty if it is anything else.
 std::vector<long long> whole_numbers(std::string_view text, char separator) {
   std::vector<long long> out;
   for (;;) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The options of what is drawn on a picture.
+// The options of overlays on pictures.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,7 +10,7 @@
 
 namespace caplet::cli {
 
-/// Adds an option for each row of post/overlays.def; what they say goes into `overlays`.
+/// Adds an option for each row of post/overlays.def; its values are stored in `overlays`.
 void add_overlays(CLI::App& command, post::Overlays& overlays);
 
 }  // namespace caplet::cli

@@ -27,7 +27,7 @@ void check_name(const std::string& name, const std::vector<std::string>& known, 
         fmt::format("--parameters: there is no {} '{}'; the nearest is '{}'", what, name, nearest_name(name, known)));
 }
 
-/// The types that are asked for: (family, type).
+/// Returns the requested types: (family, type).
 std::vector<std::pair<std::string, std::string>> types_of(const std::vector<std::string>& names) {
   if (names.size() > 2) throw InputError("--parameters takes a family and a type, not more");
   std::vector<std::pair<std::string, std::string>> out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet pick`: what is under a pixel, or hit by a ray, or by each of millions of rays.
+// `caplet pick`: queries what a pixel shows, or what one ray or each of millions of rays hits.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
-constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // at most, whatever --limit allows a ray
+constexpr std::size_t crossings_in_a_chunk = std::size_t{1} << 22;  // the most per chunk, whatever --limit allows per ray
 
 struct PickFlags {
   Encoding encoding = Encoding::automatic;
@@ -79,7 +79,7 @@ void pick_one(const PickFlags& options, const Scene& scene, const FlatScene& fla
 
 // --- Lists of rays ---
 
-/// Rows of a chunk of rays, numbered from `first`; rays with more crossings than the limit are added to `overflowed`.
+/// Returns the rows of a chunk of rays, numbered from `first`. Rays with more crossings than the limit go to `overflowed`.
 std::vector<report::PickRow> answer(Query& query, std::span<const RayRecord> rays, std::uint64_t first, const PickFlags& options,
                                     std::vector<std::uint64_t>& overflowed) {
   std::vector<report::PickRow> rows;
@@ -103,7 +103,7 @@ void pick_many(const PickFlags& options, const Scene& scene, const FlatScene& fl
   const Clock::time_point start = Clock::now();
   const auto seconds = [start] { return seconds_since(start); };
   Query query(flat, device);
-  // Compiles the kernels before the rays are read: after a driver's crash the program starts again, and a pipe cannot be read
+  // Kernels are compiled before the rays are read: after a driver's crash the program starts again, and a pipe cannot be read
   // twice.
   const RayRecord any{0, 0, 0, 0, 0, 0, 1, std::numeric_limits<float>::infinity()};
   std::vector<std::uint64_t> ignored;
@@ -131,7 +131,7 @@ void pick_many(const PickFlags& options, const Scene& scene, const FlatScene& fl
       const std::vector<report::PickRow> rows = answer(query, rays, ray_count, options, overflowed);
       device_seconds += seconds() - before;
       SecondTry::driver_works();
-      if (overflowed.empty()) table->append(rows);  // otherwise read on only to name all rays that overflow
+      if (overflowed.empty()) table->append(rows);  // otherwise reads on only to list all rays that overflow
       ray_count += rays.size();
       row_count += rows.size();
       if (rays.size() < chunk) break;

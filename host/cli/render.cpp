@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet render`: scene file in, pictures out.
+// `caplet render`: renders a scene file to pictures.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -70,20 +70,20 @@ struct RenderFlags {
 
 constexpr const char* no_picture = "none";
 
-/// The outputs and their paths; of frames, with the place of the number. Empty: not wanted.
+/// The outputs and their paths; for frames, with the place of the number. An empty path is not written.
 struct Files {
   std::vector<fs::path> pictures, previews;
   fs::path movie, stats;
   Outputs all;
 
-  /// What is named of them: the first.
+  /// Returns the first output, which stands for all in messages.
   fs::path first() const {
     if (!pictures.empty()) return pictures.front();
     return !previews.empty() ? previews.front() : movie.empty() ? stats : movie;
   }
 };
 
-/// With the number of the frame put in.
+/// Fills in the number of the frame.
 Files of_frame(const Files& files, std::uint32_t frame) {
   Files out;
   for (const fs::path& path : files.pictures) out.pictures.push_back(numbered(path, frame));
@@ -140,7 +140,7 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
     refuse("-o", "frames need a name, such as frame.####.png or movie.mp4");
 }
 
-/// Reports what is wrong with options and outputs before anything is loaded.
+/// Reports errors in options and outputs before anything is loaded.
 Overrides check_options(const RenderFlags& options, Files& files) {
   Overrides overrides;
   if (!options.size.empty()) overrides.size = parse_size(options.size);
@@ -176,8 +176,8 @@ report::StereoLayout layout_of(const RenderFlags& options) {
              : static_cast<report::StereoLayout>(found - report::stereo_layout_names.begin());
 }
 
-/// What the scene tells of outputs: the picture's name (the scene's own film name, else the scene file's, in the current folder),
-/// its size, and the files that the scene was read from.
+/// Checks what depends on the scene: the picture's name (the scene's own film name, else the scene file's, in the current
+/// folder), its size, and that no output is a file that the scene was read from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
   if (options.outputs.empty() && !options.has_frames()) {
     fs::path name = fs::path(scene.film.filename).filename();
@@ -210,7 +210,7 @@ std::string names_of(const std::vector<Device>& devices) {
   return out;
 }
 
-/// What `work` makes, which is told of its progress.
+/// Returns the result of `work`, and reports its progress.
 template <class Work>
 RenderResult with_progress(const std::vector<Device>& devices, const RenderOptions& render_options, bool quiet,
                            const Work& work) {
@@ -220,13 +220,13 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
-        guard(devices);  // again: the kernels' compiler may have set signal handlers
+        guard(devices);  // once more, because the kernels' compiler may have set signal handlers
       reporter.update(progress.fraction, progress.samples_per_second,
                       fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
                                   render_options.samples_per_pixel));
     });
   } catch (const RunError&) {
-    // A driver's compiler may fail because of the signal: then the interrupt is the reason, not the driver.
+    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the driver.
     if (interrupt_requested()) throw RunError(interrupted_early);
     throw;
   }
@@ -239,19 +239,19 @@ RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, c
   });
 }
 
-/// All that a picture is made of.
+/// The inputs and settings of a picture.
 struct Work {
   const RenderFlags& options;
   const Invocation& invocation;
   const Scene& scene;
   const FlatScene& flat;
   const std::vector<Device>& devices;
-  Layers layers, film_layers;  // that are written, and with those that overlays look at
+  Layers layers, film_layers;  // the layers to write, and those with the ones that overlays need
   const Files& files;
   RenderOptions render_options;
 };
 
-/// Renders a view, which tev shows as it grows where it is asked to.
+/// Renders a view; if requested, tev shows its progress.
 RenderResult render_shown(const Work& work, const FlatView& view, const std::string& view_name) {
   if (work.options.display.empty())
     return render_with_progress(work.flat, view, work.devices, work.render_options, work.options.quiet);
@@ -285,7 +285,7 @@ BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& no
   return out;
 }
 
-/// Pictures and previews by twos, which are developed once; one of them may be empty.
+/// Calls write with a picture and a preview at a time, which are developed together; one of them may be empty.
 template <class Write>
 void each_pair(const Files& files, const Write& write) {
   for (std::size_t i = 0; i < std::max(files.pictures.size(), files.previews.size()); ++i)
@@ -313,7 +313,7 @@ RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeco
   return written(work, render_shown(work, view, ""), seconds);
 }
 
-/// The views of two eyes, one after the other. The right one gets as many samples as the left one got. What is returned tells of
+/// Renders the views of two eyes in turn, the right one with as many samples as the left one got. The result describes
 /// both.
 RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   const Stereo stereo{*both.options.separation, both.options.convergence};
@@ -371,7 +371,7 @@ std::vector<std::string> numbered_all(const std::vector<std::string>& scenes, st
   return out;
 }
 
-/// Where frames come from: a camera that goes round, files with numbers, or models of one file.
+/// The source of frames: a turntable camera, numbered files, or the models of one file.
 struct FrameSource {
   enum class Kind { turntable, files, models } kind = Kind::turntable;
   FrameRange range;
@@ -423,14 +423,14 @@ Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std:
   return import_files(options.scenes, of_frame);
 }
 
-/// A camera that was found frames what moves: what is in some of the frames, the first and last among them.
+/// Frames an automatic camera to the union of up to 17 frames, including the first and the last.
 void frame_all(const RenderFlags& options, const FrameSource& source, const Overrides& overrides, Scene& first) {
   constexpr std::uint32_t most = 16;
   if (!first.automatic_camera) return;
   Scene all = first;
   const std::uint32_t count = source.range.last - source.range.first;
   const bool quiet = options.quiet;
-  log::set_quiet(true);  // what there is to tell is told of each frame
+  log::set_quiet(true);  // messages appear when each frame is rendered
   for (std::uint32_t i = 1; i <= std::min(count, most); ++i) {
     const auto frame = source.range.first + static_cast<std::uint32_t>(std::uint64_t{count} * i / std::min(count, most));
     Scene other = scene_of_frame(options, source, frame);
@@ -439,19 +439,19 @@ void frame_all(const RenderFlags& options, const FrameSource& source, const Over
   }
   log::set_quiet(quiet);
   apply(overrides, all);
-  set_film_size(all, all.film.width, all.film.height);  // frames anew
+  set_film_size(all, all.film.width, all.film.height);  // frames the camera again
   move_camera(first, all.camera);
 }
 
-/// Whether all that a frame is to be written to is there.
+/// Returns whether all outputs of a frame exist.
 bool is_there(const Files& files) {
   std::error_code ignored;
   const auto exists = [&](const fs::path& path) { return fs::is_regular_file(path, ignored); };
   return std::ranges::all_of(files.pictures, exists) && std::ranges::all_of(files.previews, exists);
 }
 
-/// Renders the frames one after the other: what they share (the device, its kernels, for a turntable the whole scene) is made
-/// once. Throws RunError when it is interrupted: frames that are written are whole, and the others are not there.
+/// Renders the frames one after the other. What they share (the device, its kernels, for a turntable the whole scene) is made
+/// once. Throws RunError when it is interrupted: each frame is then either complete or missing.
 RenderResult render_frames(const Work& of_all, const FrameSource& source, const Overrides& overrides, Scene scene,
                            report::RunSeconds& seconds) {
   const RenderFlags& options = of_all.options;
@@ -523,7 +523,7 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   phase.lap();
   std::optional<FrameSource> frames;
   if (options.has_frames()) frames = source_of(options);
-  if (!files.movie.empty()) Movie(files.movie, options.frames_a_second, "-o");  // whether it can be made
+  if (!files.movie.empty()) Movie(files.movie, options.frames_a_second, "-o");  // checks that it can be made
   Scene scene =
       frames ? scene_of_frame(options, *frames, frames->range.first) : import_files(options.scenes, options.import_options);
   apply(overrides, scene);

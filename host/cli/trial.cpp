@@ -45,7 +45,7 @@ void try_device_apart(const Device& device, const Trial& trial) {
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  // This process has threads already: its child may only call exec.
+  // This process already has threads, so its child may only call exec.
   const auto in_child = [&] {
     return doctor::in_child(
         [&] {
@@ -56,13 +56,13 @@ void try_device_apart(const Device& device, const Trial& trial) {
   };
   doctor::ChildEnd end = in_child();
   if (!end.finished && end.exit_code != exit_wrong_device && device.is_pocl() && !interrupt_requested()) {
-    // It may be PoCL's cache that is broken, which SecondTry deals with.
+    // PoCL's cache may be broken, which SecondTry handles.
     const FreshPoclCache fresh;
     end = in_child();
   }
   if (end.finished && end.answer == not_started) return try_device(device, trial);
   if (end.finished) {
-    // A child that could not keep its answer could not say it either.
+    // A child that could not store its result could not report that either.
     if (needs_trial(device, trial)) remember_trial(device, trial);
     return;
   }

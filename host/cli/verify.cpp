@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet verify`: does this device compute what the host reference says?
+// `caplet verify`: compares a device's results with the host reference.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -48,13 +48,13 @@ std::vector<Device> devices_of(const VerifyFlags& o) {
     out.push_back(choose_device(o.device, o.encoding));
   } else {
     for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index), o.encoding));
-    if (out.empty()) out.push_back(choose_device("", o.encoding));  // says what is missing
+    if (out.empty()) out.push_back(choose_device("", o.encoding));  // reports what is missing
   }
   for (const Device& device : out) {
     try {
       try_device_apart(device, {.nearest = true, .lists = true});
     } catch (const WrongDevice& wrong) {
-      log::warn("{}", wrong.what());  // how wrong, and where, is what was asked
+      log::warn("{}", wrong.what());  // the errors of the device are what the user asked for
     }
     SecondTry::guard(device);
   }
@@ -65,7 +65,7 @@ std::string scene_label(const verify::SceneName& name) {
   return name.file.empty() ? fmt::format("torture set, seed {}", name.seed) : name.file;
 }
 
-/// Asks every case again. True when all agree now.
+/// Repeats every case. Returns true when all agree now.
 bool replay(const VerifyFlags& o) {
   const std::vector<verify::Case> cases = verify::load_cases(o.replay);
   const std::vector<Device> devices = devices_of(o);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet view`: the scene live in a browser.
+// `caplet view`: shows the live scene in a browser.
 #include "view/viewer.h"
 
 #include <fcntl.h>
@@ -42,7 +42,7 @@ struct ViewFlags {
   bool no_browser = false, read_only = false, quiet = false;
 };
 
-/// Where there is a desktop, its browser. What comes of it is the desktop's to tell.
+/// Opens the desktop's browser, if there is a desktop, and leaves errors to it.
 void open_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
   posix_spawn_file_actions_t silent;
@@ -57,7 +57,7 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&silent);
 }
 
-/// What makes another scene of the same file.
+/// Returns the options that make a different scene of the same file.
 view::Keeper::ReadAs read_as(const ImportOptions& options) {
   view::Keeper::ReadAs out = options.values();
   std::erase_if(out, [](const auto& value) {
@@ -67,7 +67,7 @@ view::Keeper::ReadAs read_as(const ImportOptions& options) {
   return out;
 }
 
-/// What an address that others reach lets them do.
+/// Describes what others can do if they reach the address.
 std::string opened_to(const ViewFlags& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
   for (const std::string& address : view::addresses_reached(options.host)) where.push_back(view::authority_of(address, port));
@@ -87,14 +87,14 @@ void run_view(const ViewFlags& options) {
   const Device device = choose_device(options.device, options.encoding);
   const std::string name = scene_names(options.scenes);
   std::unique_ptr<view::Keeper> keeper;
-  // If several files make one scene, changes of it could be kept in none of them.
+  // If several files make one scene, its changes belong to none of them.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
     keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
   Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);
   if (keeper) {
     scene.source = name;
     keeper->has_read(noted_inputs());
-    forget_input(name);  // it may be saved over, the files that it names may not
+    forget_input(name);  // it may be overwritten, but not the files that it names
   }
   apply(overrides, scene);
   LiveScene live(std::move(scene));

@@ -11,17 +11,17 @@ namespace caplet::tev {
 
 namespace {
 
-// Kinds of packets.
+// These are kinds of packets.
 constexpr std::uint8_t create_image = 4, update_image_v3 = 6;
 constexpr int tile_side = 128;
 
-/// A packet, whose length is put in at the end.
+/// A packet whose length is filled in at the end.
 class Packet {
  public:
   explicit Packet(std::uint8_t kind) {
     whole(std::uint32_t{0});
     whole(kind);
-    whole(std::uint8_t{0});  // does not take the focus
+    whole(std::uint8_t{0});  // does not grab the focus
   }
   template <class Whole>
   void whole(Whole value) {

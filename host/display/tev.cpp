@@ -29,10 +29,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int wait_milliseconds = 50;  // between looks whether to give up
+constexpr int wait_milliseconds = 50;  // between checks of `given_up`
 constexpr double most_connect_seconds = 5;
 
-/// A connection that never blocks for longer than a look at `given_up`.
+/// A connection that checks `given_up` regularly while it waits.
 class Connection {
  public:
   Connection() = default;
@@ -42,7 +42,7 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Empty, or what is wrong.
+  /// Returns the error; empty on success.
   std::string open(const addrinfo* addresses, const std::atomic<bool>& given_up) {
     std::string problem = "no address";
     for (const addrinfo* one = addresses; one; one = one->ai_next) {
@@ -70,7 +70,7 @@ class Connection {
     return problem;
   }
 
-  /// Empty, or what is wrong: also where it was given up.
+  /// Returns the error, also if it was given up; empty on success.
   std::string send(const std::string& bytes, const std::atomic<bool>& given_up) {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
@@ -105,7 +105,7 @@ struct TevDisplay::State {
   addrinfo* addresses = nullptr;
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::optional<LayeredImage> waiting;  // the newest
+  std::optional<LayeredImage> waiting;  // the newest picture
   bool is_busy = false, is_gone = false, is_over = false;
   std::atomic<bool> given_up = false;
   std::thread thread;

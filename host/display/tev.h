@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A picture that grows, shown by tev (https://github.com/Tom94/tev) while it is rendered: packets over TCP, each its length of 32
-// bits, its kind of 8, and what the kind has, little-endian (tev's README, "Over the Network").
+// Shows a picture in tev (https://github.com/Tom94/tev) while it is rendered. Packets over TCP have a length of 32 bits, a kind
+// of 8 bits, and data, little-endian (tev's README, "Over the Network").
 #pragma once
 
 #include <memory>
@@ -12,29 +12,29 @@
 
 namespace caplet {
 
-/// Where tev listens.
+/// The address at which tev listens.
 struct TevAddress {
   std::string host, port;
 };
-/// "HOST:PORT", "[::1]:PORT", or a port alone, of this machine. Throws InputError naming `flag`.
+/// Parses "HOST:PORT", "[::1]:PORT", or only a port of this machine. Throws InputError that names `flag`.
 TevAddress parse_tev_address(const std::string& text, const std::string& flag);
 
-/// Sends pictures on a thread of its own. Nothing here waits for tev but finish(): of pictures that it is too slow for the newest
-/// alone is kept, and where it is not there, or goes, a warning says so once and nothing more is sent.
+/// Sends pictures on its own thread. Only finish() waits for tev. If tev is too slow, only the newest picture is kept; if it is
+/// missing or disconnects, there is one warning and nothing more is sent.
 class TevDisplay {
  public:
-  /// `name`: what tev calls the picture. Throws InputError when there is no such host.
+  /// `name`: the picture's name in tev. Throws InputError when the host does not exist.
   TevDisplay(const TevAddress& address, const std::string& name);
-  /// Gives up what is not sent.
+  /// Discards what was not sent.
   ~TevDisplay();
   TevDisplay(const TevDisplay&) = delete;
   TevDisplay& operator=(const TevDisplay&) = delete;
 
-  /// Whether a picture would be sent now: none waits, and tev is there as far as is known.
+  /// Returns whether a picture would be sent now: none is waiting, and tev is connected as far as is known.
   bool is_idle() const;
-  /// The picture as it now is: of it, the tiles that have changed are sent. All have the same windows and channels.
+  /// Shows the present picture by sending the tiles that have changed. All pictures have the same windows and channels.
   void show(LayeredImage image);
-  /// Waits until all is sent, for so many seconds at most; a warning tells when it is not.
+  /// Waits until all is sent, for at most so many seconds, and then warns.
   void finish(double seconds);
 
  private:

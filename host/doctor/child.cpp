@@ -40,7 +40,7 @@ struct Pipe {
     if (end >= 0) ::close(end);
     end = -1;
   }
-  /// Takes what is there; false at the end.
+  /// Reads the available data; returns false at the end.
   bool take(std::string& to) const {
     std::array<char, 4096> buffer{};
     const ssize_t count = ::read(ends[0], buffer.data(), buffer.size());
@@ -61,7 +61,7 @@ void write_all(int to, const std::string& text) {
 [[noreturn]] void be_child(const std::function<std::string()>& work, pid_t parent, const Pipe& answer, const Pipe& noise) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(exit_threw);  // the parent ended before the line above
+  if (::getppid() != parent) ::_exit(exit_threw);  // the parent ended before prctl
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(noise.ends[1], STDOUT_FILENO);
@@ -72,7 +72,7 @@ void write_all(int to, const std::string& text) {
     write_all(answer.ends[1], error.what());
     ::_exit(exit_threw);
   }
-  ::_exit(0);  // no destructors: a driver's may crash
+  ::_exit(0);  // skips destructors, because a driver's may crash
 }
 
 std::string last_line(const std::string& text) {
@@ -90,7 +90,7 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds, cons
   const pid_t child = ::fork();
   if (child < 0) throw RunError(fmt::format("no child process: {}", std::strerror(errno)));
   if (child == 0) be_child(work, parent, answer, noise);
-  ::setpgid(child, child);  // here too, for the kill below may come before the child's own call
+  ::setpgid(child, child);  // here too, because the kill below may come before the child's own call
   answer.close_write();
   noise.close_write();
   for (const Pipe* pipe : {&answer, &noise}) ::fcntl(pipe->ends[0], F_SETFL, O_NONBLOCK);
@@ -113,11 +113,11 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds, cons
     ::poll(waiting.data(), waiting.size(), milliseconds);
     if (waiting[0].revents & POLLIN) answer.take(out.answer);
     if (waiting[1].revents & POLLIN) noise.take(printed);
-    // A driver that closed its end would make poll return at once.
+    // If a driver closed its end of the pipe, poll would return at once.
     if (((waiting[0].revents | waiting[1].revents) & POLLIN) == 0 && (waiting[0].revents | waiting[1].revents) != 0)
       ::poll(nullptr, 0, milliseconds);
   }
-  ::kill(-child, SIGKILL);  // whatever it started
+  ::kill(-child, SIGKILL);  // and every process that it started
   for (std::size_t before = 0; answer.take(out.answer) && out.answer.size() != before;) before = out.answer.size();
   for (std::size_t before = 0; noise.take(printed) && printed.size() != before;) before = printed.size();
   out.said = last_line(printed);

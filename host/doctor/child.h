@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Work in a child process: what crashes or hangs there is told, not suffered.
+// Runs work in a child process, so that a crash or a hang there is reported.
 #pragma once
 
 #include <functional>
@@ -17,9 +17,9 @@ struct ChildEnd {
   int exit_code = 0;      // if the child ended by one
 };
 
-/// Runs `work` in a child that has no terminal, for at most `seconds`. The child is gone when this returns, and dies with this
-/// process. To be called before any thread is started and before any OpenCL call of this process, unless `work` does nothing but
-/// exec. Ends early when `stop` says so.
+/// Runs `work` in a child without a terminal for at most `seconds`. The child has ended when this returns, and dies with this
+/// process. It must be called before this process starts a thread or calls OpenCL, unless `work` only calls exec. Ends early when
+/// `stop` returns true.
 ChildEnd in_child(const std::function<std::string()>& work, double seconds, const std::function<bool()>& stop = {});
 
 }  // namespace caplet::doctor

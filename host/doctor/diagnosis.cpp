@@ -22,12 +22,12 @@ namespace caplet::doctor {
 
 namespace {
 
-/// A row: what is known of platforms with devices and drivers of these names and versions.
+/// A row: a known problem of platforms, devices and driver versions that match.
 struct Quirk {
   const char* platform;  // how the platform's name begins
   const char* device;    // how the device's name begins
-  const char* from;      // the first driver's version; empty: any
-  const char* before;    // the first one that is not; empty: there is none
+  const char* from;      // first affected driver version; empty: any
+  const char* before;    // first version that is not affected; empty: none
   const char* what;
 };
 
@@ -65,7 +65,7 @@ constexpr Quirk quirks[] = {
      "tools/oclgrind.sh does)"},
 };
 
-/// The numbers of the first version in a text: "Oclgrind 21.10" has 21 and 10, "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.
+/// Returns the numbers of a text's first version: "Oclgrind 21.10" has 21 and 10, "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.
 std::vector<int> version_numbers(std::string_view text) {
   std::vector<int> out;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -95,14 +95,14 @@ bool concerns(const Quirk& quirk, const PlatformFacts& platform) {
 
 std::string printed(const ChildEnd& end) { return end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said); }
 
-/// "OpenCL 1.2 ..." is at least 1.2.
+/// Accepts "OpenCL 1.2 ..." and later versions.
 bool at_least_1_2(const std::string& version) {
   int major = 0, minor = 0;
   if (std::sscanf(version.c_str(), "OpenCL %d.%d", &major, &minor) != 2) return false;
   return major > 1 || (major == 1 && minor >= 2);
 }
 
-constexpr const char* about_bundled = "bundled driver";  // where other drivers have their .icd file
+constexpr const char* about_bundled = "bundled driver";  // takes the place of an .icd file
 
 std::string remove_text(const Driver& driver) {
   if (driver.from == about_bundled) return "export CAPLET_BUNDLED_DRIVER=0";
@@ -114,7 +114,7 @@ bool is_pocl(const DeviceInfo& info) { return info.platform.starts_with("Portabl
 
 std::string title(const DeviceInfo& info) { return fmt::format("device {} {}", info.index, info.name); }
 
-/// Everything that is asked and judged, in its order.
+/// Makes all checks in order.
 class Examination {
  public:
   Examination(const Surroundings& machine, const Options& options, const std::function<void(const Finding&)>& tell)
@@ -176,7 +176,7 @@ class Examination {
     }
   }
 
-  /// Asks all platforms at once, as a command of Caplet does; where a driver crashes or hangs, one driver after the other.
+  /// Asks all platforms at once, as other commands do; if a driver crashes or hangs, asks one driver after the other.
   void ask_platforms() {
     const bool broken = std::any_of(answers_.begin(), answers_.end(), [](const auto& each) { return !each.second.end.finished; });
     if (!broken) {
@@ -267,7 +267,7 @@ Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundi
             fmt::format("the driver {} {}{}; so does every program that uses OpenCL", driver.library, answer.end.how,
                         printed(answer.end)),
             "update or reinstall this driver, or take it out: " + remove_text(driver)};
-  // Names of C++ functions in the namespace tbb begin so.
+  // Mangled names of the C++ namespace tbb begin with this.
   if (answer.load_error.find("undefined symbol: _ZN3tbb") != std::string::npos)
     return {State::wrong, driver.from,
             fmt::format("the driver {} needs a newer libtbb.so.12 than the one that Caplet has loaded: {}", driver.library,
@@ -317,7 +317,7 @@ Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes) {
   if (device.profile != "FULL_PROFILE")
     lacks(fmt::format("has the profile {}, which may round differently", device.profile), other);
   if (!device.little_endian) lacks("is big-endian, and records are written little-endian", other);
-  // OpenCL 1.2, table 4.3: at least 1/4 of the memory, and 128 MiB. Some say less.
+  // OpenCL 1.2, table 4.3, requires at least 1/4 of the memory, and 128 MiB. Some devices report less.
   if (const std::uint64_t least = std::min<std::uint64_t>(info.global_bytes / 4, std::uint64_t{128} << 20);
       info.max_allocation_bytes < least)
     out.push_back({State::note, about,

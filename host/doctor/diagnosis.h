@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet doctor`: looks at the machine, the drivers, the platforms and the devices, and names what is wrong. Drivers are only
-// ever loaded in child processes, so that one that crashes or hangs is a finding.
+// `caplet doctor`: checks the machine, the drivers, the platforms and the devices, and reports problems. Drivers are loaded only
+// in child processes, so that a crash or hang becomes a finding.
 #pragma once
 
 #include <functional>
@@ -16,21 +16,21 @@
 
 namespace caplet::doctor {
 
-/// The finding about one driver. `needed`: no other offers a device, so a driver without a platform is wrong, not just unused.
+/// Judges one driver. `needed`: no other driver offers a device, so one without a platform is wrong and not just unused.
 Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine, bool needed);
-/// A platform and its number of devices. `needed` as above.
+/// Judges a platform by its number of devices. `needed` is as above.
 Finding judge_platform(const PlatformFacts& platform, bool needed);
-/// What a device is, then what it lacks. `least_bytes`: device memory that a render needs at least.
+/// Describes a device, then what it lacks. `least_bytes`: the least device memory of a render.
 Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes);
-/// What is known of platforms, with its source.
+/// Returns known problems of platforms, with their sources.
 Findings known_quirks(const std::vector<PlatformFacts>& platforms);
 
 struct Options {
-  std::string device;   // test this one alone, chosen as Device::choose does; empty: all
-  double seconds = 30;  // for an answer of a driver; the self-test, which compiles, has four times as long
-  /// Bytes of device memory for a full batch of paths, on a CPU or on another device.
+  std::string device;   // tests only this one, chosen as in Device::choose; empty: all
+  double seconds = 30;  // time limit for an answer of a driver; the self-test, which compiles, has four times as long
+  /// Returns the bytes of device memory for a full batch of paths, on a CPU or on another device.
   std::function<std::uint64_t(bool cpu)> least_bytes = [](bool) { return std::uint64_t{0}; };
-  /// Throws RunError that says what a device gets wrong.
+  /// Throws RunError that describes what a device computes wrong.
   std::function<void(const Device&)> test = self_test;
 };
 
@@ -40,7 +40,7 @@ struct Diagnosis {
   bool anything_wrong() const;
 };
 
-/// `tell` is called with each finding as soon as it is known. Throws InputError when there are devices and `options.device` is
+/// `tell` is called with each finding as soon as it is known. Throws InputError when devices exist but `options.device` matches
 /// none of them.
 Diagnosis diagnose(const Surroundings& machine, const Options& options, const std::function<void(const Finding&)>& tell);
 

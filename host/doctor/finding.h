@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What `caplet doctor` found: one line each, and the fix for what is wrong.
+// Findings of `caplet doctor`: one line each, and the solution of each problem.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ enum class State { ok, note, wrong };
 
 struct Finding {
   State state = State::ok;
-  std::string about;  // what was looked at: a file, a platform, a device
+  std::string about;  // the subject: a file, a platform, a device
   std::string what;
-  std::string fix;  // a command where there is one; never empty when something is wrong
+  std::string fix;  // a command if possible; never empty for a problem
 };
 
 using Findings = std::vector<Finding>;

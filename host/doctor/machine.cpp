@@ -20,9 +20,9 @@ namespace {
 
 // With PoCL 3.1 on four cores, a picture of one capsule took 236 MB of memory.
 constexpr std::uint64_t least_memory = std::uint64_t{256} << 20;
-// There, with an address space of 500 MB no device was found, with 1 GB a render hung, with 1.5 GB it finished.
+// On that machine no device was found with an address space of 500 MB; a render hung with 1 GB, and finished with 1.5 GB.
 constexpr std::uint64_t least_address_space = 1500ull * 1000 * 1000;
-// The kernels of one render took 1.1 MB of both caches with PoCL 3.1: room for some fifty versions of them.
+// The kernels of one render took 1.1 MB of both caches with PoCL 3.1, so this has room for some fifty versions of them.
 constexpr std::uint64_t least_cache_space = std::uint64_t{64} << 20;
 
 std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6); }
@@ -66,7 +66,7 @@ std::optional<std::uint64_t> free_memory(const Surroundings& machine) {
   return out ? std::min(*out, left) : left;
 }
 
-/// Why no file can be written in the folder (which may not exist yet); empty: one can.
+/// Returns why no file can be written in the folder (which may not exist yet); empty: files can be written.
 std::string unwritable(const Surroundings& machine, const fs::path& folder) {
   std::error_code error;
   fs::path there = folder;
@@ -143,7 +143,7 @@ Findings check_nvidia(const Surroundings& machine, const Registry& registry, con
     return {{State::wrong, "NVIDIA", what + fmt::format(", and {} is missing", library),
              "install the OpenCL library of the same driver version (in a container, start it with "
              "NVIDIA_DRIVER_CAPABILITIES=compute,utility)"}};
-  // Containers lack the file: https://github.com/NVIDIA/nvidia-container-toolkit/issues/682
+  // Containers may lack the file: https://github.com/NVIDIA/nvidia-container-toolkit/issues/682
   if (!registry.variable.empty())
     return {{State::note, "NVIDIA", fmt::format("{}: {} leaves it out", what, registry.variable), ""}};
   return {{State::wrong, "NVIDIA", what,
@@ -159,7 +159,7 @@ Findings check_unused_gpus(const Surroundings& machine, const std::vector<Platfo
   for (const fs::path& node : nodes(machine)) {
     std::ifstream in(machine.root / "sys/class/drm" / node.filename() / "device/vendor");
     std::string vendor;
-    in >> vendor;  // PCI's number of the maker
+    in >> vendor;  // PCI's vendor id
     if (vendor == "0x1002")
       out.push_back({State::note, node.string(), "a GPU of AMD, which no OpenCL platform offers",
                      "install ROCm's OpenCL, or sudo apt-get install mesa-opencl-icd"});

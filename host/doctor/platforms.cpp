@@ -44,7 +44,7 @@ DeviceFacts facts_of(const cl::Device& device, const FoundPlatform& platform) {
   return out;
 }
 
-/// Indices as list_devices() gives them: a platform of which anything cannot be asked has the devices before the failure.
+/// Indices are those of list_devices(): if a query to a platform fails, its devices before the failure still count.
 std::vector<PlatformFacts> platforms_here(Drivers drivers) {
   std::vector<PlatformFacts> out;
   int index = 0;
@@ -91,12 +91,12 @@ Loader ask_loader() {
   constexpr double seconds = 20;
   const ChildEnd end = in_child(
       [] {
-        // So that neither kind of loader finds (and loads) a driver.
+        // With these, neither kind of loader finds (and loads) a driver.
         set({{"OCL_ICD_VENDORS", "/nonexistent/none"}, {"OCL_ICD_FILENAMES", ""}});
         using Ask = cl_int(CL_API_CALL*)(cl_uint, std::size_t, void*, std::size_t*);
-        // CL_ICDL_VERSION, CL_ICDL_NAME, CL_ICDL_VENDOR of the extension cl_loader_info
+        // These are CL_ICDL_VERSION, CL_ICDL_NAME, CL_ICDL_VENDOR of the extension cl_loader_info.
         constexpr cl_uint version = 2, name = 3, vendor = 4;
-        // Looked up, for the headers call it deprecated; the loaders have it for their own extensions.
+        // The function is looked up because the headers mark it as deprecated, although loaders use it for their own extensions.
         using Address = void*(CL_API_CALL*)(const char*);
         const auto address = reinterpret_cast<Address>(::dlsym(RTLD_DEFAULT, "clGetExtensionFunctionAddress"));
         const auto ask = reinterpret_cast<Ask>(address ? address("clGetICDLoaderInfoOCLICD") : nullptr);

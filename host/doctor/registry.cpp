@@ -127,7 +127,7 @@ Findings check_registry(const Registry& registry, bool has_bundled) {
 }
 
 std::vector<std::pair<std::string, std::string>> only(const std::string& library, const Loader& loader) {
-  // ocl-icd takes the library itself in this variable; Khronos's adds the library to a folder, here one that is not there.
+  // ocl-icd takes the library itself in this variable; Khronos's adds the library to a folder, here one that does not exist.
   if (loader.is_ocl_icd()) return {{"OCL_ICD_VENDORS", library}};
   return {{"OCL_ICD_FILENAMES", library}, {"OCL_ICD_VENDORS", "/nonexistent"}};
 }

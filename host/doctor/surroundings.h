@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a machine offers beside OpenCL: files, variables, limits. Tests put a tree of their own in its place.
+// The machine's files, variables and limits. Tests replace them by a tree of their own.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 namespace caplet::doctor {
 
 struct Surroundings {
-  std::filesystem::path root = "/";                                      // in front of dev, etc, proc and sys
+  std::filesystem::path root = "/";                                      // the parent of dev, etc, proc and sys
   std::function<std::string(const std::string& name)> variable;          // empty when it is not set
   std::function<bool(const std::filesystem::path& path, int mode)> may;  // as access(2)
-  std::function<std::string(const std::filesystem::path& path)> group;   // that owns the file; empty: unknown
+  std::function<std::string(const std::filesystem::path& path)> group;   // the owning group; empty: unknown
   std::function<std::optional<std::uint64_t>(const std::filesystem::path& folder)> free_bytes;  // of its file system
   std::string user;
   std::optional<std::uint64_t> address_space;  // RLIMIT_AS in bytes
 };
 
-/// This machine's.
+/// Returns the surroundings of this machine.
 Surroundings this_machine();
 
 }  // namespace caplet::doctor

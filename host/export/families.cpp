@@ -25,7 +25,7 @@ std::string encoding_name(const ImageEncoding& encoding) {
   return encoding.kind == ImageEncoding::Kind::srgb ? "sRGB" : "gamma " + number_text(encoding.gamma);
 }
 
-/// Writes what scene/textures.def visits.
+/// Writes the fields of scene/textures.def.
 struct TextureWriter : IgnoresFields {
   TextureWriter(Statement& statement, const Names& all, const Stream& out, bool of_floats)
       : to(statement), names(all), stream(out), is_float(of_floats) {}
@@ -34,7 +34,7 @@ struct TextureWriter : IgnoresFields {
   const Stream& stream;
   bool is_float;
   std::optional<glm::dmat4> texture_from_world = {};
-  bool is_turned = false;  // has directions, which are of the world
+  bool is_turned = false;  // it has directions, which are in world space
 
   void operand(const Field& field, const TextureOperand& of) {
     if (of.texture)
@@ -78,7 +78,7 @@ struct TextureWriter : IgnoresFields {
   }
 };
 
-/// Writes what scene/materials.def visits.
+/// Writes the fields of scene/materials.def.
 struct MaterialWriter : CompositesInParts<MaterialWriter> {
   MaterialWriter(Statement& statement, const Material& of, const Names& all) : to(statement), material(of), names(all) {}
   Statement& to;
@@ -93,7 +93,7 @@ struct MaterialWriter : CompositesInParts<MaterialWriter> {
     if (!textured(field.name, field.name)) to.number(field.name, value);
   }
   void integer(const Field& field, int value) { to.whole(field.name, value); }
-  /// pbrt does not know them: they stand only where they are on.
+  /// pbrt does not know these flags, so they are written only when they are true.
   void flag(const Field& field, bool value) {
     if (value) to.boolean(field.name, true);
   }
@@ -118,7 +118,7 @@ struct MaterialWriter : CompositesInParts<MaterialWriter> {
   }
 };
 
-/// Writes what scene/media.def visits.
+/// Writes the fields of scene/media.def.
 struct MediumWriter {
   Statement& to;
   const Stream& stream;
@@ -164,7 +164,7 @@ struct MediumWriter {
   }
 };
 
-/// Writes what scene/lights.def visits. The light's space is around its position.
+/// Writes the fields of scene/lights.def. The light's space is around its position.
 struct LightWriter {
   Statement& to;
   const Stream& stream;
@@ -223,7 +223,7 @@ struct LightWriter {
   }
 };
 
-/// Importers take what is made of constants alone for a constant: no texture stands where it was.
+/// Importers fold textures of constants into a constant, which would remove the texture.
 bool is_constant(const ScaleTexture& of) { return !of.tex.texture && !of.scale.texture; }
 bool is_constant(const MixTexture& of) { return !of.tex1.texture && !of.tex2.texture && !of.amount.texture; }
 template <class Model>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The order of the statements. Where importers number things by their own rules (media by their use, parts of mixes before these,
-// what lets all light through last), they come in that order, so that what is read is written as the same text.
+// Orders the statements. Importers number some things by their own rules (media by use, parts of mixes first, interfaces last);
+// they are written in that order, so that a file that is read and written again is the same text.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -28,8 +28,8 @@ class SceneWriter {
   SceneWriter(const Scene& scene, Stream& stream) : scene_(scene), stream_(stream) {}
 
   void write() {
-    // Every field of the scene is of one of these names: one that is added does not compile without its statement. What is told
-    // beside pictures has none: the file's own axes and the legend of its colours.
+    // This lists every field of the scene, so that a new one does not compile without its statement. Some only describe pictures
+    // and have no statement: the file's axes and the legend of its colours.
     const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter, film, sampler, integrator,
                  source, automatic_camera, has_no_up, framing, world_from_file, unit, legend] = scene_;
     order_materials();
@@ -67,7 +67,7 @@ class SceneWriter {
 
   void order_materials() {
     std::vector<bool> done(scene_.materials.size(), false);
-    // Parts before what has them; validate() has seen that no mix is its own part.
+    // Parts come before their mixes; validate() has checked that no mix contains itself.
     std::vector<std::uint32_t> open;
     for (std::uint32_t i = 0; i < done.size(); ++i) {
       open.push_back(i);
@@ -187,7 +187,7 @@ class SceneWriter {
     out.write(stream_);
   }
 
-  /// Writes what options' `fields` visit.
+  /// Writes the fields of options.
   struct OptionWriter {
     Statement& to;
     void number(const Field& field, double value) {
@@ -226,7 +226,7 @@ class SceneWriter {
     return matrix == glm::dmat4(1) ? std::string() : "Transform " + matrix_text(matrix) + "\n";
   }
 
-  /// The one that the statement's state says; none where no surface has it.
+  /// Returns the material of the graphics state; none where no surface has it.
   std::optional<std::uint32_t> stated_material(const Shape& shape) const {
     if (!shape.materials.empty() || std::holds_alternative<CsgShape>(shape.geometry)) return std::nullopt;
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
@@ -277,7 +277,7 @@ class SceneWriter {
     stream_.space = space;
   }
 
-  /// What tells operands apart.
+  /// Returns a text that differs between different operands.
   std::string operand_text(const Shape& shape) {
     return text_of([&](Text& text) {
       Stream aside{text, stream_.folder, {}};
@@ -288,7 +288,7 @@ class SceneWriter {
     });
   }
 
-  /// Every operand of a csg shape is in an object before it.
+  /// Writes every operand of a csg shape as an object before the csg.
   void ensure_operands(const Shape& shape) {
     const auto* csg = std::get_if<CsgShape>(&shape.geometry);
     if (!csg) return;
@@ -335,11 +335,11 @@ class SceneWriter {
   Stream& stream_;
   Names names_;
   NameList object_names_;
-  std::vector<std::uint32_t> materials_, media_;  // in order
+  std::vector<std::uint32_t> materials_, media_;  // in the order of writing
   std::optional<std::uint32_t> interface_;
   std::vector<bool> is_instanced_;
-  std::string material_;                         // of the state
-  std::map<std::string, std::string> operands_;  // objects by what they hold
+  std::string material_;                         // in the graphics state
+  std::map<std::string, std::string> operands_;  // names of objects by their text
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shape statements: the geometry in full. One that is added does not compile without its own.
+// Shape statements with the full geometry. A new geometry does not compile without its own function.
 #include <algorithm>
 #include <numbers>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* cap_names[] = {"flat", "round", "open"};
 
-/// The parameters of shapes whose model names its fields.
+/// Writes the parameters of shapes whose model names its fields.
 struct WriteFields : Fields {
   explicit WriteFields(Statement& statement) : to(statement) {}
   Statement& to;
@@ -111,7 +111,7 @@ struct GeometryWriter {
     if (of.radius1 != of.radius0) floats(out, "radius1", of.radius1);
     chain(out, of);
     if (of.materials.empty()) return out;
-    // Those that are used, each once.
+    // Each used material is listed once.
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<std::uint32_t> place(references.scene.materials.size(), none);
     std::vector<std::string> used;
@@ -199,7 +199,7 @@ Statement shape_statement(const Shape& shape, const ShapeReferences& references,
 #define GEOMETRY(Type, row) #row,
 #include "scene/geometries.def"
   };
-  const char* const type = types[geometry.index()];  // no lambda takes a structured binding in clang 14
+  const char* const type = types[geometry.index()];  // clang 14 cannot capture a structured binding in a lambda
   Statement out = std::visit([&](const auto& own) { return writer.write(own, type); }, geometry);
   if (!name.empty()) out.text("name", name);
   if (!materials.empty()) {

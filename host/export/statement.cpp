@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t longest_line = 120;
-constexpr std::size_t few_values = 8;              // of a list: on the line of others
-constexpr std::size_t values_at_a_time = 1 << 14;  // between looks whether to go on
+constexpr std::size_t few_values = 8;              // a list of so few stays on one line
+constexpr std::size_t values_at_a_time = 1 << 14;  // after which cancellation is checked
 
-/// What scene files call these samples; empty: nothing.
+/// Returns the name of these samples in scene files; empty: none.
 std::string name_of(const SampledSpectrum& spectrum) {
   static const auto named = [] {
     std::map<std::vector<double>, std::pair<std::vector<double>, std::string>> by_values;
@@ -32,7 +32,7 @@ std::string name_of(const SampledSpectrum& spectrum) {
   return found != named.end() && found->second.first == spectrum.wavelengths ? found->second.second : std::string();
 }
 
-/// As the file in `folder` names it: relative where both share a folder other than the root.
+/// Returns the path relative to `folder` if both share a folder other than the root, else as it is.
 std::string name_from(const fs::path& folder, const std::string& file) {
   std::error_code error;
   const fs::path whole = fs::weakly_canonical(fs::absolute(file, error), error);
@@ -133,7 +133,7 @@ void Statement::write(const Parameter& parameter, Stream& stream) {
 
 void Statement::write(Stream& stream) {
   stream.go_on();
-  // The colour space of the statement: the stream's if a parameter has it, else the first one's.
+  // The statement uses the stream's colour space if a parameter has it, else the first parameter's.
   std::optional<ColorSpace> own;
   for (const Parameter& one : parameters_)
     if (one.space && (!own || *one.space == stream.space)) own = one.space;

@@ -37,7 +37,7 @@ double rounded_to(double value, int digits) {
 
 double radians_of(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// A number about `near` of as few digits as may be that `read` makes `wanted` of.
+/// Returns a number near `near`, with as few digits as possible, that `read` converts to `wanted`.
 template <class Read>
 std::optional<double> exactly(double near, double wanted, Read&& read) {
   for (int digits = 1; digits <= 17; ++digits)
@@ -52,7 +52,7 @@ std::optional<double> exactly(double near, double wanted, Read&& read) {
   return std::nullopt;
 }
 
-/// Where there is none, one of what `read` makes of `near`.
+/// If there is none, it returns one that `read` converts to the same value as `near`.
 template <class Read>
 double about(double near, double wanted, Read&& read) {
   if (const auto exact = exactly(near, wanted, read)) return *exact;
@@ -67,8 +67,8 @@ Text& Text::operator<<(double value) {
 }
 
 Text& Text::operator<<(float value) {
-  // Readers take a number of 64 bits and round that: where the digits lie so near the middle of two floats that this goes to the
-  // other one, more digits are needed.
+  // Readers convert to a 64-bit number and round that. Where the digits lie so close to the middle between two floats that this
+  // gives the wrong one, more digits are needed.
   std::array<char, longest_number> digits;
   const std::string_view text = shortest(value, digits);
   double read = 0;
@@ -114,7 +114,7 @@ double degrees_of(double radians) {
   const double near = radians * 180 / std::numbers::pi;
   const auto read = [](double degrees) { return radians_of(degrees); };
   const double degrees = about(near, radians, read);
-  // Once more: of what is read now, as it will be written then.
+  // The second pass starts from the value that will be read, so that writing it again gives the same text.
   return about(read(degrees) * 180 / std::numbers::pi, read(degrees), read);
 }
 
@@ -125,7 +125,7 @@ double degrees_below(double degrees, double radians) {
   return about(near(read(less)), read(less), read);
 }
 
-/// Zeros with their signs.
+/// Compares matrices including the signs of zeros.
 bool is_same(const glm::dmat4& a, const glm::dmat4& b) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
@@ -140,7 +140,7 @@ std::string inverse_text(const glm::dmat4& inverse) {
     return is_affine(candidate) && has_inverse(candidate) && is_same(turned, inverse);
   };
   for (int digits = 6; digits <= 17; ++digits)
-    for (const bool keeps_signs : {false, true}) {  // of zeros
+    for (const bool keeps_signs : {false, true}) {  // whether the signs of zeros are kept
       glm::dmat4 candidate;
       for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) {

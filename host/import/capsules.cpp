@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The text is cut at line ends into chunks that are parsed in parallel; what they hold is joined in the order of the file.
+// The text is cut at line ends into chunks that are parsed in parallel; the results are joined in the order of the file.
 #include "import/detail/capsules.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace caplet {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
-constexpr std::size_t kMostErrors = 20;  // as Diagnostics
+constexpr std::size_t kMostErrors = 20;  // as in Diagnostics
 
 struct Place {
   int line = 0, column = 0;  // the line counts from the start of the chunk
@@ -41,12 +41,12 @@ struct Chunk {
   std::vector<Name> names;
   std::unordered_map<std::string, std::uint32_t> name_index;
   std::vector<std::pair<Place, std::string>> errors;
-  std::size_t more_errors = 0;  // than `errors` holds
+  std::size_t more_errors = 0;  // errors beyond those in `errors`
   int lines = 0;
   bool tapered = false;
 };
 
-/// The parts of one line. Columns count bytes from 1.
+/// Takes one line apart. Columns count bytes from 1.
 class LineReader {
  public:
   LineReader(std::string_view line, Chunk& chunk) : line_(line), chunk_(chunk) {}
@@ -124,12 +124,12 @@ class LineReader {
     while (position_ < line_.size() && is_blank(line_[position_])) ++position_;
   }
 
-  /// Up to a blank, a comment, a zero byte or one of `stops`.
+  /// Takes text up to a blank, a comment, a zero byte or one of `stops`.
   std::string_view take_token(std::string_view stops) {
     const std::size_t begin = position_;
     for (; position_ < line_.size(); ++position_) {
       const char c = line_[position_];
-      // Most are of numbers; std::strchr for each of them took a third of the time that reading a file does.
+      // Most characters are of numbers; std::strchr for each of them took a third of the time that reading a file does.
       if ((c >= '0' && c <= '9') || c == '.' || c == '-') continue;
       if (is_blank(c) || c == '#' || c == '\0' || stops.find(c) != std::string_view::npos) break;
     }
@@ -165,7 +165,7 @@ std::uint32_t index_of_name(Chunk& chunk, const std::string& name, const Place& 
   return entry->second;
 }
 
-/// Whether there is a capsule in it.
+/// Returns whether the line contains a capsule.
 bool parse_line(std::string_view text, Chunk& chunk) {
   LineReader line(text, chunk);
   if (line.at_end()) return false;
@@ -195,7 +195,7 @@ void parse_chunk(std::string_view text, Chunk& chunk) {
   for (std::vector<glm::vec3>* points : {&out.p0, &out.p1}) points->reserve(text.size() / kUsualLine);
   for (std::vector<float>* radii : {&out.radius0, &out.radius1}) radii->reserve(text.size() / kUsualLine);
   out.materials.reserve(text.size() / kUsualLine);
-  Unproven in_piece;  // each by itself: threads must not make a difference
+  Unproven in_piece;  // one for each chunk, so that the number of threads makes no difference
   while (!text.empty()) {
     const std::string_view line = take_line(text);
     ++chunk.lines;
@@ -230,7 +230,7 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
   std::vector<Chunk> chunks(pieces.size());
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) { parse_chunk(pieces[i], chunks[i]); });
 
-  // Errors and names in the order of the file.
+  // Errors and names are kept in the order of the file.
   Diagnostics diagnostics(kMostErrors);
   std::vector<std::size_t> begin(chunks.size() + 1, 0);
   bool tapered = false, named = false;

@@ -12,7 +12,7 @@ namespace caplet {
 
 namespace {
 
-/// Every 32nd of matplotlib's 256 colours, sRGB; between them, lines.
+/// Every 32nd of matplotlib's 256 colours, sRGB; the map is linear between them.
 const std::array<glm::dvec3, 9> knots = {{{0.267004, 0.004874, 0.329415},
                                           {0.278826, 0.175490, 0.483397},
                                           {0.229739, 0.322361, 0.545706},

@@ -46,7 +46,7 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   if (gzdirect(file.get()) && size > limit) fail(where, path, fmt::format("is longer than {} bytes", limit));
   const std::size_t most = gzdirect(file.get()) ? limit : std::min<std::uintmax_t>(limit, most_unpacked(size));
   if (size < limit) bytes.reserve(size + 1);
-  // One byte more than the file, so that its end shows in the second read; as much at a time when it is packed.
+  // The buffer is a byte larger than the file, so that the second read finds its end; packed files take as much at a time.
   const auto chunk = static_cast<unsigned>(std::clamp<std::uintmax_t>(size + 1, 1 << 12, 1 << 20));
   for (;;) {
     const std::size_t before = bytes.size();
@@ -67,7 +67,7 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
 }
 
 void check_text(const std::string& text, const std::string& file) {
-  constexpr std::size_t block = 256;  // a compiler tests one at once
+  constexpr std::size_t block = 256;  // the compiler vectorises the test of a block
   for (std::size_t i = 0; i < text.size(); ++i) {
     for (; i + block <= text.size(); i += block) {
       unsigned bad = 0;

@@ -17,7 +17,7 @@ namespace caplet {
 namespace {
 
 constexpr double radians = std::numbers::pi / 180;
-constexpr double most_numbers = 16'000'000;  // of intensities
+constexpr double most_numbers = 16'000'000;  // limit of intensities
 
 bool starts_with_word(std::string_view line, std::string_view word) {
   while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
@@ -42,7 +42,7 @@ class IesReader {
     if (const double units = number("the units"); units != 1 && units != 2) fail("the units must be 1 (feet) or 2 (metres)");
     for (const char* what : {"the width", "the length", "the height"}) number(what);
     factor *= positive("the ballast factor");
-    // Of LM-63-1986 and 1991; later ones have another number there.
+    // In LM-63-1986 and 1991 it is a factor; later versions use the field for another number.
     const double photometric = number("the ballast-lamp photometric factor");
     if (!is_late_) {
       if (!(photometric > 0)) fail("the ballast-lamp photometric factor must be above 0");
@@ -82,7 +82,7 @@ class IesReader {
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError(SourceLocation{name_, line_, column_}, message); }
 
-  /// Up to the line that begins with TILT=.
+  /// Reads up to the line that begins with TILT=.
   void header() {
     while (take()) {
       if (line_ == 1) {
@@ -112,7 +112,7 @@ class IesReader {
 
   static bool is_between(char c) { return is_blank(c) || c == ',' || c == '\x1a'; }
 
-  /// The next token; empty at the end of the file.
+  /// Reads the next token; empty at the end of the file.
   void next() {
     for (;;) {
       while (!line_text_.empty() && is_between(line_text_.front())) line_text_.remove_prefix(1);
@@ -162,7 +162,7 @@ class IesReader {
     return out;
   }
 
-  /// All azimuths with the intensities of `azimuth`, within 0 and 360.
+  /// Returns all azimuths, within 0 and 360, that have the intensities of `azimuth` by symmetry.
   static std::vector<double> by_symmetry(double azimuth, double last, bool is_turned) {
     if (is_turned) {
       if (azimuth == 180) return {0, 180, 360};
@@ -173,7 +173,7 @@ class IesReader {
     return {azimuth};
   }
 
-  /// Adds 0 and 360 where there are none: between the last and the first.
+  /// Adds 0 and 360 if they are missing, interpolated between the last and the first azimuth.
   static void close(std::map<double, std::vector<double>>& columns) {
     if (columns.begin()->first == 0) return;
     const auto& [low, after] = *columns.begin();

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What people have of these fields and no importer reads, with what helps.
+/// Common files of these fields that no importer reads, with advice.
 constexpr std::pair<const char*, const char*> not_read[] = {
     {".nml", "NeuroML is not read by the program; Python's caplet.from_neuroml reads it. Or write the morphology as SWC"},
     {".h5",
@@ -38,11 +38,11 @@ constexpr std::pair<const char*, const char*> not_read[] = {
      "morphology as SWC (morphio's Morphology.write)"},
 };
 
-/// The name of the root element of an XML file, as far as its beginning tells; empty: it does not.
+/// Returns the name of an XML file's root element, as far as its first 64 KiB show it; else empty.
 std::string root_element(const fs::path& path) {
   std::string text(1 << 16, '\0');
   std::ifstream stream;
-  if (is_file(path, {})) stream.open(path, std::ios::binary);  // a pipe would be waited for
+  if (is_file(path, {})) stream.open(path, std::ios::binary);  // opening a pipe would block
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
@@ -72,7 +72,7 @@ bool is_of_all(const std::string& name) {
   return found != import_option_rows().end() && found->of != ImportOptionRow::Of::format;
 }
 
-/// Keeps this thread to the file's own folder where that is asked for.
+/// Restricts this thread to the file's own folder if the options ask for it.
 class Fence {
  public:
   Fence(const fs::path& path, const ImportOptions& options) {
@@ -98,7 +98,7 @@ bool knows(const Format& format, const std::string& option) {
   throw InputError({"--" + name}, message);
 }
 
-/// `formats_of_files`: each of those that are asked about.
+/// `formats_of_files`: the format of each file that is read.
 void check_known(const ImportOptions& options, const std::vector<const Format*>& formats_of_files) {
   for (const auto& [name, value] : options.values())
     if (!is_of_all(name) &&
@@ -106,7 +106,7 @@ void check_known(const ImportOptions& options, const std::vector<const Format*>&
       refuse_option(name, formats_of_files);
 }
 
-/// Those of the options that the format knows.
+/// Returns the options that the format knows.
 ImportOptions known_to(const Format& format, const ImportOptions& options) {
   std::map<std::string, std::string> values;
   for (const auto& [name, value] : options.values())
@@ -127,7 +127,7 @@ void tell_range(const ValueRange& range, const ImportOptions& options) {
             asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
 }
 
-/// What the colours of a colour map tell.
+/// Returns the legend of a colour map.
 Legend legend_of(const ValueRange& range, const ImportOptions& options) {
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
   return viridis_legend(range.what, "", low, high);
@@ -147,7 +147,7 @@ bool is_studio(const Light& light) {
   return infinite && infinite->image && infinite->image->preset == studio_preset;
 }
 
-/// What was framed by itself is framed again among others.
+/// Removes an automatic camera and the studio light, because the joined scene is framed anew.
 void open_again(Imported& file) {
   if (!file.scene.automatic_camera) return;
   std::erase_if(file.scene.lights, is_studio);
@@ -156,7 +156,7 @@ void open_again(Imported& file) {
   file.is_lit = is_lit(file.scene);
 }
 
-/// Names of files that tell them apart.
+/// Returns names that tell the files apart.
 std::vector<std::string> names_of(std::span<const fs::path> paths) {
   std::map<std::string, int> count;
   for (const fs::path& path : paths) ++count[path.stem().string()];
@@ -178,8 +178,8 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
                        "brings a camera, as " + paths[*with_camera].string() + " does: of several files one at most may");
     if (files[i].has_camera) with_camera = i;
   }
-  // Without a camera the first that is more than geometry says size and samples; where all are no more, the format that asks for
-  // most does.
+  // Without a camera, the first file that states a picture or lights gives size and samples; if none does, the format that asks
+  // for most.
   std::optional<std::size_t> settings = with_camera;
   for (std::size_t i = 0; i < files.size() && !settings; ++i)
     if (!files[i].scene.film.filename.empty() || files[i].is_lit) settings = i;
@@ -209,7 +209,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     Scene& part = files[i].scene;
     out.is_lit |= files[i].is_lit;
-    prefix_names(part, names[i], paths[i].stem().string());  // what pictures know shapes by
+    prefix_names(part, names[i], paths[i].stem().string());  // pictures use the prefixed names of shapes
     const Appended at = append(out.scene, std::move(part));
     if (i == head && out.scene.camera.medium) *out.scene.camera.medium += at.media;
     part = {};
@@ -275,7 +275,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   check_known(options, formats_of_files);
   ValueRange all;
   std::vector<Imported> files;
-  std::vector<std::size_t> by_values;  // files that a colour map colours
+  std::vector<std::size_t> by_values;  // files that use a colour map
   const auto read = [&](std::size_t i, ImportOptions of_all) {
     of_all.file = i;
     of_all.files = paths.size();
@@ -293,7 +293,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   for (std::size_t i = 0; i < paths.size(); ++i) files.push_back(read(i, options));
   tell_range(all, options);
   if (by_values.size() > 1 && !options.text("range") && all.low < all.high) {
-    // One scale for all of them, which is known only now.
+    // All files share one range, which is known only after they are read.
     ImportOptions of_all = options;
     of_all.set("range", fmt::format("{},{}", all.low, all.high));
     for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);

@@ -11,7 +11,7 @@ namespace caplet {
 
 namespace {
 
-constexpr float kWidest = 64;  // pixels: beyond that it is no line
+constexpr float kWidest = 64;  // pixels: anything wider is no line
 
 double width_of(const std::string& text) {
   float value = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// NanoVDB files (Museth, "NanoVDB: A GPU-friendly and portable VDB data structure for real-time rendering and simulation", 2021):
-// segments of a header, of what is told of each grid, and of the grids, whose memory is written as it is; or, from version 32.6
-// on, such memory alone. Layouts are those of version 32.
+// NanoVDB files (Museth, "NanoVDB: A GPU-friendly and portable VDB data structure for real-time rendering and simulation", 2021).
+// A segment has a header, the metadata of each grid, and the grids as they are in memory; from version 32.6 on a file may hold
+// grids alone. Layouts are those of version 32.
 #include "import/detail/nanovdb.h"
 
 #include <zlib.h>
@@ -19,11 +19,11 @@ namespace caplet {
 
 namespace {
 
-// "NanoVDB0", and in newer files "NanoVDB1" of grids and "NanoVDB2" of files.
+// The magic numbers are "NanoVDB0", and in newer files "NanoVDB1" for grids and "NanoVDB2" for files.
 constexpr std::uint64_t magic = 0x304244566f6e614e, magic_grid = 0x314244566f6e614e, magic_mask = 0x00ffffffffffffff;
 constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672;
 constexpr std::uint32_t type_float = 1, type_fp4 = 13, type_fpn = 16, class_level_set = 1;
-// By number; those without a name are of newer files.
+// Names are indexed by type number; types of newer versions have none.
 constexpr const char* type_names[] = {"an unknown type",
                                       "32-bit floats",
                                       "64-bit floats",
@@ -51,7 +51,7 @@ constexpr const char* type_names[] = {"an unknown type",
 constexpr std::uint16_t codec_none = 0, codec_zip = 1;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 34;
 
-/// Numbers of a memory that may end anywhere.
+/// Reads numbers from memory with bounds checks.
 class GridBytes {
  public:
   GridBytes(const std::vector<char>& bytes, const SourceLocation& where, const std::string& file)
@@ -76,7 +76,7 @@ class GridBytes {
   std::string file_;
 };
 
-/// A grid's memory -> its bricks.
+/// Converts a grid in memory to bricks.
 class GridReader {
  public:
   GridReader(const GridBytes& bytes) : bytes_(bytes) {}
@@ -89,7 +89,7 @@ class GridReader {
     if (type_ != type_float && !(type_ >= type_fp4 && type_ <= type_fpn))
       bytes_.fail("has a grid of " + std::string(type_ < std::size(type_names) ? type_names[type_] : type_names[0]) +
                   ": 32-bit floats and quantised ones are read");
-    const std::uint64_t map = 40 + 256;  // after magic, checksum, version, flags, index, count, size and name
+    const std::uint64_t map = 40 + 256;  // offset after magic, checksum, version, flags, index, count, size and name
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c)
         out_.medium_from_voxels[c][r] = bytes_.at<double>(map + 88 + 8 * static_cast<std::uint64_t>(3 * r + c));
@@ -105,7 +105,7 @@ class GridReader {
       const std::uint64_t tile = root + root_bytes + std::uint64_t{32} * i;
       const auto key = bytes_.at<std::uint64_t>(tile);
       const auto child = bytes_.at<std::int64_t>(tile + 8);
-      // 21 bits each of x, y and z over 4096.
+      // The key has 21 bits each of x, y and z, divided by 4096.
       const auto part = [&](int shift) {
         return static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> shift & 0x1fffff) << 12);
       };
@@ -124,7 +124,7 @@ class GridReader {
 
   static std::uint64_t at(std::uint64_t node, std::int64_t offset) { return node + static_cast<std::uint64_t>(offset); }
 
-  /// 32^3 nodes of 16^3 leaves of 8^3 voxels.
+  /// The tree has 32^3 nodes over 16^3 nodes over leaves of 8^3 voxels.
   template <int Log>
   void node(std::uint64_t begin, const Coordinates& low) {
     constexpr std::uint64_t children = std::uint64_t{1} << (3 * Log), mask = children / 8;
@@ -147,8 +147,8 @@ class GridReader {
     }
   }
 
-  /// Behind its place, flags and mask: four statistics and the values, or of quantised ones the least, a step, statistics and
-  /// codes of 4, 8, 16, or by its flags 1 to 16 bits.
+  /// After its origin, flags and mask, a leaf has four statistics and the values; a quantised one has the minimum, the step,
+  /// statistics and codes of 4, 8 or 16 bits, or of 1 to 16 bits by its flags.
   void leaf(std::uint64_t begin, const Coordinates& low) {
     constexpr std::uint64_t values = 96;
     int bits = 32;
@@ -173,7 +173,7 @@ class GridReader {
     for (std::size_t i = 0; i < 512; ++i) {
       const float value = value_of(i);
       if (!std::isfinite(value) || value < 0) bytes_.fail("has values that are negative or not finite");
-      // From x slowest to x fastest.
+      // The order changes from x slowest to x fastest.
       to[first + ((i & 7) * 8 + (i >> 3 & 7)) * 8 + (i >> 6)] = value;
     }
   }
@@ -189,7 +189,7 @@ class GridReader {
         }
   }
 
-  /// Another brick, at the end of all values.
+  /// Appends a brick at the end of all values.
   std::vector<float>& brick(const Coordinates& low) {
     if (out_.bricks.size() >= most_spanned_bricks / 16) bytes_.fail("has more than 8 million bricks of 8^3 voxels");
     out_.bricks.push_back({low[0] >> 3, low[1] >> 3, low[2] >> 3});
@@ -218,7 +218,7 @@ std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, co
 SparseGridPointer read_nanovdb(const std::string& file, const std::string& name, const SourceLocation& where) {
   begin_reading(file, where);
   std::ifstream stream;
-  if (is_file(file, where)) stream.open(file, std::ios::binary | std::ios::ate);  // a pipe would be waited for
+  if (is_file(file, where)) stream.open(file, std::ios::binary | std::ios::ate);  // opening a pipe would block
   if (!stream.is_open()) throw InputError(where, file + ": cannot be read");
   const auto total = static_cast<std::uint64_t>(stream.tellg());
   std::uint64_t at = 0;
@@ -244,7 +244,7 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
     const std::vector<char> head = read(at, file_header_bytes);
     const GridBytes header(head, where, file);
     if (header.at<std::uint64_t>(0) == magic_grid) {
-      // The memory of a grid and nothing else.
+      // The segment is a single grid without file header.
       const std::vector<char> begin = read(at, grid_bytes);
       const GridBytes grid(begin, where, file);
       check_version(grid.at<std::uint32_t>(16));
@@ -273,7 +273,7 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       at += meta_bytes + length;
     }
     for (const Told& one : all) {
-      // Of compressed ones the length stands before them; writers do not agree on whether what is told counts that as well.
+      // A compressed grid is preceded by its length; writers disagree on whether the size in the metadata includes that.
       const std::uint64_t prefix = codec == codec_none ? 0 : 8;
       std::uint64_t bytes = one.bytes;
       if (prefix != 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The directives that set options, transforms, materials, lights and shapes.
+// Directives that set options, transforms, materials, lights and shapes.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -28,7 +28,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-constexpr std::size_t most_attributes = 256;  // most Attributes of different names; no statement knows as many parameters
+constexpr std::size_t most_attributes = 256;  // Attributes of different names; no statement has as many parameters
 
 }  // namespace
 
@@ -98,7 +98,7 @@ void Parser::color_space() {
 
 void Parser::multiply(const glm::dmat4& matrix) {
   if (!has_inverse(matrix)) {
-    // As pbrt-v4, which minds only where something stands there.
+    // As in pbrt-v4, a singular transform is an error only where something is placed with it.
     if (!state_.flat) state_.flat = {where_, directive_ + " has no inverse"};
     return;
   }
@@ -126,7 +126,7 @@ void Parser::check_place() {
     if (bad) diagnostics_.error(bad->where, bad->what, bad->where.to_string());
 }
 
-/// Of a light that has no place, as pbrt-v4: it looks directions up through the inverse, whose last row they do not meet.
+/// An infinite light has no position. As in pbrt-v4, directions are mapped by the inverse, whose last row they do not use.
 glm::dmat4 Parser::place_of_light(const std::string& type) {
   if (type != "infinite" || !state_.skewed || state_.flat) {
     check_place();
@@ -139,7 +139,7 @@ void Parser::transform() {
   const glm::dmat4 matrix = matrix_argument();
   identity();
   multiply(matrix);
-  if (state_.ctm == matrix) state_.ctm = matrix;  // zeros with their signs
+  if (state_.ctm == matrix) state_.ctm = matrix;  // keeps the signs of zeros
 }
 
 void Parser::inverse_transform() {

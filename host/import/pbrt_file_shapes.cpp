@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shapes of files of other formats: Shape "file" and Shape "swc" (docs/formats/pbrt.md).
+// Shapes from files of other formats: Shape "file" and Shape "swc" (docs/formats/pbrt.md).
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -16,7 +16,7 @@ namespace {
 
 const Format& format_named(const std::string& name) { return *std::ranges::find(formats(), name, &Format::name); }
 
-/// Without its look: what is left has the statement's material.
+/// Removes the file's materials, so that the statement's material is used.
 void take_off_materials(Scene& scene) {
   scene.materials.clear();
   scene.textures.clear();
@@ -31,12 +31,12 @@ void take_off_materials(Scene& scene) {
   for (Object& object : scene.objects) std::ranges::for_each(object.shapes, visit);
 }
 
-/// What a statement says of an option. Files that it names lie where the scene's other files do.
+/// Returns the value of an option in a statement. Files that it names lie where the scene's other files do.
 std::string value_of(Parameters& given, const std::string& option) {
   std::string value = given.text(option, "");
   if (option != "color" && option != "positions" && option != "components") return value;
   std::string file = resolve_file(value, given.where(option), given.main_file());
-  return option != "color" || is_there(file, given.where(option)) ? file : value;  // most colours are words
+  return option != "color" || is_there(file, given.where(option)) ? file : value;  // most colours are keywords
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// pbrt's default illuminant: the colour space's white.
+/// Returns pbrt's default illuminant: the colour space's white.
 Spectrum white(Parameters& parameters, std::string_view name) {
   return parameters.spectrum(name, SpectrumUse::illuminant).value_or(RgbSpectrum{glm::dvec3(1), parameters.space()});
 }
@@ -35,7 +35,7 @@ double scale_of(Parameters& parameters) {
   return scale;
 }
 
-/// from -> to in world space, unit length; reports when both are the same point.
+/// Returns the unit direction from -> to in world space; reports when both are the same point.
 glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::dvec3& to, const glm::dmat4& world_from_light) {
   const glm::dvec3 along(world_from_light * glm::dvec4(to - from, 0));
   const double length = glm::length(along);
@@ -44,12 +44,12 @@ glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::
   return {0, 0, 1};
 }
 
-/// The rotation (possibly mirroring) of a similarity transform.
+/// Returns the rotation (possibly mirroring) of a similarity transform.
 glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_light) {
   const glm::dmat3 a(world_from_light);
   const double scale = glm::length(a[0]);
   const glm::dmat3 r = is_unit(scale) ? a : a / scale;
-  // Matrices in scene files carry six digits; anything further from orthonormal than 1e-3 is a shear or an uneven scale.
+  // Matrices in scene files have six digits; a deviation from orthonormal beyond 1e-3 means a shear or an uneven scale.
   const glm::dmat3 error = glm::transpose(r) * r - glm::dmat3(1);
   bool orthonormal = true;
   for (int i = 0; i < 3; ++i)
@@ -66,7 +66,7 @@ std::string size_of(Parameters& parameters, const char* name, const EnvironmentI
   return file_of(parameters, name) + " is " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels";
 }
 
-/// Reads what scene/lights.def visits.
+/// Reads the fields of scene/lights.def.
 struct LightReader : FieldReader {
   const glm::dmat4& world_from_light;
   LightFiles& files;
@@ -129,7 +129,7 @@ struct LightReader : FieldReader {
     parameters.error("\"string " + std::string(field.name) + "\" is missing");
     return false;
   }
-  // Whether it is a rectangle is for validation to say.
+  // Validation checks that the corners form a rectangle.
   void portal(InfiniteLight& light, const Parameter& corners) {
     if (corners.numbers.size() != 12) return parameters.error("portal", "must be four points");
     LightPortal& to = light.portal.emplace();

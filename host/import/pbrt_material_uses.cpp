@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Once all is read: which materials are used, made of their statements, and which a shape has.
+// Runs at the end of the scene: finds the materials that are used, makes them, and assigns them to shapes.
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -18,7 +18,7 @@ void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visi
     for (std::uint32_t& material : capsules->materials) visit(material);
   if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
     for (std::shared_ptr<const Shape>& operand : csg->operands) {
-      auto own = std::make_shared<Shape>(*operand);  // a nested one may be an operand elsewhere too
+      auto own = std::make_shared<Shape>(*operand);  // a nested operand may be shared
       each_material(*own, visit);
       operand = std::move(own);
     }
@@ -26,9 +26,9 @@ void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visi
 
 namespace {
 
-constexpr std::uint32_t interface_material = 0xffffffffu;  // in place of a material's index
+constexpr std::uint32_t interface_material = 0xffffffffu;  // stands for an interface in place of a material's index
 
-/// With that of every surface that it shows.
+/// Calls `visit` with the material of every visible surface.
 void each_surface(Shape& shape, const std::function<void(std::uint32_t)>& visit) {
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry)) {
     if (shape.materials.empty()) {
@@ -56,7 +56,7 @@ void each_material(Scene& scene, const std::function<void(std::uint32_t&)>& visi
 
 }  // namespace
 
-/// For each Material statement: does a shape have its material, or a mix that a shape has?
+/// Returns for each Material statement whether a shape, or a mix on a shape, has its material.
 std::vector<bool> Parser::used_materials() {
   std::vector<bool> used(materials_.size(), false);
   std::vector<std::size_t> to_follow;
@@ -78,7 +78,7 @@ std::vector<bool> Parser::used_materials() {
     MaterialStatement& statement = materials_[to_follow.back()];
     to_follow.pop_back();
     if (statement.type != "mix") continue;
-    Diagnostics aside;  // what is wrong is said when the mix is made
+    Diagnostics aside;  // errors are reported when the mix is made
     statement.parameters.report_to(aside);
     if (const Parameter* parts = statement.parameters.values("materials", {"string"}))
       for (const std::string& name : parts->strings) use_name(name);
@@ -87,7 +87,7 @@ std::vector<bool> Parser::used_materials() {
   return used;
 }
 
-/// Makes the materials of the statements, parts of mixes before these.
+/// Makes the materials of the statements; parts of a mix are made before it.
 class Parser::MaterialMaking {
  public:
   MaterialMaking(Parser& parser, const std::vector<bool>& used) : parser_(parser), used_(used), made_(used.size()) {}
@@ -105,7 +105,7 @@ class Parser::MaterialMaking {
     for (const Made& made : made_) out.push_back(made.index);
     return out;
   }
-  /// The media behind boundaries, by the index of the boundary's material in the scene.
+  /// Returns the media behind boundaries, by the index of the boundary's material in the scene.
   std::map<std::uint32_t, Medium> media_within() const {
     std::map<std::uint32_t, Medium> out;
     for (const Made& made : made_)
@@ -125,7 +125,7 @@ class Parser::MaterialMaking {
   enum class State { unseen, open, done };
   struct Made {
     State state = State::unseen;
-    std::uint32_t index = 0;  // in the scene
+    std::uint32_t index = 0;  // index in the scene
     bool sound = false;
     std::optional<Medium> within = {};
     std::optional<PartlyThere> partly_there = {};
@@ -165,7 +165,7 @@ class Parser::MaterialMaking {
     }
   }
 
-  /// A mix with an interface is its other material, there with a chance; of two interfaces it is one.
+  /// A mix with an interface becomes its other material, with a probability as alpha; a mix of two interfaces is an interface.
   static bool part_interface(const MixMaterial& mix, const Material& material, Made& made) {
     const bool first = mix.materials[0] == interface_material, second = mix.materials[1] == interface_material;
     if (!first && !second) return false;
@@ -180,7 +180,7 @@ class Parser::MaterialMaking {
     return true;
   }
 
-  /// A part of the mix `whole`.
+  /// Makes a part of the mix `whole`.
   std::optional<std::uint32_t> part(const std::string& name, Made& whole, std::string& problem) {
     const auto found = parser_.named_materials_.find(name);
     if (found == parser_.named_materials_.end()) {
@@ -215,8 +215,8 @@ class Parser::MaterialMaking {
   std::vector<Made> made_;
 };
 
-/// The index in the scene of each statement's material, or interface_material. One that cannot be rendered is an error where a
-/// shape has it; of the others a warning tells.
+/// Returns the index in the scene of each statement's material, or interface_material. A material that cannot be rendered is an
+/// error if a shape has it, otherwise a warning.
 std::vector<std::uint32_t> Parser::make_materials(const std::vector<bool>& used) {
   MaterialMaking making(*this, used);
   for (std::size_t i = 0; i < materials_.size(); ++i) making.make(i);
@@ -246,7 +246,7 @@ void Parser::resolve_materials() {
     else if (of_shape[i])
       diagnostics_.error(use.where,
                          "the material " + in_quotes(use.name) + " is not defined" + nearest(use.name, named_materials_));
-    else  // as pbrt-v4, which looks a name up where a shape has it
+    else  // pbrt-v4 resolves a name at the shape that uses it
       warn_of_kind(use.where, "the material " + in_quotes(use.name) + " is not defined (no shape has it)", "undefined material");
   }
   take_out_interfaces([&](std::uint32_t number) -> const PartlyThere* {
@@ -276,7 +276,7 @@ void Parser::resolve_materials() {
   fill_subsurfaces();
 }
 
-/// A shape whose material is a subsurface holds the medium of that.
+/// Fills shapes that have a subsurface material with its medium.
 void Parser::fill_subsurfaces() {
   if (media_within_.empty()) return;
   std::map<std::uint32_t, std::uint32_t> index_of;
@@ -310,8 +310,8 @@ std::uint32_t Parser::float_texture(Texture texture) {
   return static_cast<std::uint32_t>(scene_.textures.size() - 1);
 }
 
-/// Where a mix is of an interface, rays go on as if nothing were there: an alpha says so. `partly_there`: of a use of a material,
-/// or null.
+/// A mix with an interface lets rays pass at random: the probability becomes the shape's alpha. `partly_there` returns it for a
+/// use of a material, or null.
 void Parser::take_out_interfaces(const std::function<const PartlyThere*(std::uint32_t use)>& partly_there) {
   if (partly_there_.empty()) return;
   const auto visit = [&](Shape& shape) {
@@ -355,7 +355,7 @@ void Parser::take_out_interfaces(const std::function<const PartlyThere*(std::uin
     for (Shape& shape : object.shapes) visit(shape);
 }
 
-/// Takes out shapes whose material lets all light pass: what parts no media is not seen.
+/// Removes shapes whose material is an interface and that do not separate media: they are invisible.
 void Parser::drop_interfaces(const std::vector<std::uint32_t>& index_of_use) {
   const auto is_interface = [&](std::uint32_t use) { return use != 0 && index_of_use[use] == interface_material; };
   const auto passes = [&](Shape& shape) {
@@ -372,7 +372,7 @@ void Parser::drop_interfaces(const std::vector<std::uint32_t>& index_of_use) {
   for (Object& object : scene_.objects) std::erase_if(object.shapes, passes);
 }
 
-/// Light that goes through a fibre has left it: its far side is not met.
+/// Makes hair one-sided: its scattering function includes the path through the fibre, so rays must not hit the far side.
 void Parser::make_hair_one_sided() {
   std::vector<bool> hair;
   for (const Material& material : scene_.materials) hair.push_back(std::holds_alternative<HairMaterial>(material.model));

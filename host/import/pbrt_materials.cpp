@@ -18,7 +18,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Componentwise `f` of a spectrum that has components; no value for a blackbody.
+/// Applies `f` to each component of a spectrum; no value for a blackbody.
 template <class F>
 std::optional<Spectrum> map_spectrum(const Spectrum& spectrum, F f) {
   if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return ConstantSpectrum{f(constant->value)};
@@ -38,7 +38,7 @@ std::optional<RgbSpectrum> as_rgb(const Spectrum& spectrum, ColorSpace space) {
   return rgb && rgb->space == space ? std::optional(*rgb) : std::nullopt;
 }
 
-/// (1 - t) a + t b of constants and RGBs of one colour space, or of spectra sampled at the same wavelengths.
+/// Returns (1 - t) a + t b for constants, for RGBs of one colour space, or for spectra sampled at the same wavelengths.
 std::optional<Spectrum> mix_spectra(const Spectrum& a, const Spectrum& b, double t) {
   const auto *ca = std::get_if<ConstantSpectrum>(&a), *cb = std::get_if<ConstantSpectrum>(&b);
   if (ca && cb) return ConstantSpectrum{(1 - t) * ca->value + t * cb->value};
@@ -56,7 +56,7 @@ std::optional<Spectrum> mix_spectra(const Spectrum& a, const Spectrum& b, double
   return RgbSpectrum{(1 - t) * x->rgb + t * y->rgb, space};
 }
 
-/// A spectrum texture's argument: a spectrum, a texture, or the reason why it is not rendered (in `refusal`).
+/// Returns a spectrum texture's argument: a spectrum, a texture, or the reason why it is not rendered (in `refusal`).
 Spectrum texture_argument(Parameters& parameters, const char* name, double fallback, const TextureTable& textures,
                           std::string& refusal) {
   if (const Parameter* named = parameters.values(name, {"texture", "rgb", "spectrum", "blackbody", "float"});
@@ -86,7 +86,7 @@ double alpha_from_roughness(Parameters& parameters, const char* name, double rou
   return remap ? std::sqrt(roughness) : roughness;
 }
 
-/// A square root of a texture of floats.
+/// Adds the square root of a texture of floats.
 std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene& scene) {
   RootTexture root;
   root.tex.texture = texture;
@@ -94,14 +94,14 @@ std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene&
   return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
-/// Amounts of pigments by texture, each replaced by its number where there is none.
+/// Makes a texture of the pigments' absorption; each amount is a texture or a number.
 std::uint32_t melanin_texture(const TextureOperand& eumelanin, const TextureOperand& pheomelanin, const SourceLocation& where,
                               Scene& scene) {
   const auto add = [&](auto model) {
     scene.textures.push_back({std::move(model), false, "melanin", where});
     return static_cast<std::uint32_t>(scene.textures.size() - 1);
   };
-  // A sum is twice the mean.
+  // A mix gives half the sum, so both terms are doubled.
   const auto twice = [&](const Spectrum& color, const TextureOperand& amount) {
     ScaleTexture product;
     auto rgb = std::get<RgbSpectrum>(color);
@@ -116,7 +116,7 @@ std::uint32_t melanin_texture(const TextureOperand& eumelanin, const TextureOper
   return add(sum);
 }
 
-/// Reads what scene/materials.def visits.
+/// Reads the fields of scene/materials.def.
 struct MaterialReader : FieldReader {
   const TextureTable& textures;
   const PartFinder& part_named;
@@ -239,13 +239,13 @@ struct MaterialReader : FieldReader {
   }
 };
 
-/// Reads what scene/textures.def visits.
+/// Reads the fields of scene/textures.def.
 struct TextureReader : FieldReader {
   const TextureTable& textures;
   const TextureContext& context;
   bool is_float;
   std::string& refusal;
-  bool& failed;  // reported
+  bool& failed;  // an error was reported
 
   void operand(const Field& field, TextureOperand& of) {
     if (is_float) return factor(field, of);
@@ -302,7 +302,7 @@ struct TextureReader : FieldReader {
   }
 };
 
-/// A constant where all that a texture is made of is constant: no value of one that varies over the surface.
+/// Returns the constant value of a texture whose operands are all constant; no value if it varies over the surface.
 std::optional<Spectrum> folded(const ScaleTexture& model) {
   if (model.tex.texture || model.scale.texture) return std::nullopt;
   const double scale = std::get<ConstantSpectrum>(model.scale.value).value;
@@ -371,7 +371,7 @@ TextureValue make_texture(const std::string& name, const std::string& kind, cons
 
 namespace {
 
-/// What bends the normals of a material. A displacement that is the same everywhere bends none.
+/// Reads the displacement or normal map of a material. A constant displacement has no effect.
 void read_bump(Parameters& parameters, const TextureTable& textures, const TextureImages& images, Material& material,
                Scene& scene) {
   if (const auto texture = parameters.texture("displacement", true, textures))
@@ -424,7 +424,7 @@ Material make_program_material(const std::string& type, Parameters& parameters, 
     material.model = std::move(model);                                                       \
   }
 #include "scene/materials.def"
-  // Roots and mixes of textures, which the scene would have to take.
+  // The scene would need further textures, roots and mixes.
   if (!more.textures.empty()) parameters.error("takes textures as \"alpha_u\", \"alpha_v\" and \"sigma_a\" alone");
   parameters.finish();
   return material;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The media of MakeNamedMedium statements.
+// Media of MakeNamedMedium statements.
 #include "import/detail/pbrt_media.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Reads what scene/media.def visits.
+/// Reads the fields of scene/media.def.
 struct MediumReader : FieldReader {
   const glm::dmat4& world_from_medium;
 
@@ -67,7 +67,7 @@ struct MediumReader : FieldReader {
     }
   }
   void number(Field field, double& value) {
-    // Older names that pbrt-v4 knows.
+    // pbrt-v4 accepts these older names.
     const std::string_view asked = field.name;
     const char* const older = asked == "temperatureoffset" ? "temperaturecutoff" : asked == "Lescale" ? "LeScale" : field.name;
     if (older != field.name && !parameters.has(field.name) && parameters.has(older)) field.name = older;

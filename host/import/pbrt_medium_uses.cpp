@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Media by their names, and the surfaces that part them.
+// Resolves the names of media, and assigns media to surfaces.
 #include <functional>
 #include <memory>
 
@@ -45,8 +45,8 @@ void Parser::medium_interface() {
   state_.media.outside = lexer_->peek().kind == Token::Kind::string ? side() : state_.media.inside;
 }
 
-/// A csg is one solid, of one medium: that at its statement, or where nothing is said there that of its operands, of all that add
-/// to it.
+/// A csg is one solid with one medium: that of its statement, or else that of its operands (all but the subtracted ones), which
+/// must agree.
 MediumSides Parser::media_of_csg(const Shape& shape) {
   const auto& csg = std::get<CsgShape>(shape.geometry);
   if (csg.operands.empty()) return shape.media;
@@ -64,7 +64,7 @@ MediumSides Parser::media_of_csg(const Shape& shape) {
   return sides.differ() ? sides : shape.media;
 }
 
-/// Names become indices of the scene's media, which are those that something has.
+/// Replaces names by indices of the scene's media. Only media that are used are added.
 void Parser::resolve_media() {
   std::vector<bool> said(medium_uses_.size());
   const auto resolve = [&](std::optional<std::uint32_t>& side) {
@@ -80,7 +80,7 @@ void Parser::resolve_media() {
       return;
     }
     MediumStatement& statement = found->second;
-    if (!statement.sound) return;  // reported
+    if (!statement.sound) return;  // reported already
     if (!statement.index) {
       statement.index = static_cast<std::uint32_t>(scene_.media.size());
       scene_.media.push_back(statement.medium);
@@ -108,7 +108,7 @@ void Parser::resolve_media() {
   for (Shape& shape : scene_.shapes) visit(shape);
   for (Object& object : scene_.objects)
     for (Shape& shape : object.shapes) visit(shape);
-  // What no shape has is looked at as well.
+  // Unused names are checked too.
   for (std::uint32_t i = 0; i < medium_uses_.size(); ++i)
     if (!said[i] && !media_.contains(medium_uses_[i].name)) {
       std::optional<std::uint32_t> side = i;

@@ -31,7 +31,7 @@ std::vector<std::string> shape_types() {
   return types;
 }
 
-/// Sorted; of what is refused, what has come to be rendered is left out.
+/// Sorts both lists, and removes accepted names from the refused ones.
 NameTable table_of(std::string directive, std::vector<std::string> accepted, std::vector<std::string> refused) {
   std::ranges::sort(accepted);
   std::erase_if(refused, [&](const std::string& name) { return std::ranges::binary_search(accepted, name); });

@@ -27,7 +27,7 @@ double positive(Parameters& parameters, std::string_view name, double fallback) 
   return fallback;
 }
 
-/// The number of a type among `names`, as an enumeration's; none where a type is rendered as another.
+/// Returns the enumerator of a type in `names`; no value for a type that is rendered as another.
 template <class Kind, class Names>
 std::optional<Kind> kind_of(const std::string& type, const Names& names) {
   const auto found = std::ranges::find(names, type);
@@ -38,7 +38,7 @@ void warn(Parameters& parameters, std::string_view name, const std::string& mess
   parameters.diagnostics().warning(parameters.where(name), parameters.owner() + ": " + message);
 }
 
-/// Sensors of cameras that pbrt-v4 has the response curves of.
+/// Lists the camera sensors whose response curves pbrt-v4 has.
 const std::vector<std::string>& camera_sensors() {
   static const std::vector<std::string> names = {
       "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d", "canon_eos_200d_mkii", "canon_eos_5d",   "canon_eos_5d_mkii",
@@ -47,7 +47,7 @@ const std::vector<std::string>& camera_sensors() {
   return names;
 }
 
-/// "sensor" and "whitebalance". Of a camera's sensor the white is as balanced as pbrt-v4 does; its curves are not there.
+/// Reads "sensor" and "whitebalance". For a camera's sensor only pbrt-v4's white balance is applied, not its response curves.
 void set_sensor(Parameters& parameters, FilmSettings& film) {
   const std::string sensor = parameters.text("sensor", "cie1931");
   const auto& known = camera_sensors();
@@ -61,7 +61,7 @@ void set_sensor(Parameters& parameters, FilmSettings& film) {
   warn(parameters, "sensor", "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
 }
 
-/// Where the automatic camera is framed to.
+/// Reads the direction and the up axis of an automatic camera.
 Framing framing_of(Parameters& parameters, bool is_orthographic) {
   Framing framing;
   framing.is_orthographic = is_orthographic;
@@ -77,7 +77,7 @@ Framing framing_of(Parameters& parameters, bool is_orthographic) {
   return framing;
 }
 
-/// A picture's file is found here and read by who has a reader of images.
+/// Reads the background. The path of an image is resolved here; `images` reads it if it is given.
 std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* images) {
   const std::string kind = parameters.text("background", "");
   if (kind.empty()) return std::nullopt;
@@ -140,7 +140,7 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
   Camera::fields(camera, FieldReader{parameters});
   const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean(Camera::parallel_lens_field.name, false);
   if (is_orthographic(camera) && camera.lens_radius > 0 && !has_parallel_lens) {
-    // pbrt-v4's rays then leave one lens around the camera's axis: a perspective through the window at the focal distance.
+    // All rays of pbrt-v4 then leave the same lens: a perspective through the window at the focal distance.
     camera.projection = PerspectiveProjection{2 * std::atan(1 / camera.focal_distance)};
     warn(parameters, "lensradius", "makes a perspective of it, as in pbrt-v4; with \"bool parallellens\" true it makes none");
   }
@@ -172,7 +172,7 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   }
   if (const Parameter* window = parameters.values("cropwindow", {"float"})) {
     const auto& v = window->numbers;
-    // In 32-bit floats, as pbrt does: 0.07 of 100 is pixel 7, not a little more.
+    // pbrt computes in 32-bit floats: 0.07 of 100 is pixel 7, not a little more.
     const auto pixel = [](double fraction, int size) {
       return static_cast<int>(std::ceil(static_cast<float>(fraction) * static_cast<float>(size)));
     };
@@ -247,7 +247,7 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
     if (parameters.boolean("regularize", false))
       warn(parameters, "regularize", "nothing is made rougher than it is (\"regularize\")");
-  // Pictures beside the picture, and what only noise depends on.
+  // These write additional pictures, or affect only noise.
   if (type == "bdpt")
     for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
   if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");

@@ -21,8 +21,8 @@ namespace {
 
 struct TypeRow {
   std::string_view name, canonical;
-  std::size_t multiple;  // of the number of values
-  bool single;           // exactly that many
+  std::size_t multiple;  // of which the number of values is a multiple
+  bool single;           // there is exactly that number
 };
 
 const std::vector<TypeRow>& type_rows() {
@@ -50,7 +50,7 @@ std::string unknown_type(std::string_view type) {
   return unknown + "; the nearest known type is \"" + nearest_name(type, known) + "\"";
 }
 
-/// "type name" -> both; empty when it is not two words.
+/// Splits "type name"; both are empty when it is not two words.
 std::pair<std::string_view, std::string_view> split_declaration(std::string_view text) {
   constexpr std::string_view blanks = " \t\n\r";
   const std::size_t begin = text.find_first_not_of(blanks);
@@ -93,7 +93,7 @@ bool takes_numbers(const std::string& type) {
   return type != "bool" && type != "string" && type != "texture" && type != "spectrum";
 }
 
-/// The values after a declaration; a first wrong value is kept in `problem` while the rest is read over.
+/// Parses the values after a declaration. The first wrong value is kept in `problem`, and the rest is skipped.
 void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>& problem) {
   const auto add = [&](const Token& token) {
     if (problem) return;
@@ -120,10 +120,10 @@ void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>
   lexer.next();
 }
 
-/// A texture's refusal without its place.
+/// Returns a texture's refusal without its place.
 std::string kind_of(const std::string& refusal) { return refusal.substr(0, refusal.find(" (")); }
 
-/// Finds a parameter by its name: among the few that a sound statement has one by one, among more by a table.
+/// Finds a parameter by its name: by linear search among few, by a table among many.
 class GivenNames {
  public:
   Parameter* find(std::vector<Parameter>& parameters, const std::string& name) {
@@ -140,15 +140,15 @@ class GivenNames {
   std::unordered_map<std::string, std::size_t> table_;
 };
 
-/// Where the next parameter stands, null when none follows. A statement at the end of an included file goes on behind the
-/// Include, as in pbrt-v4.
+/// Returns the lexer at the next parameter, or null. A statement at the end of an included file continues after the Include, as
+/// in pbrt-v4.
 Lexer* at_parameter(Lexer& lexer) {
   Lexer* at = &lexer;
   while (at && at->peek().kind == Token::Kind::end) at = at->behind();
   return at && at->peek().kind == Token::Kind::string ? at : nullptr;
 }
 
-/// Whether values that were given without a type can be of this one. A spectrum of one number is a float, of three an rgb.
+/// Returns whether values without a stated type fit this one. A spectrum of one number is a float, of three numbers an rgb.
 bool suits(const Parameter& parameter, std::string_view type) {
   const std::size_t count = parameter.numbers.size();
   if (!parameter.bools.empty()) return type == "bool";
@@ -160,7 +160,7 @@ bool suits(const Parameter& parameter, std::string_view type) {
   return count % find_type(type)->multiple == 0;
 }
 
-/// What was given, for messages.
+/// Describes the given values for messages.
 std::string values_of(const Parameter& parameter) {
   const auto some = [](std::size_t count, const char* what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -172,7 +172,7 @@ std::string values_of(const Parameter& parameter) {
 
 std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
 
-/// The complaint about a parameter's number of values, empty when it is right.
+/// Returns the error in a parameter's number of values; empty when it is right.
 std::string check_count(const Parameter& parameter, const TypeRow& row) {
   const std::size_t count = parameter.numbers.size() + parameter.strings.size() + parameter.bools.size();
   const std::string name = in_quotes(parameter.type + " " + parameter.name);
@@ -312,7 +312,7 @@ const Parameter* Parameters::values(std::string_view name, std::initializer_list
   if (!parameter || parameter->broken) return nullptr;
   if (parameter->type.empty()) {
     for (const std::string_view type : types) {
-      // Where it may be a spectrum, more than three numbers are not colours.
+      // Where a spectrum is allowed too, only three numbers are an rgb.
       if (type == "rgb" && types.size() > 1 && parameter->numbers.size() != 3) continue;
       if (!suits(*parameter, type)) continue;
       parameter->type = type;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t deepest_include = 64;
-// Limits for files that include each other many times over; scenes stay far below.
+// These limits stop files that include each other many times; real scenes stay far below.
 constexpr std::size_t most_included_files = 1 << 16;
 constexpr std::size_t most_included_again = std::size_t{1} << 28;  // bytes of files that were read before
 }  // namespace
@@ -94,7 +94,7 @@ Imported Parser::parse(std::string text) {
   if (has_camera_ && !lit) diagnostics_.warning({main_file_}, "the scene has no light: its picture is black");
   Imported out(std::move(scene_));
   out.has_camera = has_camera_;
-  out.is_lit = lit || has_camera_;  // a dark scene of its own is meant to be one
+  out.is_lit = lit || has_camera_;  // an explicit camera without light means a dark scene
   return out;
 }
 
@@ -110,7 +110,7 @@ void Parser::parse_file(const std::string& file, std::string text, Lexer* behind
       if (more && diagnostics_.error_count() == errors) in_file.prove();
     } catch (const SyntaxError& error) {
       diagnostics_.error(error.where, error.message, error.kind);
-      if (outer && !in_file.is_proven()) break;  // a file that another one names, and that is no scene
+      if (outer && !in_file.is_proven()) break;  // an included file that is no scene
       skip_to_directive();
     }
   }
@@ -144,7 +144,7 @@ void Parser::parse_statement(Unproven& in_file) {
                       directive_ + (directive_ == "WorldBegin" ? " is given twice" : " is only allowed before WorldBegin")};
   if (handler.allowed == Handler::Allowed::world && !in_world_)
     throw SyntaxError{where_, directive_ + " is only allowed after WorldBegin"};
-  // A type that there is, too: whatever is wrong with the rest, this is a scene.
+  // A known type proves that the file is a scene, whatever else is wrong with it.
   if (const Token& type = lexer_->peek(); type.kind == Token::Kind::string)
     if (is_known_name(directive_, std::string(type.text)) || !v3_name(directive_, type.text).empty()) in_file.prove();
   (this->*handler.run)();
@@ -344,7 +344,7 @@ void Parser::log_warnings() {
 }
 
 void Parser::finish_attributes() {
-  // An earlier Attribute counts as used where a later one of the same name, which replaced it, was: hence from the end.
+  // An earlier Attribute counts as used if a later one of the same name that replaced it was used; hence the reverse order.
   for (auto it = all_attributes_.rbegin(); it != all_attributes_.rend(); ++it)
     if ((*it)->replaced_by && (*it)->replaced_by->used) (*it)->used = true;
   for (const auto& parameter : all_attributes_)

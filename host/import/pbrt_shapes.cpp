@@ -14,14 +14,14 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// The file behind "string filename"; empty when missing (reported).
+/// Returns the file of "string filename"; empty when it is missing (reported).
 std::string file_of(Parameters& parameters) {
   if (!parameters.has("filename")) parameters.error("\"string filename\" is missing");
   const std::string name = parameters.text("filename", "");
   return name.empty() ? name : resolve_file(name, parameters.where("filename"), parameters.main_file());
 }
 
-/// Runs a reader of the file behind "filename"; its errors are reported beside ours.
+/// Runs a reader of the file in "filename"; its errors are reported with ours.
 template <class Read>
 auto read_other(Parameters& parameters, Read read) -> decltype(read()) {
   try {
@@ -68,11 +68,11 @@ Geometry make_geometry(const std::string& type, Parameters& parameters, const Ma
   throw std::logic_error("pbrt_names knows a type of shape that the list does not");
 }
 
-/// "string materials": one name a surface.
+/// Reads "string materials": one name per surface.
 void set_materials(Parameters& parameters, const MaterialIndex& material_index, Shape& shape) {
   const Parameter* names = parameters.values("materials", {"string"});
   const std::size_t surfaces = surface_count(shape);
-  if (!names || surfaces == 0) return;  // no surfaces: the geometry was wrong, and is reported
+  if (!names || surfaces == 0) return;  // without surfaces the geometry was wrong, and is reported
   if (names->strings.size() != surfaces) {
     parameters.error("materials", "takes " + std::to_string(surfaces) + (surfaces == 1 ? " name" : " names") +
                                       ", one a surface, not " + std::to_string(names->strings.size()));
@@ -95,14 +95,14 @@ Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t 
   if (alpha.texture = parameters.texture("alpha", true, context.textures); !alpha.texture)
     alpha = parameters.number_or_texture("alpha", 1, context.textures);
   if (alpha.texture || std::get<ConstantSpectrum>(alpha.value).value < 1) shape.alpha = alpha;
-  // Surfaces first: capsules without a material of their own have the shape's.
+  // Surfaces come first, because capsules without their own material use the shape's.
   if (type == "capsules") set_materials(parameters, context.material_index, shape);
   const auto material_or_default = [&](const std::string& name, const SourceLocation& where) {
     return name.empty() ? shape.material : context.material_index(name, where);
   };
   shape.geometry = make_geometry(type, parameters, material_or_default, context);
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry); csg && !csg->operands.empty())
-    shape.material = csg->operands[0]->material;  // the statement's own material is on no surface
+    shape.material = csg->operands[0]->material;  // no surface has the statement's own material
   if (type != "capsules") set_materials(parameters, context.material_index, shape);
   parameters.finish();
   return shape;

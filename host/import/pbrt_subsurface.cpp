@@ -13,14 +13,14 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Red, green and blue of what can be one.
+/// Returns the red, green and blue of a spectrum that has them.
 std::optional<glm::dvec3> as_colors(const Spectrum& spectrum) {
   if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return glm::dvec3(constant->value);
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return rgb->rgb;
   return std::nullopt;
 }
 
-/// Means over the whole of a texture, in red, green and blue; none of a kind without an easy one.
+/// Computes means of whole textures in red, green and blue; no value for textures without a simple mean.
 struct TextureMean {
   const Scene& scene;
 
@@ -75,7 +75,7 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
   g = std::clamp(g, -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry);
 
   const std::string name = parameters.text("name", "");
-  // What varies over the surface would vary within.
+  // A texture is replaced by its mean, because the medium cannot vary with the surface.
   const auto spectrum = [&](const char* given, SpectrumUse use) -> std::optional<Spectrum> {
     const auto texture = parameters.texture(given, false, textures);
     if (!texture) return parameters.spectrum(given, use, &textures);
@@ -105,7 +105,7 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
     if (!known)
       parameters.error("name", "is " + in_quotes(name) + "; the nearest known name is \"" +
                                    nearest_name(name, named_scattering_names()) + "\"");
-    of.g = 0;  // as pbrt-v4: these coefficients are of even scattering
+    of.g = 0;  // as in pbrt-v4: these coefficients assume isotropic scattering
   } else if (sigma_a && sigma_s) {
     of.sigma_a = *sigma_a;
     of.sigma_s = *sigma_s;
@@ -126,7 +126,7 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
       const ColorSpace space = rgb ? rgb->space : parameters.space();
       of.sigma_a = RgbSpectrum{a, space};
       of.sigma_s = RgbSpectrum{s, space};
-      of.scale = 1 / scale;  // of the free path
+      of.scale = 1 / scale;  // scales the mean free path
     }
   }
   return {model, name, parameters.where(), true};

@@ -9,7 +9,7 @@ namespace caplet::pbrt {
 namespace {
 
 struct RenamedStatement {
-  std::string_view directive, name, now;  // now empty: there is none any more
+  std::string_view directive, name, now;  // now: the new name; empty: there is none
 };
 
 constexpr RenamedStatement names[] = {

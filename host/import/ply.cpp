@@ -21,7 +21,7 @@ namespace caplet {
 
 namespace {
 
-/// Some programs write normals that are NaN (0 / 0). Values that are not finite at every vertex are of no use.
+/// Some programs write normals that are NaN (0 / 0). Values that are not finite at any vertex are dropped.
 template <class Vector>
 void drop_unless_finite(std::vector<Vector>& values, const std::string& file, const char* what, const char* instead) {
   const auto finite = [](const Vector& v) {
@@ -59,7 +59,7 @@ TriangleMeshShape mesh_of(const std::string& file, const aiScene* scene, const p
     if (face.mNumIndices < 3) ++dropped;
     places.clear();
     for (unsigned k = 0; k < face.mNumIndices; ++k) places.push_back(mesh.positions[face.mIndices[k]]);
-    // Of four corners the triangles that pbrt makes.
+    // Quadrilaterals are split as in pbrt.
     const auto cut =
         face.mNumIndices == 4 ? std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}} : triangles_of(places);
     for (const auto& [a, b, c] : cut) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Checks the body of a PLY file and writes it anew for assimp 5.2, which reads on beyond the end of truncated files, mistakes
-// bytes of elements it does not know for vertices and faces, refuses faces before vertices, rounds ascii numbers wrongly, takes
-// lists of texture coordinates from faces, and drops the first byte of a binary body when it is that of a newline.
+// Checks the body of a PLY file and rewrites it for assimp 5.2, which reads beyond the end of truncated files, mistakes bytes of
+// unknown elements for vertices and faces, refuses faces before vertices, rounds ascii numbers wrongly, takes lists of texture
+// coordinates from faces, and drops the first byte of a binary body when it equals a newline.
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the rewritten body is written in the host's byte order");
 
-/// One value after the other, from text or bytes.
+/// Reads one value after the other, from text or bytes.
 class PlyValues {
  public:
   PlyValues(const std::string& file, std::string_view bytes, const Header& header)
@@ -47,7 +47,7 @@ class PlyValues {
     }
   }
 
-  /// Skips `count` values of a binary file at once; false for ascii.
+  /// Skips `count` values of a binary file at once; returns false for ascii.
   bool skip(Type type, std::uint64_t count) {
     if (encoding_ == Encoding::ascii) return false;
     if (count > (bytes_.size() - at_) / size_of(type)) truncated();
@@ -128,7 +128,7 @@ void append(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// The plain name of a vertex property that a mesh has a use for; empty otherwise.
+/// Returns the standard name of a vertex property that a mesh uses; otherwise empty.
 std::string_view plain_name(std::string_view name) {
   for (std::string_view same : {"x", "y", "z", "nx", "ny", "nz", "u", "v"})
     if (name == same) return same;
@@ -137,7 +137,7 @@ std::string_view plain_name(std::string_view name) {
   return {};
 }
 
-/// Which component of a colour a property is: 0 to 2; -1: none.
+/// Returns the colour component of a property: 0 to 2, or -1.
 int color_component(const Property& property) {
   constexpr std::string_view names[3][4] = {
       {"red", "r", "diffuse_red", "Red"}, {"green", "g", "diffuse_green", "Green"}, {"blue", "b", "diffuse_blue", "Blue"}};
@@ -155,7 +155,7 @@ bool has_color(const Element& element) {
   return there == 7;
 }
 
-/// What is white: the greatest whole number of few bits; 1 of floats.
+/// Returns the value of white: the greatest value of a small integer type; 1 for floats.
 double white_of(Type type) { return is_float(type) ? 1 : size_of(type) == 2 ? 65535 : 255; }
 
 class Walk {
@@ -209,7 +209,7 @@ class Walk {
       const bool is_position = name == "x" || name == "y" || name == "z";
       if (is_position && !(std::abs(value) <= 3.4028234663852886e38))
         values_.fail("a vertex position is not finite (\"" + p.name + "\")");
-      // The low bytes of a float as a double are 0, so the body does not start with the byte of a newline.
+      // The low bytes of a float written as a double are 0, so the body does not start with a newline.
       if (is_first)
         append(vertices_, static_cast<double>(static_cast<float>(value)));
       else

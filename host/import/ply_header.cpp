@@ -11,7 +11,7 @@ namespace caplet::ply {
 namespace {
 
 constexpr std::size_t longest_header = 1 << 20;
-constexpr std::size_t most_names = 1024;  // of elements, and of properties of one
+constexpr std::size_t most_names = 1024;  // limits elements, and properties of each
 
 std::optional<Type> type_of(std::string_view name) {
   static const std::vector<std::pair<std::string_view, Type>> names = {
@@ -128,7 +128,7 @@ class HeaderReader {
   Header header_;
 };
 
-/// The fewest bytes an entry can take: two characters a value in ascii, empty lists.
+/// Returns the fewest bytes that an entry can take: two characters per value in ascii, and empty lists.
 std::uint64_t least_bytes(const Element& element, Encoding encoding) {
   std::uint64_t bytes = 0;
   for (const Property& property : element.properties)
@@ -137,7 +137,7 @@ std::uint64_t least_bytes(const Element& element, Encoding encoding) {
 }
 
 void check_counts(const std::string& file, const Header& header, std::size_t file_size) {
-  // The last value of an ascii file need not be followed by a blank.
+  // The last value of an ascii file may end without a blank.
   std::uint64_t left = file_size - header.size + (header.encoding == Encoding::ascii ? 1 : 0);
   for (const Element& element : header.elements) {
     const std::uint64_t each = least_bytes(element, header.encoding);

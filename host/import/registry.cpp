@@ -23,7 +23,7 @@ void set_picture(std::vector<Format>& rows, const char* name, int samples, doubl
     }
 }
 
-/// The root elements that tell formats of one ending apart.
+/// Root elements distinguish formats that share an ending.
 const std::vector<std::pair<std::string, std::string>>& xml_roots() {
   static const std::vector<std::pair<std::string, std::string>> rows = {
 #define IMPORTER(...)

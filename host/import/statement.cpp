@@ -21,7 +21,7 @@ namespace caplet {
 
 namespace {
 
-/// Where there are no files.
+/// Statements of programs have no files.
 const std::string no_file;
 
 void check_type(const ProgramStatement& statement) {
@@ -50,7 +50,7 @@ pbrt::Parameters parameters_of(const ProgramStatement& statement, std::vector<pb
   return {std::move(own), {}, statement.directive + " \"" + statement.type + "\"", {}, no_file, ColorSpace::srgb, diagnostics};
 }
 
-/// Textures by their numbers; none where the statement names none.
+/// Returns the textures by number; none if the statement names none.
 pbrt::TextureTable textures_for(const ProgramStatement& statement, const Scene& scene) {
   pbrt::TextureTable table;
   if (std::ranges::none_of(statement.parameters, [](const auto& one) { return one.type == "texture"; })) return table;
@@ -104,7 +104,7 @@ void read_option(const ProgramStatement& statement, pbrt::Parameters& parameters
     if (const auto seed = pbrt::set_sampler(statement.type, parameters, scene)) scene.sampler.seed = *seed;
 }
 
-/// What `work` makes of the statement's parameters. Throws InputError with all that is wrong with them.
+/// Returns what `work` makes of the statement's parameters. Throws InputError with all their errors.
 template <class Work>
 auto read(const ProgramStatement& statement, const Work& work) {
   check_type(statement);
@@ -125,10 +125,10 @@ std::vector<std::string> file_statement_types(const std::string& directive) {
 
 std::vector<std::string> statement_types(const std::string& directive) {
   std::vector<std::string> types = file_statement_types(directive);
-  if (directive == "Shape") std::erase_if(types, pbrt::is_file_shape);  // no shape, but a scene
-  if (directive == "Material") std::erase(types, "subsurface");         // a material and a medium
+  if (directive == "Shape") std::erase_if(types, pbrt::is_file_shape);  // these give a scene, not a shape
+  if (directive == "Material") std::erase(types, "subsurface");         // it is a material and a medium
   if (directive == "Texture") {
-    std::erase(types, "constant");  // a number or a spectrum
+    std::erase(types, "constant");  // that is a number or a spectrum
     types.emplace_back("normalmap");
   }
   return types;
@@ -147,7 +147,7 @@ Material material_of(const ProgramStatement& statement, const Scene& scene) {
   return read(statement, [&](pbrt::Parameters& parameters) {
     const auto numbered = [&](const std::string& name, std::string& problem) -> std::optional<std::uint32_t> {
       const std::optional<std::uint32_t> found = number_of(name);
-      // A material that is not there yet may be named: what has its place is checked as a whole.
+      // A material may be named before it exists; the scene is validated as a whole.
       if (!found) problem = "takes the numbers of two materials";
       return found;
     };

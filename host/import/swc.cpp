@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Samples are parsed and linked first; then somata become spheres or chains and every other sample a segment to its parent.
+// Samples are parsed and linked first. Then somata become spheres or chains, and every other sample a segment to its parent.
 #include "import/detail/swc.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kColumns = 7;
 constexpr std::array<const char*, kColumns> kColumnNames = {"id", "type", "x", "y", "z", "radius", "parent"};
-/// A radius of 0 stands for "not measured" or "tapers off"; it becomes this part of the file's median positive radius.
+/// A radius of 0 means "not measured" or "tapers off". It is replaced by this part of the file's median positive radius.
 constexpr float kMissingRadiusPart = 0.25F;
 
 struct Token {
@@ -38,7 +38,7 @@ struct Token {
   int column = 0;  // bytes, from 1
 };
 
-/// The blank-separated parts of a line before any comment, at most one more than there are columns.
+/// Splits a line before any comment at blanks, into at most one part more than there are columns.
 std::size_t split(std::string_view line, std::array<Token, kColumns + 1>& tokens) {
   std::size_t count = 0, i = 0;
   while (count < tokens.size()) {
@@ -51,7 +51,7 @@ std::size_t split(std::string_view line, std::array<Token, kColumns + 1>& tokens
   return count;
 }
 
-/// A whole number, also in a form with a decimal point or an exponent, as programs without integers write ("12.0", "1.2e1").
+/// Parses an integer, also with a decimal point or an exponent, as programs without integers write it ("12.0", "1.2e1").
 template <class Integer>
 bool parse_integer(std::string_view token, Integer& value) {
   const char* end = token.data() + token.size();
@@ -60,7 +60,7 @@ bool parse_integer(std::string_view token, Integer& value) {
   double decimal = 0;
   const auto [decimal_stop, decimal_error] = std::from_chars(token.data(), end, decimal);
   constexpr double most =
-      std::is_same_v<Integer, std::int32_t> ? 2147483647.0 : 9007199254740992.0;  // 2^53: every one below is exact
+      std::is_same_v<Integer, std::int32_t> ? 2147483647.0 : 9007199254740992.0;  // 2^53: all smaller integers are exact
   if (decimal_error != std::errc() || decimal_stop != end || !(std::abs(decimal) <= most) || decimal != std::floor(decimal))
     return false;
   value = static_cast<Integer>(decimal);
@@ -128,8 +128,8 @@ class Parser {
     in_file_.prove();
   }
 
-  /// Sets `parent`; reports repeated ids and missing parents (these only where no line was refused, since that line may be the
-  /// one).
+  /// Sets `parent`. Reports repeated ids and missing parents (the latter only if no line was refused, since that line may be the
+  /// parent).
   void link() {
     std::vector<std::uint32_t> by_id(samples_.size());
     std::iota(by_id.begin(), by_id.end(), 0U);
@@ -144,7 +144,7 @@ class Parser {
     const std::int64_t first_id = samples_.empty() ? 0 : id_of(by_id.front());
     for (SwcSample& sample : samples_) {
       if (sample.parent_id < 0) continue;
-      // Ids without gaps are their own index.
+      // If ids have no gaps, they give the index directly.
       const auto guess = static_cast<std::uint64_t>(sample.parent_id - first_id);
       if (sample.parent_id >= first_id && guess < by_id.size() && id_of(by_id[guess]) == sample.parent_id) {
         sample.parent = static_cast<std::int32_t>(by_id[guess]);
@@ -183,7 +183,7 @@ class Parser {
   Unproven in_file_;
 };
 
-/// Gives samples without a radius one, and warns.
+/// Gives a radius to samples without one, and warns.
 void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name) {
   std::vector<float> known;
   const SwcSample* first = nullptr;
@@ -209,7 +209,7 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
     const double extent = glm::length(glm::dvec3(high) - glm::dvec3(low));
     filled = extent > 0 ? static_cast<float>(kThin * extent) : 1.0F;
   }
-  // What rounds to 0 would be no radius.
+  // A radius that rounds to 0 would be missing again.
   filled = std::max(filled, std::numeric_limits<float>::min());
   std::size_t missing = 0;
   for (SwcSample& sample : samples)
@@ -224,14 +224,14 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
 constexpr int kFork = 5, kEnd = 6;
 bool is_mark(int type) { return type == kFork || type == kEnd; }
 
-/// Types 5 and 6 mark fork and end points and say nothing of the neurite: they become the type of the branch, which is that of
-/// the nearest ancestor that has one; at the soma or a root, that of the first descendant (in the order of the file) that has
-/// one; otherwise 0.
+/// Types 5 and 6 mark fork and end points and say nothing of the neurite. They are replaced by the type of the branch: that of
+/// the nearest ancestor that has one; at the soma or a root, that of the first descendant (in file order) that has one; otherwise
+/// 0.
 void resolve_marks(std::vector<SwcSample>& samples) {
   const auto parent_of = [&](std::size_t i) { return samples[i].parent; };
   const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
   std::vector<std::size_t> path;
-  // Down from ancestors: each sample is walked over once, as those of a branch without a type stay marked in `open`.
+  // The walk goes down from ancestors and visits each sample once: those of a branch without a type stay marked in `open`.
   std::vector<bool> open(samples.size(), false);
   const auto from_ancestors = [&] {
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -261,14 +261,14 @@ void resolve_marks(std::vector<SwcSample>& samples) {
     if (is_mark(sample.type)) sample.type = 0;
 }
 
-/// What a sample is drawn as.
+/// How a sample is drawn.
 struct Role {
   bool segment = false;  // to its parent
-  bool sphere = false;   // a soma that is one sphere, or a sample that nothing else would show
+  bool sphere = false;   // a soma that is one sphere, or a sample that would otherwise be invisible
 };
 
-/// NeuroMorpho.Org's soma of three points: two children of the first, at plus and minus one radius along y. Its files round to
-/// two decimals, so each of the numbers compared is off by up to 0.005: 0.01 for a difference of two.
+/// Recognises NeuroMorpho.Org's soma of three points: two children of the first, at plus and minus one radius along y. Its files
+/// round to two decimals, so each of the numbers compared is off by up to 0.005: 0.01 for a difference of two.
 bool is_three_point_soma(const SwcSample& centre, const SwcSample& a, const SwcSample& b) {
   const float tolerance = std::max(1e-3F * centre.radius, std::min(0.011F, 0.1F * centre.radius));
   const auto near = [tolerance](float x, float y) { return std::abs(x - y) <= tolerance; };
@@ -285,7 +285,7 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
     std::array<std::uint32_t, 2> first{};
     bool grandchildren = false;
   };
-  std::map<std::uint32_t, SomaLinks> somata;  // by sample, for samples of type soma: few
+  std::map<std::uint32_t, SomaLinks> somata;  // by sample, for the few samples of type soma
   std::vector<bool> has_children(count, false);
   const auto is_soma = [&](std::int32_t i) { return i >= 0 && samples[static_cast<std::size_t>(i)].type == kSoma; };
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -316,18 +316,18 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   return roles;
 }
 
-/// For each segment what u is at its parent and at its sample: from 0 to 1 by length along each branch, which goes on while there
-/// is one segment to go on with, and ends where a soma does.
+/// Returns u at the parent and at the sample of each segment: from 0 to 1 by length along each branch. A branch continues while
+/// exactly one segment follows, and ends at a soma.
 std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, const std::vector<Role>& roles) {
   constexpr std::int32_t none = -1, several = -2;
   const auto parent_of = [&](std::size_t i) { return static_cast<std::size_t>(samples[i].parent); };
-  std::vector<std::int32_t> next(samples.size(), none);  // the only segment from a sample on
+  std::vector<std::int32_t> next(samples.size(), none);  // the only segment that starts at a sample
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!roles[i].segment) continue;
     std::int32_t& of_parent = next[parent_of(i)];
     of_parent = of_parent == none ? static_cast<std::int32_t>(i) : several;
   }
-  const auto goes_on = [&](std::size_t i) {  // from the segment to its sample
+  const auto goes_on = [&](std::size_t i) {  // whether the branch continues past the sample
     return next[i] >= 0 && (samples[i].type == kSoma) == (samples[static_cast<std::size_t>(next[i])].type == kSoma);
   };
   std::vector<glm::vec2> out(samples.size());
@@ -389,7 +389,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
       scene.shapes.push_back(std::move(sphere));
     }
     if (!roles[i].segment) continue;
-    // A neurite does not swell to the soma it starts at: the segment between them has the neurite's radius and material.
+    // A neurite does not widen towards its soma: the segment between them has the neurite's radius and material.
     const SwcSample& parent = samples[static_cast<std::size_t>(sample.parent)];
     const bool from_soma = parent.type == kSoma && sample.type != kSoma, to_soma = parent.type != kSoma && sample.type == kSoma;
     segments.p0.push_back(parent.position);
@@ -409,7 +409,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
     scene.shapes.push_back(std::move(shape));
   }
   scene.has_no_up = true;
-  // Axons are thinner than pixels.
+  // Axons are thinner than a pixel.
   set_usual_picture(scene, "swc");
   scene.unit = "\u00b5m";
   return scene;

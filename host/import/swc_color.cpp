@@ -24,10 +24,10 @@ namespace caplet {
 
 namespace {
 
-constexpr int kMostOrders = 256;  // whole numbers that have a colour each
+constexpr int kMostOrders = 256;  // integers up to here have a colour each
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// `value(sample, parent's value)` of each sample, parents before children.
+/// Computes `value(sample, parent's value)` for each sample, parents before children.
 template <class Value>
 std::vector<double> values_along_branches(const std::vector<SwcSample>& samples, const Value& value) {
   std::vector<double> out(samples.size(), kNoValue);
@@ -70,7 +70,7 @@ Palette palette_of_type(int type) {
 // --- Files of values ---
 
 struct ColorRow {
-  std::string_view key;  // empty: a number alone
+  std::string_view key;  // empty: the line is a number alone
   double value = 0;
   int line = 0;
 };
@@ -154,7 +154,7 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
                                 const std::filesystem::path& neuron, const ImportOptions& options, std::string& name) {
   const std::string file = path.string();
   const TextFile text(path);
-  Unproven in_file;  // a number is no sign of what it is
+  Unproven in_file;  // a number does not reveal the format
   if (!options.are_of_scene) in_file.prove();
   const std::vector<ColorRow> rows = rows_of(text.text(), file, name);
   if (name.empty()) name = path.filename().string();

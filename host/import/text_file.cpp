@@ -35,7 +35,7 @@ struct Descriptor {
 
 TextFile::TextFile(const std::filesystem::path& path) {
   begin_reading(path);
-  // O_NONBLOCK: opening a fifo shall not wait for a writer; it is refused below.
+  // O_NONBLOCK: opening a fifo must not wait for a writer; fifos are refused below.
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.number < 0) cannot_read(path, std::strerror(errno));
   struct stat status {};
@@ -94,7 +94,7 @@ NumberError parse_float(std::string_view token, float& value) {
     if (!std::isfinite(value)) return NumberError::not_finite;
     return std::abs(value) <= largest_number ? NumberError::none : NumberError::out_of_range;
   }
-  // from_chars reports too large and too small alike; strtod tells them apart.
+  // from_chars reports overflow and underflow alike; strtod distinguishes them.
   if (std::abs(std::strtod(std::string(begin, end).c_str(), nullptr)) > 1) return NumberError::out_of_range;
   value = 0;
   return NumberError::none;

@@ -69,13 +69,13 @@ std::string ZipFile::read(const std::string& name) {
   if (info.size > left_) too_much();
   for (;;) {
     const std::size_t before = out.size();
-    // One byte more than is announced, so that its end shows.
+    // One byte more than the stated size is read, so that a longer file is noticed.
     const std::uintmax_t rest = info.size > before ? info.size - before : 0;
     const std::size_t piece = std::min({std::uintmax_t{kPiece}, left_ + 1, rest + 1});
     out.resize(before + piece);
     const std::int64_t got = zip_fread(entry.get(), out.data() + before, piece);
     out.resize(before + static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
-    // Checksums are compared at the end of what is read.
+    // zip compares checksums at the end of the file.
     if (got < 0)
       broken(zip_error_code_zip(zip_file_get_error(entry.get())) == ZIP_ER_CRC ? "is broken (its checksum is another)"
                                                                                : "is broken");

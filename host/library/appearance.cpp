@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials and textures by the names of their lists, read as scene files are.
+// Materials and textures by type name, read by the readers of scene files.
 #include "library/detail/appearance.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace caplet::v0 {
 
 namespace {
 
-constexpr int most_texels = 1 << 15;  // a side
+constexpr int most_texels = 1 << 15;  // per side
 
 std::shared_ptr<const TextureImage> image_of(const Pixels& pixels) {
   const auto wrong = [](const std::string& what) { throw InputError("'pixels' must be " + what); };
@@ -41,7 +41,7 @@ std::shared_ptr<const TextureImage> image_of(const Pixels& pixels) {
   return out;
 }
 
-/// The texture of `name`, which is taken out of `parameters`.
+/// Removes the texture of `name` from `parameters` and returns it.
 std::optional<std::uint32_t> taken(Parameters& parameters, const std::string& name) {
   const auto found = parameters.find(name);
   if (found == parameters.end()) return std::nullopt;
@@ -71,7 +71,7 @@ struct ToModel {
     Parameters parameters = m.parameters;
     const auto displacement = taken(parameters, "displacement"), normalmap = taken(parameters, "normalmap");
     ProgramStatement statement = to_statement("Material", m.type, parameters);
-    // A mix names its parts, by their numbers.
+    // A mix names its parts by number.
     for (StatementParameter& one : statement.parameters)
       if (one.name == "materials") {
         for (const double number : one.numbers) one.strings.push_back(fmt::format("{}", number));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes that programs build: what statements of scene files say, read as those are, and shapes in bulk.
+// Scenes that programs build: statements are read as in scene files, and shapes are added in bulk.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ std::uint32_t greatest_material(const Shape& shape) {
   return most;
 }
 
-/// Throws what validate() says of these shapes, with nothing else there than what they refer to. They stay as they are.
+/// Throws the errors of validate() for these shapes with only what they refer to. Leaves the shapes as they are.
 void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
   std::uint32_t most = 0;
   bool textured = false;
@@ -162,12 +162,12 @@ std::optional<AreaEmission> emission_for(const ShapeOptions& options) {
   return emission_of(to_statement(directive_of(Statement::emission), "diffuse", *options.emission), FileImageReader());
 }
 
-/// The material that shapes have for which none is named.
+/// Adds the default material of shapes.
 void need_material(caplet::Scene& scene) {
   if (scene.materials.empty()) scene.materials.emplace_back().name = "default";
 }
 
-/// Adds shapes that are sound, and gives the first's number.
+/// Adds valid shapes, and returns the number of the first.
 std::uint32_t add(caplet::Scene& scene, std::vector<Shape> shapes, const std::string& object) {
   check_shapes(scene, shapes);
   need_material(scene);
@@ -207,7 +207,7 @@ std::vector<KnownParameter> statement_parameters(Statement statement, const std:
     to.choices = std::move(one.choices);
     to.excludes = std::move(one.excludes);
     to.has_effect = one.has_effect;
-    // A program makes a texture of the image first.
+    // A program first makes a texture of the image.
     if (statement == Statement::material && to.name == "normalmap") to.types = {"texture"};
   }
   if (statement == Statement::texture && std::ranges::find(out, "filename", &KnownParameter::name) != out.end()) {
@@ -462,7 +462,7 @@ void Scene::present() {
   if (!data.open_camera) {
     model.camera = camera;
     model.automatic_camera = false;
-    // The studio stands around this camera.
+    // The studio's lights are placed around this camera.
     const glm::dmat3 view(camera.world_from_camera);
     if (needs_light) std::get<InfiniteLight>(model.lights.back().model).world_from_light = glm::dmat3(-view[2], view[0], view[1]);
   }

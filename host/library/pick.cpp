@@ -55,7 +55,7 @@ std::optional<Hit> to_nearest(const PickRecord& pick, const caplet::Scene& scene
 
 constexpr std::size_t rays_at_once = std::size_t{1} << 18;
 
-/// Crossings in plain numbers.
+/// Converts crossings to plain numbers.
 class Numbers {
  public:
   explicit Numbers(const caplet::Scene& scene) : scene_(scene) {

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int most_samples = 1 << 24, most_events = 1 << 16;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
-// A session that is further behind takes the scene as a whole.
+// A session with more edits to catch up on takes the whole scene again.
 constexpr std::size_t most_logged = 1 << 16;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
@@ -78,7 +78,7 @@ Scene::~Scene() = default;
 
 Scene::Data& Scene::changed() {
   if (data_.use_count() > 1) data_ = std::make_shared<Data>(*data_);
-  std::atomic_thread_fence(std::memory_order_acquire);  // what another thread did with a copy that is gone comes before
+  std::atomic_thread_fence(std::memory_order_acquire);  // makes accesses of other threads through released copies happen before
   return *data_;
 }
 
@@ -260,7 +260,7 @@ void Scene::set_emission(std::uint32_t shape, const Spectrum& radiance, double s
 }
 
 void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up) {
-  // pbrt's LookAt shows a right-handed world as its mirror image: here only where the camera that is there does so already.
+  // pbrt's LookAt mirrors a right-handed world; this is kept only if the present camera mirrors it too.
   const bool is_mirrored = !data_->open_camera && glm::determinant(glm::dmat3(data_->model.camera.world_from_camera)) > 0;
   auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
   if (!world_from_camera) throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");

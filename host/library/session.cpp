@@ -73,7 +73,7 @@ struct Session::Data {
   }
 
   Questions questions() {
-    if (const auto scene = session.scene_on(0); scene != asked) {  // another one, where the first device is gone
+    if (const auto scene = session.scene_on(0); scene != asked) {  // it changes when the first device is lost
       query.emplace(*scene);
       asked = scene;
     }
@@ -85,9 +85,9 @@ struct Session::Data {
   caplet::Session session;
   std::shared_ptr<DeviceScene> asked;
   std::optional<Query> query;
-  std::uint64_t at;  // the state of the scene that it shows
+  std::uint64_t at;  // the state of the scene in the session
   SessionRuns runs;
-  std::uint64_t tried_shapes = live.flat().shapes;  // that the devices have shown to get right
+  std::uint64_t tried_shapes = live.flat().shapes;  // the shapes that the devices were tested with
 };
 
 Session::Session(const Scene& scene, const Device& device) : Session(scene, std::span(&device, 1)) {}

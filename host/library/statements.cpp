@@ -13,7 +13,7 @@ namespace caplet::v0 {
 
 namespace {
 
-/// One parameter, and of its values those from `first` on, `count` of them; all where `count` is 0.
+/// Converts one parameter: of its values, `count` from `first` on, or all where `count` is 0.
 struct ToStatement {
   StatementParameter& out;
   std::size_t first = 0, count = 0;

@@ -22,7 +22,7 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
 }  // namespace
 
 void Mask::line(const glm::dvec2& from, const glm::dvec2& to, double width) {
-  // Thinner than a pixel: fainter, not thinner.
+  // Lines thinner than a pixel are drawn fainter, not thinner.
   const double strength = std::min(width, 1.0), half = 0.5 * std::max(width, 1.0), reach = half + 1;
   const auto bound = [](double v, int end) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(end))); };
   const glm::dvec2 low = glm::min(from, to) - reach, high = glm::max(from, to) + reach;

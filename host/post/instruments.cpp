@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scale bar, axes, colour bar.
+// Draws scale bar, axes and colour bar.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ double text_size(const Shown& picture) { return std::max(8.0, 0.024 * std::min(p
 double margin(const Shown& picture) { return std::round(1.4 * text_size(picture)); }
 
 std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
-  if (picture.has_alpha()) return {0, 0, 0};  // papers are white
+  if (picture.has_alpha()) return {0, 0, 0};  // a transparent picture is assumed to lie on white paper
   const std::vector<float>& coverage = layers.find("A")->floats;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < coverage.size(); ++i) {
@@ -27,7 +27,7 @@ std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
     sum += 0.2126 * picture.rgb[i][0] + 0.7152 * picture.rgb[i][1] + 0.0722 * picture.rgb[i][2];
     ++count;
   }
-  // The luminance that is as far from black as from white, by the contrast of WCAG 2: sqrt(1.05 * 0.05) - 0.05.
+  // The threshold has equal contrast to black and to white by WCAG 2: sqrt(1.05 * 0.05) - 0.05.
   const bool is_dark = count > 0 && sum / count < 0.179;
   const float ink = is_dark ? 1 : 0;
   return {ink, ink, ink};
@@ -35,7 +35,7 @@ std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
 
 void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink) {
   const double size = text_size(picture), edge = margin(picture), thick = std::max(2.0, std::round(0.22 * size));
-  // A bar that is nearly as wide as the picture has less of a margin, and is whole.
+  // A bar that is nearly as wide as the picture gets a smaller margin, so that it is complete.
   const double right = std::max(picture.width - edge, bar.pixels), bottom = picture.height - edge;
   Mask mask(picture.width, picture.height);
   mask.box({right - bar.pixels, bottom - thick}, {right, bottom});
@@ -59,7 +59,7 @@ void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& i
     const auto part = [&](int of) { return glm::dot(along, glm::normalize(camera[of])); };
     arrows.push_back({axis, length * glm::dvec2(part(0), -part(1)), part(2)});
   }
-  // Within the corner, whichever way they point; what points away is drawn first.
+  // Arrows stay within the corner in any direction; those that point away are drawn first.
   std::ranges::sort(arrows, [](const Arrow& a, const Arrow& b) { return a.depth > b.depth; });
   const double reach = length + 1.2 * size;
   const glm::dvec2 origin(edge + reach, picture.height - edge - reach);

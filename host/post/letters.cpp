@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Letters as strokes: a font of one weight, with no file and no library.
+// A stroke font of one weight, without files or libraries.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -131,7 +131,7 @@ std::vector<glm::dvec2> points_of(std::string_view& text) {
     glm::dvec2 p(0);
     const auto x = std::from_chars(text.data() + 1, end, p.x);
     if (x.ec != std::errc()) {
-      text.remove_prefix(1);  // before the next stroke
+      text.remove_prefix(1);  // blanks before the next stroke
       break;
     }
     const auto y = std::from_chars(x.ptr + 1, end, p.y);
@@ -141,7 +141,7 @@ std::vector<glm::dvec2> points_of(std::string_view& text) {
   return out;
 }
 
-/// A quadratic B-spline by cutting corners (Chaikin 1974), which keeps the ends of an open one.
+/// Evaluates a quadratic B-spline by corner cutting (Chaikin 1974), which keeps the ends of an open one.
 std::vector<glm::dvec2> curve(std::vector<glm::dvec2> points, bool is_closed) {
   for (int round = 0; round < 4; ++round) {
     std::vector<glm::dvec2> cut;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Depth cue and outlines: what the picture's layers tell of depth and objects.
+// Draws depth cue and outlines from the picture's layers of depth and objects.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,9 +13,9 @@ namespace caplet::post {
 
 namespace {
 
-constexpr float kSeen = 0.5f;   // of a pixel: it shows a shape
-constexpr double kJump = 0.03;  // of the depth of what is seen: one part stands before another
-constexpr double kSteeper = 2;  // than what is beside it: a step, no slope
+constexpr float kSeen = 0.5f;   // coverage from which a pixel counts as a shape
+constexpr double kJump = 0.03;  // of the visible depth range: the least step that is outlined
+constexpr double kSteeper = 2;  // times the slope beside it, to tell a step from a slope
 
 class Field {
  public:
@@ -42,7 +42,7 @@ class Field {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// Where between the middles of two neighbours a line runs, from 0 to 1 from the first; below 0: nowhere.
+  /// Returns where a line crosses between the centres of two neighbours, from 0 to 1 from the first; below 0: none.
   double crossing(int x0, int y0, int x1, int y1) const {
     const std::size_t a = index(x0, y0), b = index(x1, y1);
     const bool seen_a = coverage_[a] >= kSeen, seen_b = coverage_[b] >= kSeen;
@@ -53,7 +53,7 @@ class Field {
   }
 
  private:
-  /// The depth `steps` pixels from (x, y), or of the last before what is behind or the picture's edge.
+  /// Returns the depth `steps` pixels from (x, y), or the last one before the background or the picture's edge.
   double depth_along(int x, int y, int dx, int dy, int steps) const {
     double out = double{depth_[index(x, y)]};
     for (int i = 0; i < std::abs(steps); ++i) {
@@ -65,10 +65,10 @@ class Field {
     return out;
   }
 
-  /// Pixels on an edge have depths between those of both sides: the step is taken over three pixels, and stands where it is
+  /// Pixels on an edge have depths between those of both sides, so a step is measured over three pixels and placed where it is
   /// steepest.
   bool is_step(int x, int y, int dx, int dy) const {
-    std::array<double, 6> at{};  // from two before the pair to two behind it
+    std::array<double, 6> at{};  // from two pixels before the pair to two after it
     for (int i = 0; i < 6; ++i) at[static_cast<std::size_t>(i)] = depth_along(x, y, dx, dy, i - 2);
     const auto difference = [&at](std::size_t i, std::size_t j) { return std::abs(at[i] - at[j]); };
     const double step = difference(1, 4), beside = difference(0, 1) + difference(4, 5);
@@ -87,7 +87,7 @@ class Field {
 void draw_depth_cue(Shown& picture, const LayeredImage& layers, double strength) {
   const Field field(layers);
   if (!(field.range() > 0)) return;
-  // What is behind: its own colour where it is seen alone, or what the picture shows there on average.
+  // The background colour is the mean of the uncovered pixels; without any it is black.
   std::array<double, 3> mean{};
   double count = 0;
   for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
@@ -111,7 +111,7 @@ void draw_depth_cue(Shown& picture, const LayeredImage& layers, double strength)
 void draw_outline(Shown& picture, const LayeredImage& layers, double width) {
   const Field field(layers);
   Mask mask(picture.width, picture.height);
-  // In the square between four pixels' middles lines join where they cross its sides (marching squares; Lorensen and Cline 1987).
+  // Lines connect the crossings on the sides of each square of four pixel centres (marching squares; Lorensen and Cline 1987).
   for (int y = 0; y + 1 < field.height(); ++y)
     for (int x = 0; x + 1 < field.width(); ++x) {
       const std::array<double, 4> at = {field.crossing(x, y, x + 1, y), field.crossing(x + 1, y, x + 1, y + 1),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is drawn on a picture when it is rendered: scale bar, axes, colour bar, outlines, depth cue. The film's layers stay.
+// Overlays on rendered pictures: scale bar, axes, colour bar, outlines, depth cue. The film's layers do not change.
 #pragma once
 
 #include <optional>
@@ -17,20 +17,20 @@ namespace caplet::post {
 
 struct Overlays {
   std::optional<ScaleBar> scale_bar;
-  std::optional<double> outline;    // pixels wide
-  std::optional<double> depth_cue;  // of the farthest, 0 to 1: the share of the background in its colour
+  std::optional<double> outline;    // pixels
+  std::optional<double> depth_cue;  // share of the background colour at the greatest depth, 0 to 1
   bool axes = false, color_bar = false;
 
   bool any() const { return scale_bar || outline || depth_cue || axes || color_bar; }
-  /// What the film must have for them.
+  /// Returns the layers that the overlays need.
   Layers layers() const;
 };
 
-/// Throws InputError naming the option of what the scene cannot have drawn on it.
-/// `flags`: what stands before the names, "--" of the program's.
+/// Throws InputError that names the option of an overlay which the scene does not allow. `flags`: the prefix of names, "--" in
+/// the program.
 void check(const Overlays& overlays, const Sight& sight, const std::string& flags);
 
-/// Draws them, once they are checked. `layers`: a picture of the same window with the channels of Overlays::layers().
+/// Draws overlays that were checked. `layers`: a picture of the same window with the channels of Overlays::layers().
 void draw(Shown& picture, const LayeredImage& layers, const Sight& sight, const Overlays& overlays);
 
 }  // namespace caplet::post

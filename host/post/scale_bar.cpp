@@ -19,7 +19,7 @@ namespace caplet::post {
 
 namespace {
 
-constexpr double kMostOfWidth = 0.25;  // of the film, for a bar that no one has asked a length of
+constexpr double kMostOfWidth = 0.25;  // of the film: the limit of an automatic bar
 
 struct Unit {
   double metres;
@@ -44,7 +44,7 @@ std::optional<Unit> unit_named(const std::string& name) {
   return found == units.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The longest of 1, 2 and 5 times a power of ten that is at most `most`.
+/// Returns the longest of 1, 2 and 5 times a power of ten that is at most `most`.
 double round_length(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   for (const double digit : {5.0, 2.0})
@@ -82,7 +82,7 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
   const double footprint = pixel_footprint(scene.camera, scene.film, middle);
   if (!(footprint > 0)) throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");
   const auto own = unit_named(scene.unit);
-  double per_unit = 1;  // scene units in what the bar is told in
+  double per_unit = 1;  // scene units per unit of the label
   std::string label = scene.unit;
   if (!asked.unit.empty()) {
     const auto wanted = unit_named(asked.unit);

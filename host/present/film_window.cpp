@@ -14,7 +14,7 @@ namespace caplet {
 
 namespace {
 
-/// Keeps a crop's place in the picture when the picture's size changes; never empty.
+/// Keeps the relative place of a crop when the picture's size changes; the result is never empty.
 std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& film, int width, int height) {
   const auto scaled = [](int value, int to, int from) {
     return static_cast<int>(std::lround(static_cast<double>(value) * to / from));

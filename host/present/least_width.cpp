@@ -13,7 +13,7 @@ namespace caplet {
 
 namespace {
 
-/// The least stretch of a matrix: its smallest singular value, by power iteration on the inverse of its Gram matrix.
+/// Returns the smallest singular value of a matrix, by power iteration on the inverse of its Gram matrix.
 double least_stretch(const glm::dmat4& m) {
   const glm::dmat3 linear(m), inverse = glm::inverse(glm::transpose(linear) * linear);
   glm::dvec3 v(0.6, 0.64, 0.48);

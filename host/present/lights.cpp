@@ -14,8 +14,8 @@ namespace caplet {
 
 namespace {
 
-/// A round soft light: `radiance` within `radius` of `direction`, falling to 0 over `edge`. Angles in radians; the direction is
-/// in the viewer's axes (right, up, toward the viewer).
+/// A round soft light: `radiance` within `radius` of `direction`, falling to 0 over `edge`. Angles are in radians; the direction
+/// is in the viewer's axes (right, up, toward the viewer).
 struct SoftLight {
   glm::dvec3 direction;
   double radius, edge;
@@ -37,7 +37,7 @@ EnvironmentImage image_of(const char* preset, const glm::dvec3& background, cons
     for (int column = 0; column < image.width; ++column) {
       const double theta = std::numbers::pi * (row + 0.5) / image.height,
                    phi = 2 * std::numbers::pi * (column + 0.5) / image.width;
-      // Light space: z up, x toward the viewer, y to the viewer's right.
+      // Light space has z up, x toward the viewer, y to the viewer's right.
       const glm::dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi));
       glm::dvec3 radiance = background;
       for (const SoftLight& light : lights) {
@@ -50,9 +50,9 @@ EnvironmentImage image_of(const char* preset, const glm::dvec3& background, cons
   return image;
 }
 
-/// Irradiance of a disk of angular radius a at its centre: pi L sin(a)^2. The key gives about 2.8, so a reflectance of 0.6 facing
-/// it shows 0.53 of it, and with fill and background 0.6 to 0.7. All lights lie outside what the camera sees (up to 33 degrees
-/// off its axis in the corners of a 16:9 image).
+/// A disk of angular radius a gives the irradiance pi L sin(a)^2 at its centre. The key gives about 2.8, so a reflectance of 0.6
+/// facing it shows 0.53, and with fill and background 0.6 to 0.7. All lights lie outside the camera's view (up to 33 degrees off
+/// its axis in the corners of a 16:9 image).
 EnvironmentImage studio() {
   return image_of(
       studio_preset, {0.020, 0.024, 0.032},
@@ -61,7 +61,7 @@ EnvironmentImage studio() {
        {from_angles(glm::radians(150.0), glm::radians(58.0)), glm::radians(18.0), glm::radians(8.0), {2.8, 2.9, 3.1}}});
 }
 
-/// A smaller key from further to the side, hardly a fill, and rims from behind on both sides.
+/// It has a smaller key from further to the side, hardly any fill, and rim lights from behind on both sides.
 EnvironmentImage dramatic() {
   return image_of(
       dramatic_preset, {0.004, 0.005, 0.007},

@@ -27,7 +27,7 @@ namespace {
   throw InputError(SourceLocation{flag}, "'" + text + "' " + why);
 }
 
-/// Three numbers between commas; none when it is anything else.
+/// Parses three numbers separated by commas; no value for anything else.
 std::optional<glm::dvec3> three_numbers(std::string_view text) {
   glm::dvec3 out(0);
   for (int i = 0; i < 3; ++i) {
@@ -41,14 +41,14 @@ std::optional<glm::dvec3> three_numbers(std::string_view text) {
   return text.empty() ? std::optional(out) : std::nullopt;
 }
 
-/// As scene files keep it.
+/// Normalises as scene files do.
 glm::dvec3 normalized(const glm::dvec3& v) { return is_unit(glm::length(v)) ? v : v / glm::length(v); }
 
 glm::dvec3 linear(const glm::dvec3& srgb) {
   return {decoded_value({}, srgb.x), decoded_value({}, srgb.y), decoded_value({}, srgb.z)};
 }
 
-/// "#rrggbb".
+/// Parses "#rrggbb".
 std::optional<glm::dvec3> hex_color(std::string_view text) {
   if (text.size() != 7 || text.front() != '#') return std::nullopt;
   glm::dvec3 out(0);
@@ -87,14 +87,14 @@ glm::dvec3 parse_axis(const std::string& text, const std::string& flag) {
 
 glm::dmat3 turned_up(const glm::dvec3& up) {
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), u = glm::normalize(up);
-  // Columns: where x, y and z go.
+  // The columns are the images of x, y and z.
   if (u == y) return glm::dmat3(1);
   if (u == -y) return {x, -y, -z};
   if (u == z) return {x, -z, y};
   if (u == -z) return {x, z, -y};
   if (u == x) return {y, -x, z};
   if (u == -x) return {-y, x, z};
-  // Rodrigues' rotation about u x y.
+  // This is Rodrigues' rotation about u x y.
   const glm::dvec3 v = glm::cross(u, y);
   const glm::dmat3 k(glm::dvec3(0, v.z, -v.y), glm::dvec3(-v.z, 0, v.x), glm::dvec3(v.y, -v.x, 0));
   return glm::dmat3(1) + k + k * k * (1 / (1 + u.y));

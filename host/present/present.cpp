@@ -26,7 +26,7 @@ namespace caplet {
 namespace {
 
 constexpr double kFieldOfView = glm::radians(35.0);  // of the shorter side
-/// Thinner than this part of its middle extent, a scene counts as flat (extents as standard deviations along the principal axes).
+/// A scene is flat if its least extent is below this part of its middle one (standard deviations along the principal axes).
 constexpr double kFlat = 0.35;
 
 // --- What is to be framed ---
@@ -36,8 +36,8 @@ struct Ball {
   double radius;
 };
 
-/// Spheres whose hull holds every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything else. Where
-/// there is nothing, the unit ball, as in bounds_or_unit_of.
+/// Returns spheres whose hull contains every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything
+/// else. Without shapes it is the unit ball, as in bounds_or_unit_of.
 std::vector<Ball> balls_of(const Scene& scene) {
   std::vector<Ball> balls;
   const auto add_corners = [&balls](const Bounds& bounds) {
@@ -110,12 +110,12 @@ Axes axes_of(const std::vector<Ball>& balls) {
   return axes;
 }
 
-/// Right-handed world, so `right` x `up` points back at the viewer.
+/// The world is right-handed, so `right` x `up` points back at the viewer.
 struct View {
   glm::dvec3 right, up, forward;
 };
 
-/// `toward_viewer` need not be of unit length; y is up unless one looks along it, then -z is.
+/// `toward_viewer` may have any length. y is up unless the view is along it; then -z is.
 View view_from(const glm::dvec3& toward_viewer) {
   View view;
   view.forward = -glm::normalize(toward_viewer);
@@ -126,8 +126,8 @@ View view_from(const glm::dvec3& toward_viewer) {
   return view;
 }
 
-/// A view that was asked for: up is y however steep it is; from above, the front's side is below in the image, and from below
-/// above.
+/// Returns a requested view, with y up however steep it is. From above, the front is at the bottom of the image; from below, at
+/// the top.
 View view_asked(const glm::dvec3& toward_viewer) {
   View view;
   view.forward = -glm::normalize(toward_viewer);
@@ -146,7 +146,7 @@ View turned(const View& view, double azimuth, double elevation) {
 
 bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1]; }
 
-/// For scenes without an up: the longer side goes along the image's longer side, a quarter turn where that is clearly better.
+/// For scenes without an up axis: makes a quarter turn where the longer side then fits the image's longer side clearly better.
 View along_image(const View& view, const std::vector<Ball>& balls, double aspect) {
   glm::dvec2 low(1e300), high(-1e300);
   for (const Ball& ball : balls) {
@@ -162,20 +162,20 @@ View along_image(const View& view, const std::vector<Ball>& balls, double aspect
 View choose_view(const std::vector<Ball>& balls) {
   const Axes axes = axes_of(balls);
   const auto facing = [](glm::dvec3 n) {
-    // Seen from the front, from above or from the right, whichever the normal is nearest to.
+    // The viewer is in front, above or at the right, whichever is nearest to the normal.
     const glm::dvec3 size = glm::abs(n);
     const double main = size.z >= size.x && size.z >= size.y ? n.z : (size.y >= size.x ? n.y : n.x);
     return main < 0 ? -n : n;
   };
   if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), glm::radians(10.0), glm::radians(6.0));
-  // A volume: across its widest level direction, three-quarter.
+  // A volume is seen three-quarter, across its widest horizontal direction.
   glm::dvec3 wide(axes.axis[0].x, 0, axes.axis[0].z);
   if (glm::length(wide) < 0.5) wide = {axes.axis[1].x, 0, axes.axis[1].z};
   glm::dvec3 across = glm::length(wide) > 0 ? glm::cross(glm::normalize(wide), glm::dvec3(0, 1, 0)) : glm::dvec3(0, 0, 1);
   return turned(view_from(facing(across)), glm::radians(30.0), glm::radians(18.0));
 }
 
-/// The view of the scene's framing; of balls that lie as in the world.
+/// Returns the view of the scene's framing; the balls are in world space.
 View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
   const Framing& framing = scene.framing;
   const double aspect = static_cast<double>(scene.film.width) / scene.film.height;
@@ -215,7 +215,7 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
   const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - frame_margin);
   const double width = scene.film.width, height = scene.film.height;
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
-  if (!(per_pixel > 0)) per_pixel = 1 / width;  // a point
+  if (!(per_pixel > 0)) per_pixel = 1 / width;  // a single point
   const double away = 2 * std::max({half.x, half.y, half.z});
   set_camera(scene, view, middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward, OrthographicProjection{});
   const double x = 0.5 * per_pixel * width, y = 0.5 * per_pixel * height;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One camera as two, for a pair of eyes.
+// Makes two cameras, for a pair of eyes, from one.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ enum class Eye { left, right };
 struct Stereo {
   double separation = 0;  // of the eyes, in scene units; above 0
   std::optional<double>
-      convergence;  // what is so far before the camera is at one place in both views; none: what is infinitely far
+      convergence;  // points at this distance before the camera coincide in both views; none: points at infinity coincide
 };
 
-/// The camera of one eye: half the separation to the left or right of the scene's own, looking the same way. The screen window is
-/// moved for convergence and the axis stays (off-axis cameras): there are no keystones, and no vertical parallax.
+/// Returns the camera of one eye: half the separation to the left or right of the scene's own, in the same direction. The screen
+/// window is shifted for convergence and the axis stays (off-axis cameras), which avoids keystones and vertical parallax.
 Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye);
 
 }  // namespace caplet

@@ -16,9 +16,9 @@ namespace caplet {
 
 namespace {
 
-constexpr int kSides = 64;  // of the rims that are to be seen; a polygon around the circle
+constexpr int kSides = 64;  // of the polygon that encloses the circle of a rim
 
-/// What turns: the least cylinder around the axis.
+/// The swept volume: the least cylinder around the axis.
 struct Swept {
   double radius = 0, low = 1e300, high = -1e300;
   glm::dvec3 axis, middle;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A camera that goes round a scene, once.
+// A camera that goes once around a scene.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace caplet {
 
-/// The axis goes through the middle of the scene's bounds, along what is up: of scenes that know it the axis of the world nearest
-/// to the camera's own up, else that itself. An automatic camera is moved back so far that it sees all of what turns, in every
-/// frame (perspective alone); studio light, which belongs to it, goes round with it, other lights stay.
+/// The axis goes through the centre of the scene's bounds along the up axis: the world axis nearest to the camera's up, or the
+/// camera's up for scenes without an up axis. An automatic camera moves back until it sees all of the turning scene in every
+/// frame (perspective only). Studio light belongs to it and turns with it; other lights stay.
 class Turntable {
  public:
-  /// The scene has shapes.
+  /// The scene must have shapes.
   explicit Turntable(const Scene& scene);
 
-  /// Frame `number` from 0 of `count`: the camera has gone so much of one turn to its right. Of the first, the scene's camera but
-  /// for its distance.
+  /// Returns the camera of frame `number`, from 0, of `count`: it has gone this part of a turn to its right. Frame 0 has the
+  /// scene's camera except for its distance.
   Camera camera(std::uint32_t number, std::uint32_t count) const;
-  /// Whether `light` goes with the camera.
+  /// Returns whether `light` turns with the camera.
   bool turns(const Light& light) const;
-  /// The light as it then stands.
+  /// Returns the light of that frame.
   Light turned(const Light& light, std::uint32_t number, std::uint32_t count) const;
 
  private:

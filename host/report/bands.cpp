@@ -8,7 +8,7 @@ namespace caplet::report {
 
 namespace {
 
-/// rows(first, count): these rows of the film, as a film.
+/// Calls rows(first, count), which returns these rows of the film as a film.
 template <class Rows>
 BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers, NotFinite& not_finite, Rows rows) {
   BandedImage out;

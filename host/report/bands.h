@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A render's picture, developed a few rows at a time from the device's film: neither film nor picture is in memory as a whole.
+// Develops a render's picture in bands of rows from the device's film, so that neither film nor picture is in memory as a whole.
 #pragma once
 
 #include "film/develop.h"
@@ -11,9 +11,9 @@
 
 namespace caplet::report {
 
-/// develop's layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `scene` and `not_finite`.
+/// Develops the layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `scene`, `not_finite`.
 BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite);
-/// The same of a film in memory.
+/// Does the same for a film in memory.
 BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
 }  // namespace caplet::report

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A device as `devices --json` and `doctor --json` print it.
+// Describes a device for `devices --json` and `doctor --json`.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using glm::dvec3;
 
-/// The double that prints as the float does.
+/// Returns the double that prints as the float does.
 double as_printed(float value) {
   const std::string text = fmt::format("{}", value);
   double out = value;
@@ -28,7 +28,7 @@ double as_printed(float value) {
 
 Json to_json(const float (&v)[3]) { return Json::array({as_printed(v[0]), as_printed(v[1]), as_printed(v[2])}); }
 
-/// A name as a string, a number where there is no name.
+/// Returns a name as a string, or the number if there is no name.
 Json label(const std::string& name, std::uint32_t number) { return name.empty() ? Json(number) : Json(name); }
 
 Json to_json(const PickRecord& p, const Scene& scene) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What `pick` tells of one ray: for people and for machines (docs/pick.md).
+// Reports of `pick` on one ray, for people and for programs (docs/pick.md).
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace caplet::report {
 
-/// A crossing by the witness (host/reference).
+/// A crossing found by the witness (host/reference).
 struct ReferenceCrossing {
   double t = 0;
-  std::string name;          // of the shape
+  std::string name;          // the shape's name
   std::uint32_t object = 0;  // number in the object-id layer
   std::uint32_t primitive = 0, surface = 0, material = 0;
   bool entering = false;
@@ -28,12 +28,12 @@ struct PickReport {
   std::optional<std::array<int, 2>> pixel;
   RayRecord ray{};
   std::string device;
-  bool all = false;                   // all crossings were asked for, not the nearest alone
+  bool all = false;                   // all crossings were requested, not only the nearest
   std::vector<PickRecord> crossings;  // in order
   std::optional<std::vector<ReferenceCrossing>> reference;
 };
 
-/// What the witness finds for the same ray, as the device has it in floats. Time and memory grow with the primitives of the
+/// Returns the witness's crossings of the same ray, in the device's floats. Time and memory grow with the primitives of the
 /// scene.
 std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all);
 

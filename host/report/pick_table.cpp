@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows as text, made in parallel, in order.
+/// Makes rows of text in parallel and keeps their order.
 template <class MakeRow>
 std::vector<std::string> made_in_slices(std::span<const PickRow> rows, const MakeRow& make_row) {
   constexpr std::size_t slice = 4096;
@@ -33,7 +33,7 @@ std::vector<std::string> made_in_slices(std::span<const PickRow> rows, const Mak
   return out;
 }
 
-/// RFC 4180: in quotes where commas, quotes or line breaks would split it.
+/// RFC 4180 requires quotes around text that contains commas, quotes or line breaks.
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -78,7 +78,7 @@ class CsvTable : public PickTable {
   std::ofstream file_;
 };
 
-/// Characters of the longest label that a table of this scene may hold.
+/// Returns the length of the longest label in a table of this scene.
 std::size_t longest_object_label(const Scene& scene) {
   std::size_t out = std::to_string(scene.shapes.size() + scene.instances.size()).size();
   for (const Shape& shape : scene.shapes) out = std::max(out, unicode_length(shape.name));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crossings of many rays as a table: .csv or .npy (docs/pick.md).
+// Writes crossings of many rays as a table: .csv or .npy (docs/pick.md).
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 namespace caplet::report {
 
 struct PickRow {
-  std::uint64_t ray = 0;  // its number in the list, from 0
+  std::uint64_t ray = 0;  // index in the list, from 0
   PickRecord pick;
 };
 
@@ -29,12 +29,12 @@ class PickTable {
 
 enum class TableFormat { csv, npy };
 
-/// The format by the extension; CSV for a stream (is_stream) that has none; no value when unknown.
+/// Returns the format by the extension; CSV for a stream (is_stream) without one; no value when unknown.
 std::optional<TableFormat> table_format(const std::filesystem::path& path);
-/// Throws InputError naming `flag` when there is no format for it.
+/// Throws InputError that names `flag` when there is no format for it.
 void check_table_format(const std::filesystem::path& path, const std::string& flag);
 
-/// Creates the file; `name` is what messages call it. Throws RunError, as the table's members do, when it cannot be written.
+/// Creates the file; messages call it `name`. Throws RunError, as the table's members do, when it cannot be written.
 std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format, const Scene& scene,
                                              const std::filesystem::path& name);
 

@@ -51,7 +51,7 @@ std::vector<std::string> names_of(Layers layers) {
   return out;
 }
 
-/// A preview as it comes, band after band.
+/// A preview that is made band after band.
 class Preview {
  public:
   explicit Preview(const Finish& finish) : finish_(finish), looked_at_(names_of(finish.layers)) {}

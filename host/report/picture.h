@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A render's picture as files: what is noted in it, and the picture with its preview.
+// Writes a render's picture and preview as files, with their metadata.
 #pragma once
 
 #include <filesystem>
@@ -17,23 +17,23 @@
 
 namespace caplet::report {
 
-/// Attributes of a picture (docs/output.md). `scene_file` and `command`: how the scene was named, and what made the picture (a
-/// command line, a program's name).
+/// Returns the attributes of a picture (docs/output.md). `scene_file` and `command`: the name of the scene, and what made the
+/// picture (a command line or a program's name).
 std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
                                                     const RenderResult& result);
 
-/// Returns a property of the devices that have made the picture, with commas.
+/// Returns a property of the devices that rendered the picture, separated by commas.
 std::string of_devices(const RenderResult& result, std::string DeviceWork::*what);
 
-/// What is done to a whole preview before it is written.
+/// The last step of a preview before it is written.
 struct Finish {
-  Layers layers = Layers::none();  // that it looks at
-  Layers written = Layers::all();  // channels of others are not written
+  Layers layers = Layers::none();  // those that it needs
+  Layers written = Layers::all();  // channels of other layers are not written
   std::function<void(Shown& picture, const LayeredImage& layers)> draw;
 };
 
-/// The picture and its preview, developed once, band by band. An empty path: not written. `channels`: of 32 bits;
-/// `render_seconds` weighs how long packing may take. Throws RunError.
+/// Writes the picture and its preview, developed once, in bands. An empty path is not written. `channels`: the number of 32-bit
+/// channels; `render_seconds` limits the time of compression. Throws RunError.
 void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& image,
                     std::size_t channels, double render_seconds, const Finish& finish = {});
 

@@ -20,7 +20,7 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
 
 using Counted = std::set<const void*>;
 
-/// Operands of csg shapes may be shared: each is counted once.
+/// Operands that csg shapes share are counted once.
 std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   std::uint64_t out = sizeof(Shape);
   if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))

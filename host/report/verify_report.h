@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What `caplet verify` prints.
+// Reports of `caplet verify`.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace caplet::report {
 
-/// Tables by shape kind, of one device or of several beside each other, and the verdict.
+/// Returns tables by shape kind, of one or several devices side by side, and the verdict.
 std::string plain_text(const verify::Report& report, const std::string& scene);
-/// rays, disagreements, seconds; `kinds`: an object a shape kind, of all devices together; `devices`: the same of each.
+/// Returns rays, disagreements, seconds; `kinds`: an object per shape kind, of all devices together; `devices`: the same of each.
 std::string json_text(const verify::Report& report, const std::string& scene, const verify::Options& options);
 
 }  // namespace caplet::report

@@ -16,7 +16,7 @@ namespace {
 
 std::uint32_t count_of(std::size_t count) { return narrow<std::uint32_t>(count); }
 
-/// Moves the indices that a texture's operands are.
+/// Shifts the indices of the textures that a texture uses as operands.
 struct MoveOperands : IgnoresFields {
   std::uint32_t by = 0;
   void operand(const Field&, TextureOperand& operand) const {
@@ -98,7 +98,7 @@ class Appending {
       for (std::uint32_t& one : capsules->materials) one = out_.materials.at(one);
     if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
       for (std::shared_ptr<const Shape>& operand : csg->operands) {
-        auto own = std::make_shared<Shape>(*operand);  // it may be an operand elsewhere too
+        auto own = std::make_shared<Shape>(*operand);  // the operand may be shared with another csg
         move(*own);
         operand = std::move(own);
       }

@@ -9,13 +9,13 @@
 
 namespace caplet {
 
-/// What stands behind the shapes of a picture in place of the lights at infinity, which camera rays then do not see (all other
-/// rays do). It is put under the picture after the render, by its coverage, and is as bright in a preview as it is said to be.
+/// The background of the picture. Camera rays see it in place of the lights at infinity; all other rays see the lights. It is
+/// composited under the render by coverage, and a preview shows it at the brightness that is given here.
 struct Backdrop {
   enum class Kind { transparent, color, image } kind = Kind::transparent;
-  glm::dvec3 color{0};  // displayed, linear sRGB: 1 is white
+  glm::dvec3 color{0};  // as displayed, linear sRGB: 1 is white
   std::shared_ptr<const EnvironmentImage>
-      image;  // displayed, linear; it covers the whole picture, cut off evenly where it is longer
+      image;  // as displayed, linear; it covers the whole picture, and the longer side is cropped evenly
 };
 
 }  // namespace caplet

@@ -7,7 +7,7 @@
 
 namespace caplet {
 
-/// A box along the axes; as it begins, around nothing.
+/// An axis-aligned box. It is empty by default.
 struct Bounds {
   glm::dvec3 min{1e300}, max{-1e300};
   bool empty() const { return !(min.x <= max.x); }

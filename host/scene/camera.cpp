@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Coordinates beyond the square's edges, at most one square away, as the ones within it that the fold leads to.
+/// Folds coordinates that lie beyond the square's edges, at most one square away, back into the square.
 glm::dvec2 folded(glm::dvec2 uv) {
   for (const int k : {0, 1}) {
     if (uv[k] >= 0 && uv[k] <= 1) continue;
@@ -34,7 +34,7 @@ glm::dvec3 spherical_direction(const SphericalProjection& of, const glm::dvec2& 
     const double theta = pi * uv.y, phi = 2 * pi * uv.x;
     d = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
   }
-  return {d.x, d.z, d.y};  // the maps have z up, cameras y
+  return {d.x, d.z, d.y};  // z is up in the maps, y in cameras
 }
 
 glm::dvec2 spherical_place(const SphericalProjection& of, const glm::dvec3& direction) {
@@ -109,7 +109,7 @@ double pixel_footprint(const Camera& camera, const FilmSettings& film, const glm
 }
 
 glm::dvec2 square_from_sphere(const glm::dvec3& d) {
-  // 1 - |z| by the other two coordinates, which does not cancel near the poles.
+  // This is 1 - |z|, computed from the other two coordinates to avoid cancellation near the poles.
   const double r = std::sqrt((d.x * d.x + d.y * d.y) / (1 + std::abs(d.z)));
   const double b = r * std::atan2(std::abs(d.y), std::abs(d.x)) * 2 / pi, a = r - b;
   return {0.5 * (std::copysign(d.z < 0 ? 1 - b : a, d.x) + 1), 0.5 * (std::copysign(d.z < 0 ? 1 - a : b, d.y) + 1)};

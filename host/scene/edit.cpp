@@ -26,7 +26,7 @@ const CapsulesShape& capsules_of(const Shape& shape) {
   return *capsules;
 }
 
-/// Throws what validate() says of a scene with nothing else in it.
+/// Throws the errors that validate() finds in `scene`, which contains only the edited thing.
 void check_alone(Scene scene, const Scene& of) {
   scene.source = of.source;
   if (scene.materials.empty()) scene.materials.emplace_back();
@@ -35,14 +35,14 @@ void check_alone(Scene scene, const Scene& of) {
   diagnostics.finish();
 }
 
-/// What shapes refer to.
+/// Copies everything that shapes refer to.
 void add_parts(Scene& to, const Scene& from) {
   to.textures = from.textures;
   to.materials = from.materials;
   to.media = from.media;
 }
 
-/// A scene of this shape alone, in the place that it has: an object's in all the object's instances.
+/// Returns a scene of this shape alone, where it lies; a shape of an object appears in all instances of the object.
 Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   Scene out;
   if (!place.object) {
@@ -93,7 +93,7 @@ void check(const Scene& scene, const InstanceEdit& edit) {
   Bounds box;
   for (const Shape& shape : scene.objects[instance.object].shapes) box.extend(bounds_of(shape));
   if (box.empty()) box = {glm::dvec3(0), glm::dvec3(0)};
-  // What has the object's bounds does for it.
+  // A capsule along the diagonal has the object's bounds, which is all that the check needs.
   Shape diagonal;
   diagonal.geometry = CapsulesShape{{glm::vec3(box.min)}, {glm::vec3(box.max)}, {0}, {}, {}};
   Scene one;

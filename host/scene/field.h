@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a model says of its members: the `fields` function of each hands them to a visitor, each with a Field (materials.def,
-// textures.def, lights.def, media.def). Readers, writers, checks, forms and lists of parameters all go by these calls.
+// Parameters of models. The `fields` function of each model passes its members to a visitor, each with a Field (materials.def,
+// textures.def, lights.def, media.def). Readers, writers, checks, forms and lists of parameters all use these calls.
 #pragma once
 
 #include <limits>
@@ -12,8 +12,8 @@ namespace caplet {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 inline constexpr double most_integer = 2147483647;
 
-/// A parameter. name: what scene files call it. doc: what it is, for people, as a phrase without a stop. low, high: the range of
-/// a number, both ends included (above_low: but for `low` itself). unit: of a number, as people write it.
+/// A parameter. name: its name in scene files. doc: its description, a phrase without a full stop. low, high: the range of a
+/// number, both ends included (above_low: `low` is excluded). unit: the unit of a number, as people write it.
 struct Field {
   const char* name;
   const char* doc;
@@ -22,7 +22,7 @@ struct Field {
   bool above_low = false;
 };
 
-/// GGX's two roughnesses, and what scene files call them before any remapping.
+/// The names of GGX's two roughnesses in scene files, before any remapping.
 struct RoughnessFields {
   Field alpha_u, alpha_v;
   const char *roughness, *uroughness, *vroughness;
@@ -36,7 +36,7 @@ struct PigmentFields {
   Field sigma_a, reflectance;
 };
 
-/// Ignores every call of every family: a base of visitors that look at some.
+/// Ignores every call of every family. Visitors that need only some calls derive from it.
 struct IgnoresFields {
   template <class Value>
   void albedo(const Field&, const Value&) const {}
@@ -94,7 +94,7 @@ struct IgnoresFields {
   void sky(const Value&) const {}
 };
 
-/// A base that calls Visitor's `number`, `albedo` and `unbounded` for what is made of such.
+/// Calls the visitor's `number`, `albedo` and `unbounded` for the parts of composite parameters.
 template <class Visitor>
 struct CompositesInParts {
   template <class Value>

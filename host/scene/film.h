@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The image that is made, and the filter of its pixels.
+// The film: its image and the filter of its pixels.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace caplet {
 
-/// Names in scene files, and the radii that pbrt-v4 gives them, by PixelFilter::Kind.
+/// Lists the names in scene files and pbrt-v4's default radii, in the order of PixelFilter::Kind.
 inline constexpr std::array filter_names = {"box", "triangle", "gaussian", "mitchell", "sinc"};
 inline constexpr std::array filter_radii = {0.5, 2.0, 1.5, 2.0, 4.0};
 
@@ -49,11 +49,11 @@ struct FilmSettings {
   std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
   std::string filename;                    // as the scene file states it
   double iso = 100, exposure_time = 1;     // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
-  double max_component_value = 0;          // of a sample's exposed XYZ; 0: none
-  double white_balance = 0;                // kelvin: this daylight becomes the colour space's white; 0: nothing does
+  double max_component_value = 0;          // largest exposed XYZ value of a sample; 0: unlimited
+  double white_balance = 0;                // kelvin: this daylight maps to the colour space's white; 0: no balancing
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
-  double least_width = 0;  // pixels: capsules and spheres are drawn no thinner (present/least_width.h); 0: as they are
+  double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick (present/least_width.h); 0: no minimum
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {

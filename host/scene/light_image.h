@@ -10,18 +10,18 @@
 
 namespace caplet {
 
-/// An image of a light. Pixels are linear RGB in `space`, row-major from the top, 3 floats each.
+/// An image that a light uses. Pixels are linear RGB in `space`, row-major from the top, 3 floats each.
 struct EnvironmentImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
   ColorSpace space = ColorSpace::srgb;
-  // As directions: square equal-area octahedral (pbrt-v4); otherwise latitude-longitude, 2:1, z up
+  // True: the map is square and equal-area octahedral (pbrt-v4). False: it is latitude-longitude, 2:1, with z up.
   bool equal_area = false;
-  std::string file = {};    // that it was read from
-  std::string preset = {};  // or what scene files call it: an image of Caplet's own
+  std::string file = {};    // the file that it was read from
+  std::string preset = {};  // or the name, in scene files, of an image that Caplet makes
 };
 
-/// What a light's data have of an image: its colours, or the means of their channels.
+/// What a light's device data take from an image: its colours, or the mean of the channels.
 struct LightPicture {
   std::shared_ptr<const EnvironmentImage> image;
   bool is_grey = false;

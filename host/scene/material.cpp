@@ -10,7 +10,7 @@ namespace caplet {
 
 namespace {
 
-/// The shortest text that is this number.
+/// Returns the shortest text that parses to this number.
 std::string text_of(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What surfaces are made of (materials.def).
+// Materials of surfaces (materials.def).
 #pragma once
 
 #include <cstdint>
@@ -29,21 +29,21 @@ struct Material {
       model;
   std::string name;
   SourceLocation where;
-  std::vector<TexturedField> textures = {};  // what of the model is replaced by textures
-  // What bends the surface's normal, by index in Scene::textures: heights along it (floats), or a NormalmapTexture; not both.
+  std::vector<TexturedField> textures = {};  // fields that textures replace
+  // Indices into Scene::textures; at most one is set: heights along the normal (floats), or a NormalmapTexture.
   std::optional<std::uint32_t> displacement = {}, normalmap = {};
 };
 
-/// What is said of a number that is not within these: "must lie between", or "must be from ... up" where `high` is infinite.
+/// Describes a range in an error message: "must lie between", or "must be from ... up" where `high` is infinite.
 std::string must_lie_within(double low, double high);
-/// The same of a field, whose range may be open below.
+/// Describes the range of a field, which may exclude `low`.
 std::string must_lie_within(const Field& field);
-/// Whether a value lies within the range of a field; none that is not a number does.
+/// Returns whether a value lies within the range of a field; NaN does not.
 inline bool is_within(const Field& field, double value) {
   return (field.above_low ? value > field.low : value >= field.low) && value <= field.high;
 }
 
-/// The texture that a field is, by its index in Scene::textures.
+/// Returns the index into Scene::textures of the texture that replaces the field.
 inline std::optional<std::uint32_t> texture_of(const Material& material, std::string_view field) {
   for (const TexturedField& one : material.textures)
     if (one.field == field) return one.texture;

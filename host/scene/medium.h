@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What fills space (media.def), and which side of a surface it is on.
+// Participating media (media.def), and the media on both sides of a surface.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,15 @@ struct Medium {
       model;
   std::string name;
   SourceLocation where;
-  /// What scatters within counts, together with the surface that light came in through, as one against the integrator's maxdepth.
+  /// Scattering within, together with the boundary that the light entered through, counts as one event for maxdepth.
   bool subsurface = false;
 };
 
-/// The media on both sides of a surface, by index in Scene::media: inside is where the normal points away from.
+/// The media on both sides of a surface, as indices into Scene::media. The normal points away from the inside.
 struct MediumSides {
   std::optional<std::uint32_t> inside, outside;
   bool operator==(const MediumSides&) const = default;
-  /// Whether anything changes across it.
+  /// Returns whether the medium changes across the surface.
   bool differ() const { return inside != outside; }
 };
 

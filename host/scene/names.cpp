@@ -20,7 +20,7 @@ void make_valid(Shape& shape) {
   make_valid(shape.name);
   if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
     for (std::shared_ptr<const Shape>& operand : csg->operands) {
-      auto own = std::make_shared<Shape>(*operand);  // it may be an operand elsewhere too
+      auto own = std::make_shared<Shape>(*operand);  // the operand may be shared with another csg
       make_valid(*own);
       if (own->name != operand->name || std::holds_alternative<CsgShape>(own->geometry)) operand = std::move(own);
     }

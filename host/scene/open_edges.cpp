@@ -14,7 +14,7 @@ namespace {
 
 using Corner = std::array<float, 3>;
 
-/// Edges that an odd number of faces have, and all; corners in the order around each face.
+/// Counts all edges and those that belong to an odd number of faces. Corners are given in order around each face.
 class Edges {
  public:
   void add(std::span<const glm::vec3> around) {
@@ -36,7 +36,7 @@ class Edges {
   std::map<std::pair<Corner, Corner>, int> faces_;
 };
 
-/// The exclusive or of a hash of each edge of each face: an edge that an even number of faces have leaves nothing of its own.
+/// Keeps the exclusive or of a hash of each edge of each face. An edge of an even number of faces cancels itself.
 class EdgeParity {
  public:
   void add(std::span<const glm::vec3> around) {
@@ -65,7 +65,7 @@ class EdgeParity {
   bool is_empty_ = true;
 };
 
-/// Adds the faces of a mesh to `edges`, the corners of each in the order around it.
+/// Adds the faces of a mesh to `edges`, the corners of each in order around it.
 template <class To>
 void add_faces(const Shape& shape, To& edges) {
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))

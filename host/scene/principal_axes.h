@@ -7,13 +7,13 @@
 
 namespace caplet {
 
-/// Eigenvalues of a symmetric matrix, in no order, and their unit vectors, the columns of a rotation.
+/// The eigenvalues of a symmetric matrix, in no order, and their unit eigenvectors as the columns of a rotation.
 struct PrincipalAxes {
   glm::dvec3 values{0};
   glm::dmat3 world_from_axes{1};
 };
 
-/// By cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5).
+/// Uses cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5).
 PrincipalAxes principal_axes(glm::dmat3 symmetric);
 
 }  // namespace caplet

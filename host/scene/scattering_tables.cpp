@@ -9,7 +9,7 @@ namespace caplet {
 
 namespace {
 
-/// Coefficients of red, green and blue light, 1 / mm; sigma_s is reduced: (1 - g) times that of scattering.
+/// Coefficients for red, green and blue, 1 / mm. sigma_s is reduced: (1 - g) times the scattering coefficient.
 struct Measured {
   std::string_view name;
   std::array<double, 3> sigma_s, sigma_a;

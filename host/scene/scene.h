@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The model of a scene, in double precision, as its file states it: what importers produce and everything else starts from.
-// Lengths are in scene units, angles in radians, matrices map column vectors and are named destination_from_source.
+// The scene model in double precision, as its file states it. Importers produce it, and all other parts read it. Lengths are in
+// scene units, angles in radians; matrices map column vectors and are named destination_from_source.
 #pragma once
 
 #include <array>
@@ -69,14 +69,19 @@ struct SamplerSettings {
   }
 };
 
+<<<<<<< HEAD
 /// Names in scene files, by SamplerSettings::Kind.
 inline constexpr std::array sampler_names = {
 #define SAMPLER(name) #name,
 #include "shared/samplers.def"
 #undef SAMPLER
 };
+=======
+/// Lists the names in scene files, in the order of SamplerSettings::Kind.
+inline constexpr std::array sampler_names = {"sobol", "independent", "stratified", "zsobol"};
+>>>>>>> words2
 
-/// Strata along x and y whose product is samples_per_pixel: the sampler's own, or else those nearest to a square.
+/// Returns strata along x and y whose product is samples_per_pixel: the sampler's own, or else those nearest to a square.
 std::array<int, 2> strata_of(const SamplerSettings& sampler);
 
 struct IntegratorSettings {
@@ -100,17 +105,17 @@ struct IntegratorSettings {
   }
 };
 
-/// Names in scene files, by IntegratorSettings::Kind.
+/// Lists the names in scene files, in the order of IntegratorSettings::Kind.
 inline constexpr std::array integrator_names = {"path", "ambientocclusion", "simplepath", "randomwalk"};
 
-/// How the automatic camera looks, where it is told.
+/// Settings of the automatic camera.
 struct Framing {
   std::optional<glm::dvec3> toward_viewer;  // world, of any length
   std::optional<glm::dvec3> up;             // world, unit; none: y
   bool is_orthographic = false;
 };
 
-/// What colours tell of numbers: those of a colour map, at even steps from `low` to `high`.
+/// The legend of a colour map: its colours at even steps from `low` to `high`.
 struct Legend {
   std::string title, unit;
   double low = 0, high = 1;
@@ -133,21 +138,21 @@ struct Scene {
   std::string source;             // the file it came from
   bool automatic_camera = false;  // the camera was framed to the shapes (present/present.h), for the film's size as it was
   bool has_no_up = false;         // no direction is up (a neuron): the automatic camera may turn the scene within the image
-  Framing framing;                // of the automatic camera
-  glm::dmat3 world_from_file{1};  // a rotation: its axes are those that the file names
-  std::string unit;               // of lengths, as people write it ("µm"); empty: not known
-  std::optional<Legend> legend;   // of its colours
+  Framing framing;                // settings of the automatic camera
+  glm::dmat3 world_from_file{1};  // a rotation: its axes are those of the file
+  std::string unit;               // the unit of lengths, as people write it ("µm"); empty: unknown
+  std::optional<Legend> legend;   // the legend of its colours
 };
 
-/// Of all shapes where they lie, instances among them.
+/// Returns the bounds of all shapes in the world, including instances.
 Bounds bounds_of(const Scene& scene);
 
-/// Number of primitives per kind (the names of shapes as scene files know them; tapered capsules count as "capsule", patches of a
-/// bilinear mesh as "bilinear_patch"), instances expanded.
+/// Counts primitives by kind, with instances expanded. Kinds are the names of shapes in scene files; tapered capsules count as
+/// "capsule", patches of a bilinear mesh as "bilinear_patch".
 std::map<std::string, std::uint64_t> count_primitives(const Scene& scene);
 
 /// Reports everything that cannot be rendered: non-finite numbers, non-positive sizes, singular transforms, indices out of range,
-/// an image larger than 2^28 pixels. Places are those of the statements.
+/// an image larger than 2^28 pixels. Errors name the places of the statements.
 void validate(const Scene& scene, Diagnostics& diagnostics);
 
 }  // namespace caplet

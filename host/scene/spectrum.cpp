@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The named spectra: pbrt-v4's, and additions of ours under names of their own (docs/materials.md lists them with their sources).
+// The named spectra: pbrt-v4's, and additions under names of their own (docs/materials.md lists them with their sources).
 #include "scene/spectrum.h"
 
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int first_nm = 360, last_nm = 830;
 
-/// Indices of refraction `n_squared(micrometres^2)` at 1 nm; constant outside [low, high] nm, where the formula was not fitted.
+/// Samples an index of refraction `n_squared(micrometres^2)` at 1 nm; constant outside the fitted range [low, high] nm.
 SampledSpectrum dispersion(const std::function<double(double)>& n_squared, double low = first_nm, double high = last_nm) {
   SampledSpectrum out;
   for (int nm = first_nm; nm <= last_nm; ++nm) {
@@ -38,7 +38,7 @@ SampledSpectrum sellmeier(const std::vector<double>& terms) {
   });
 }
 
-/// Column `index` of rows of `width` numbers that begin with the wavelength.
+/// Takes column `index` from rows of `width` numbers that begin with the wavelength.
 SampledSpectrum column(std::span<const double> rows, std::size_t width, std::size_t index) {
   SampledSpectrum out;
   for (std::size_t i = 0; i + width <= rows.size(); i += width) {
@@ -48,7 +48,7 @@ SampledSpectrum column(std::span<const double> rows, std::size_t width, std::siz
   return out;
 }
 
-/// Who measured the metals of metal_tables.
+/// Names the authors of the measurements in metal_tables.
 std::string source_of(const std::string& metal) {
   if (metal == "Al") return "Rakic";
   if (metal == "CuZn") return "Querry";
@@ -65,7 +65,7 @@ std::map<std::string, Spectrum> make_all() {
     all[table.name] = spectrum;
   }
   for (const MetalTable& table : metal_tables())
-    // A metal that pbrt does not know has the short name as well.
+    // Each metal also has its short name; pbrt's tables, added below, replace those that pbrt defines.
     for (const std::string& name :
          {std::string("metal-") + table.name, "metal-" + (table.name + ("-" + source_of(table.name)))}) {
       all[name + "-eta"] = column(table.rows, 3, 1);
@@ -99,7 +99,7 @@ std::map<std::string, Spectrum> make_all() {
   all["water"] = sellmeier({5.684027565e-1, 5.101829712e-3, 1.726177391e-1, 1.821153936e-2, 2.086189578e-2, 2.620722293e-2,
                             1.130748688e-1, 1.069792721e1});
 
-  // What pbrt names is pbrt's, whatever else has the name.
+  // pbrt's tables take precedence over all others of the same name.
   for (const NamedTable& table : pbrt_tables()) all[table.name] = column(table.rows, 2, 1);
   return all;
 }

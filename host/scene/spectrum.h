@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Spectra as a scene file states them; what they become on a device is decided in host/lower.
+// Spectra as a scene file states them. host/lower decides how they are stored on a device.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@ namespace caplet {
 
 /// pbrt's RGB colour spaces.
 enum class ColorSpace { srgb, dci_p3, rec2020, aces2065_1 };
-/// Names in scene files, by ColorSpace.
+/// Lists the names in scene files, in the order of ColorSpace.
 inline constexpr std::array color_space_names = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 
 struct ConstantSpectrum {
   double value = 0;
 };
-/// RGB in a colour space. Whether it is a reflectance (0..1), an unbounded positive quantity (eta, k) or an illuminant follows
-/// from where it is used.
+/// RGB in a colour space. The place where it is used decides whether it is a reflectance (0..1), an unbounded positive quantity
+/// (eta, k) or an illuminant.
 struct RgbSpectrum {
   glm::dvec3 rgb{0};
   ColorSpace space = ColorSpace::srgb;
@@ -39,10 +39,10 @@ struct SampledSpectrum {
 
 using Spectrum = std::variant<ConstantSpectrum, RgbSpectrum, BlackbodySpectrum, SampledSpectrum>;
 
-/// The spectrum behind one of pbrt-v4's names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...), which is pbrt-v4's own table, or
-/// of our additions ("metal-Ag-Johnson-eta", "glass-BK7-Schott", "water"...); no value if unknown.
+/// Returns pbrt-v4's table for one of its names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...), or one of our additions
+/// ("metal-Ag-Johnson-eta", "glass-BK7-Schott", "water"...). Unknown names have no value.
 std::optional<Spectrum> named_spectrum(const std::string& name);
-/// All names that named_spectrum knows, sorted.
+/// Lists all names that named_spectrum knows, sorted.
 std::vector<std::string> named_spectrum_names();
 
 }  // namespace caplet

@@ -23,11 +23,11 @@ double fresnel(double cosine, double eta) {
 
 constexpr double pi = std::numbers::pi;
 
-/// A quadrature: places and weights.
+/// A quadrature: points and weights.
 struct Nodes {
   std::vector<double> at, weight;
 
-  /// Gauss and Legendre's of n places in a stretch.
+  /// Adds n Gauss-Legendre points over an interval.
   void add(double low, double high, int n) {
     for (int i = 0; i < n; ++i) {
       double x = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
@@ -43,11 +43,11 @@ struct Nodes {
   }
 };
 
-/// Half of space that scatters evenly, behind a smooth boundary of relative index eta.
+/// A half-space that scatters isotropically, behind a smooth boundary of relative index eta.
 class HalfOfSpace {
  public:
   explicit HalfOfSpace(double eta) {
-    // Light from within is reflected as a whole below the critical cosine.
+    // Light from within is totally reflected below the critical cosine.
     const double critical = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : 0;
     if (critical > 0) mu_.add(0, critical, 20);
     mu_.add(critical, 1, 24);
@@ -55,12 +55,12 @@ class HalfOfSpace {
     theta_.add(0, 1, 64);
   }
 
-  /// The part of even light, of what comes in, that goes out again. `albedo`: of a scattering, from 0 to 1.
+  /// Returns the part of diffuse light, once inside, that leaves again. `albedo`: of single scattering, from 0 to 1.
   double reflectance(double albedo) const {
     const std::size_t n = mu_.at.size();
     const std::vector<double> h = chandrasekhar(albedo);
-    // Upward radiance u at the boundary: u = K (j + f u), K the reflection of a half without a boundary, albedo H H' / (2 (mu +
-    // mu')) mu', j what comes in and f what the boundary sends back.
+    // Upward radiance u at the boundary: u = K (j + f u). K is the reflection of a half-space without a boundary, albedo H H' /
+    // (2 (mu + mu')) mu'; j is the light that enters, and f the internal reflection of the boundary.
     std::vector<double> table(n * (n + 1));
     const auto at = [&](std::size_t row, std::size_t column) -> double& { return table[row * (n + 1) + column]; };
     for (std::size_t i = 0; i < n; ++i)
@@ -69,7 +69,7 @@ class HalfOfSpace {
         at(i, k) = (i == k ? 1 : 0) - reflected * mirrored_[k];
         at(i, n) += reflected * (1 - mirrored_[k]);
       }
-    // The diagonal is large enough to divide by in order: columns of K f add up to less than 1.
+    // The system is solved without pivoting: columns of K f add up to less than 1, so the diagonal is large enough.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t r = i + 1; r < n; ++r) {
         const double times = at(r, i) / at(i, i);
@@ -87,12 +87,12 @@ class HalfOfSpace {
   }
 
  private:
-  /// Chandrasekhar's H of even scattering: log H(mu) = -mu / pi times the integral of log(1 - albedo t cot t) / (cos^2 t + mu^2
-  /// sin^2 t) for t from 0 to pi / 2 (Radiative Transfer, 1950).
+  /// Chandrasekhar's H of isotropic scattering: log H(mu) = -mu / pi times the integral of log(1 - albedo t cot t) / (cos^2 t +
+  /// mu^2 sin^2 t) for t from 0 to pi / 2 (Radiative Transfer, 1950).
   std::vector<double> chandrasekhar(double albedo) const {
     std::vector<double> log_h(mu_.at.size());
     for (std::size_t j = 0; j < theta_.at.size(); ++j) {
-      // More places near 0, where the logarithm has no bound at albedo 1; and near pi / 2, where a small mu makes a peak.
+      // Points are dense near 0, where the logarithm is unbounded at albedo 1, and near pi / 2, where a small mu makes a peak.
       const double s = theta_.at[j], t = pi / 2 * s * s * (3 - 2 * s), dt = pi * 3 * s * (1 - s);
       const double cosine = std::cos(t), sine = std::sin(t), lost = std::log(std::max(1 - albedo * t * cosine / sine, 1e-30));
       for (std::size_t i = 0; i < log_h.size(); ++i) {
@@ -119,7 +119,7 @@ double albedo_within(double reflectance, double eta, double g) {
     const double middle = 0.5 * (low + high);
     (half.reflectance(middle) < wanted ? low : high) = middle;
   }
-  // Similar scattering: as much of it to the sides.
+  // Similarity keeps absorption and reduced scattering.
   const double even = 0.5 * (low + high);
   return even / (1 - g + even * g);
 }

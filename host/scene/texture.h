@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What varies over a surface (textures.def).
+// Textures (textures.def).
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace caplet {
 template <class, class... Types>
 using TextureVariant = std::variant<Types...>;
 
-/// Floats or spectra over a surface.
+/// A texture of floats or of spectra.
 struct Texture {
 #define TEXTURE_MODEL(name, Type) , Type
   TextureVariant<void
@@ -30,21 +30,21 @@ struct Texture {
   SourceLocation where;
 };
 
-/// A parameter that is a texture: the field by its name in kernels/shared/materials.def ("reflectance" of a metal too) with the
-/// dots of scene files ("interface.alpha_u"), and the index into Scene::textures.
+/// A parameter that a texture replaces: the field's name in kernels/shared/materials.def (also "reflectance" of a metal), with
+/// the dots of scene files ("interface.alpha_u"), and the index into Scene::textures.
 struct TexturedField {
   std::string field;
   std::uint32_t texture = 0;
 };
 
-/// The images of textures, each once, in the order in which they are named first.
+/// Returns the images of textures, each once, in the order of first use.
 std::vector<const TextureImage*> images_of(const std::vector<Texture>& textures);
 
-/// The most textures and constants that a texture may consist of, itself among them.
+/// The most textures and constants that a texture may consist of, including itself.
 inline constexpr std::size_t most_texture_steps = 31;
 
-/// How many they are: of textures that come in more than once, each counts once. Above most_texture_steps: more than that.
-/// Operands must be textures that come before.
+/// Counts the textures and constants that a texture consists of; one that occurs several times counts once. A result above
+/// most_texture_steps only means that there are more. Operands must precede the textures that use them.
 std::size_t texture_steps(const std::vector<Texture>& textures, std::uint32_t texture);
 
 }  // namespace caplet

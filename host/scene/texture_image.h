@@ -11,7 +11,7 @@
 
 namespace caplet {
 
-/// How whole numbers of an image stand for values from 0 to 1. Those of floats are linear.
+/// How integer samples of an image encode values from 0 to 1. Floats are linear.
 struct ImageEncoding {
   enum class Kind { srgb, linear, gamma } kind = Kind::srgb;
   double gamma = 1;  // the exponent that makes values linear
@@ -20,15 +20,15 @@ struct ImageEncoding {
   auto operator<=>(const ImageEncoding&) const = default;
 };
 
-/// An image that textures look up: rows from the top, `channels` values a texel. As bytes, or as linear floats.
+/// An image that textures look up: rows from the top, `channels` values per texel, stored as bytes or as linear floats.
 struct TextureImage {
   int width = 0, height = 0;
-  int channels = 1;  // 1: grey; 3: red, green, blue; 4: and alpha, which is not multiplied in
+  int channels = 1;  // 1: grey; 3: red, green, blue; 4: with alpha, which is not premultiplied
   std::vector<std::uint8_t> bytes;
-  std::array<float, 256> decoded{};  // what bytes stand for, ascending; of alpha, byte / 255
+  std::array<float, 256> decoded{};  // the values of bytes, ascending; alpha is byte / 255
   std::vector<float> floats;
   ColorSpace space = ColorSpace::srgb;
-  std::string file = {};  // that it was read from, as of this encoding
+  std::string file = {};  // the file that it was read from, with this encoding
   ImageEncoding encoding = {};
 
   std::size_t values() const {
@@ -36,7 +36,7 @@ struct TextureImage {
   }
 };
 
-/// The linear value of `value`, which is from 0 to 1.
+/// Returns the linear value of `value`, which is from 0 to 1.
 double decoded_value(const ImageEncoding& encoding, double value);
 
 }  // namespace caplet

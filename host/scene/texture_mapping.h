@@ -10,18 +10,18 @@
 
 namespace caplet {
 
-/// Which coordinates (s, t) a texture has at a point, as pbrt-v4 (10.2): by the surface's (u, v), or by the point in the
+/// The coordinates (s, t) of a texture at a point, as in pbrt-v4 (10.2): from the surface's (u, v), or from the point in the
 /// texture's space.
 struct TextureMapping {
   enum class Kind { uv, spherical, cylindrical, planar, solid } kind = Kind::uv;
   double uscale = 1, vscale = 1;  // uv: (uscale u + udelta, vscale v + vdelta)
   double udelta = 0, vdelta = 0;  // planar: (v1 p + udelta, v2 p + vdelta)
   glm::dvec3 v1{1, 0, 0}, v2{0, 1, 0};
-  glm::dmat4 texture_from_world{1};  // of all but uv
+  glm::dmat4 texture_from_world{1};  // used by all kinds but uv
 
   static constexpr Field kind_field = {"mapping", "where the texture coordinates (s, t) come from"};
   static constexpr Field dimension_field = {"dimension", "2, or 3 for cubes in texture space", 2, 3};
-  /// The parameters of its kind; calls number and vector.
+  /// Visits the parameters of its kind; calls number and vector.
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     if (self.kind == Kind::uv) {
@@ -38,7 +38,7 @@ struct TextureMapping {
     }
   }
 };
-/// What scene files call them; "solid" is of textures of space alone.
+/// These are the names in scene files; "solid" is for three-dimensional textures.
 inline constexpr std::array<const char*, 4> texture_mapping_names = {"uv", "spherical", "cylindrical", "planar"};
 
 }  // namespace caplet

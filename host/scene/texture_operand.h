@@ -9,10 +9,10 @@
 
 namespace caplet {
 
-/// What a texture is made of: a constant, or another texture, which comes before it in Scene::textures.
+/// An operand of a texture: a constant, or another texture, which precedes it in Scene::textures.
 struct TextureOperand {
   TextureOperand(double number) : value(ConstantSpectrum{number}) {}
-  Spectrum value;                        // of a texture of floats, a ConstantSpectrum
+  Spectrum value;                        // a ConstantSpectrum for a texture of floats
   std::optional<std::uint32_t> texture;  // replaces it
 };
 

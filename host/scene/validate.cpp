@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the model may not hold.
+// Checks that a scene can be rendered.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,7 +59,7 @@ class Validator {
   }
 
  private:
-  /// Reports an error once: a csg's operand is visited as a shape of its object too.
+  /// Reports an error once: an operand of a csg is visited as a shape of its object too.
   void error(const SourceLocation& where, const std::string& message) {
     if (said_.insert(where.to_string() + message).second) diagnostics_.error(where, message);
   }
@@ -75,7 +75,7 @@ class Validator {
     for (int i = 0; i < 4; ++i)
       if (!finite(m[i])) return error(where, "the transform is not finite");
     const glm::dmat3 a(m);
-    // As a share of the box that the columns could span at most; below 1e-12 an inverse keeps no more than four digits.
+    // The determinant is relative to the largest box that the columns could span; below 1e-12 an inverse keeps at most 4 digits.
     const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
     if (!(std::abs(glm::determinant(a)) > 1e-12 * product) || !std::isfinite(product))
       error(where, "the transform is singular (it flattens the shape)");
@@ -98,7 +98,7 @@ class Validator {
     if (!good) error(where, what + " is not a spectrum of finite values from 0 up");
   }
 
-  /// What numbers and spectra may be, of every family.
+  /// Checks numbers and spectra of every family.
   struct Checks : IgnoresFields, CompositesInParts<Checks> {
     Checks(Validator& all, const SourceLocation& at) : validator(all), where(at) {}
     Validator& validator;
@@ -124,7 +124,7 @@ class Validator {
     }
   };
 
-  /// Of the calls of textures.def.
+  /// Checks the calls of textures.def.
   struct TextureFields : Checks {
     TextureFields(Validator& of, const Texture& one, std::uint32_t number) : Checks(of, one.where), texture(one), index(number) {}
     const Texture& texture;
@@ -168,7 +168,7 @@ class Validator {
     }
   };
 
-  /// Which parameters of a material may be textures, and whether of floats: of the calls of materials.def.
+  /// Collects which parameters of a material may be textures, and whether of floats, from the calls of materials.def.
   struct TexturedFields : IgnoresFields, CompositesInParts<TexturedFields> {
     std::map<std::string, bool, std::less<>> is_float = {};
 
@@ -181,7 +181,7 @@ class Validator {
     void number(const Field& field, double) { is_float[field.name] = true; }
   };
 
-  /// A texture of floats at hand, of not too many parts.
+  /// Checks that a texture is one of floats and has few enough parts.
   void float_texture(std::uint32_t texture, const SourceLocation& where, const char* name) {
     if (texture >= scene_.textures.size() || !scene_.textures[texture].is_float)
       error(where, "the " + std::string(name) + " is not a texture of floats");
@@ -216,11 +216,11 @@ class Validator {
     }
   }
 
-  /// Parts of mixes are materials that there are, and no mix is one of its own parts.
+  /// Checks that parts of mixes are materials that exist, and that no mix contains itself.
   void mixes() {
     enum class State { unseen, open, done };
     std::vector<State> states(scene_.materials.size(), State::unseen);
-    std::vector<std::uint32_t> open;  // each a part of the one before
+    std::vector<std::uint32_t> open;  // each is a part of the one before
     for (std::uint32_t i = 0; i < states.size(); ++i) {
       if (states[i] == State::unseen) open.push_back(i);
       while (!open.empty()) {
@@ -243,7 +243,7 @@ class Validator {
     }
   }
 
-  /// Of the calls of media.def.
+  /// Checks the calls of media.def.
   struct MediumFields : Checks {
     using Checks::Checks;
     using Checks::emission;
@@ -316,8 +316,8 @@ class Validator {
     if (index && *index >= scene_.media.size()) error(where, std::string(what) + " has a medium that does not exist");
   }
 
-  /// A medium needs something that encloses it: a solid, a closed mesh, or several surfaces, which are trusted to do it together.
-  /// One open surface may be a window of a room, whose walls nothing goes through.
+  /// A medium needs an enclosure: a solid, a closed mesh, or several surfaces, which are trusted to enclose it together. One open
+  /// surface may be a window of a room whose walls are opaque.
   void open_surfaces() {
     std::map<std::pair<std::optional<std::uint32_t>, std::optional<std::uint32_t>>, std::vector<const Shape*>> open;
     const auto add = [&](const std::vector<Shape>& shapes) {
@@ -341,9 +341,9 @@ class Validator {
         diagnostics_.warning(shape.where, said + "; what goes through it is within");
     }
   }
-  static constexpr double most_open_edges = 0.1;  // of a mesh that counts as closed but for holes
+  static constexpr double most_open_edges = 0.1;  // of a mesh that counts as closed except for holes
 
-  /// Of the calls of lights.def.
+  /// Checks the calls of lights.def.
   struct LightFields : Checks {
     using Checks::Checks;
 
@@ -389,7 +389,7 @@ class Validator {
       if (!std::isfinite(value)) return error(where, "the light's image has pixels that are not finite");
   }
 
-  /// Sides within 1e-3 of a rectangle's, as in pbrt-v4.
+  /// The sides match a rectangle's to 1e-3, as in pbrt-v4.
   void portal(const LightPortal& p, const SourceLocation& where) {
     for (const glm::dvec3& corner : p)
       for (int k = 0; k < 3; ++k)
@@ -406,7 +406,7 @@ class Validator {
       error(where, "the portal's corners are not those of a rectangle, in order");
   }
 
-  /// What a geometry finds, at the place of its shape.
+  /// Reports what a geometry finds at the place of its shape.
   class Report : public ShapeCheck {
    public:
     Report(Validator& all, const SourceLocation& where) : all_(all), where_(where) {}
@@ -420,7 +420,7 @@ class Validator {
     const SourceLocation& where_;
   };
 
-  /// Checks where instances come to lie, by the boxes of their objects.
+  /// Checks where instances lie, by the boxes of their objects.
   void instances() {
     std::vector<Bounds> boxes(scene_.objects.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -440,7 +440,7 @@ class Validator {
     }
   }
 
-  /// Checks transform, geometry and materials, which operands have as well.
+  /// Checks transform, geometry and materials, for operands too.
   void geometry(const Shape& s) {
     transform(s.world_from_object, s.where);
     Report report(*this, s.where);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Cameras, films, filters, samplers and integrators.
+// Schema of cameras, films, filters, samplers and integrators.
 #include <algorithm>
 #include <array>
 #include <initializer_list>
@@ -14,7 +14,7 @@ namespace caplet::schema {
 
 namespace {
 
-/// The number of `type` among `names`, or of the first where it is none: a type that is rendered as that.
+/// Returns the index of `type` in `names`, or 0 for a type that is rendered as the first.
 template <class Kind, class Names>
 Kind kind_of(const std::string& type, const Names& names) {
   const auto found = std::ranges::find(names, type);

@@ -10,14 +10,14 @@ namespace caplet::schema {
 
 struct Parameter {
   std::string name, doc;
-  std::vector<std::string> types = {};  // of pbrt's text: "float", "rgb", "texture", ...; the first is the usual one
-  std::string fallback = {};            // what it is where nothing is given, as scene files would have it; empty: nothing
+  std::vector<std::string> types = {};  // types of pbrt's text: "float", "rgb", "texture", ...; the first is the usual one
+  std::string fallback = {};            // the default as text of a scene file; empty: none
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();  // of numbers
-  bool above_low = false;  // `low` itself is out of the range
+  bool above_low = false;  // `low` itself is excluded
   std::string unit = {};
-  std::vector<std::string> choices = {};   // all that there are
-  std::vector<std::string> excludes = {};  // not together with these
-  bool has_effect = true;                  // else it is read and ignored
+  std::vector<std::string> choices = {};   // all allowed values
+  std::vector<std::string> excludes = {};  // parameters that it cannot be combined with
+  bool has_effect = true;                  // false: it is read and ignored
 };
 
 }  // namespace caplet::schema

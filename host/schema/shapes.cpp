@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shapes: their readers (import/shapes) make lists of primitives of these.
+// Schema of shapes, whose readers (import/shapes) make lists of primitives.
 #include <array>
 #include <string>
 
@@ -80,7 +80,7 @@ constexpr std::array sphere_rows = {Row{{"radius", "radius", 0, no_limit, "", tr
 constexpr std::array triangle_rows = {positions, Row{{"indices", "corners, in threes"}, "integer"}, normals, uvs, st};
 constexpr std::array triangle_ignored = {Row{{"S", "tangents"}, "vector3"}, Row{{"faceIndices", "of Ptex"}, "integer"}};
 
-/// The parameters of a geometry that names its fields.
+/// Collects the parameters of a geometry that names its fields.
 struct Each : Fields {
   explicit Each(std::vector<Parameter>& out) : to(out) {}
   void corners(const char* name0, const char* name1, glm::dvec3&, glm::dvec3&) override {

@@ -35,7 +35,7 @@ constexpr std::size_t longest_header = 1 << 16;
   throw InputError(SourceLocation{path.string()}, message);
 }
 
-/// The header's text: a Python dictionary of strings, booleans, tuples of whole numbers and, in types, lists.
+/// Parses the header: a Python dictionary of strings, booleans, tuples of integers and, in types, lists.
 class HeaderParser {
  public:
   explicit HeaderParser(std::string_view text) : text_(text) {}
@@ -122,7 +122,7 @@ class HeaderParser {
   }
   std::optional<std::string> descr() {
     if (peek() != '[') return string();
-    // Names may hold brackets: what is in quotes does not count.
+    // Brackets in quoted names do not count.
     int depth = 0;
     char quote = '\0';
     for (std::size_t i = 0; i < text_.size(); ++i) {
@@ -145,7 +145,7 @@ class HeaderParser {
   std::string_view text_;
 };
 
-/// Reads up to where the data starts.
+/// Reads up to the start of the data.
 NpyHeader read_header(std::ifstream& file, const fs::path& path) {
   const auto bytes = [&](std::size_t count) {
     std::string out(count, '\0');
@@ -172,13 +172,13 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
 
-/// Characters of UTF-8 text, one after the other (base/utf8.h).
+/// Calls receive with each character of UTF-8 text (base/utf8.h).
 template <class Receive>
 void for_each_character(std::string_view text, const Receive& receive) {
   while (!text.empty()) receive(static_cast<std::uint32_t>(take_character(text)));
 }
 
-/// IEEE 754 binary16.
+/// Converts IEEE 754 binary16.
 double of_half(std::uint16_t bits) {
   const int exponent = bits >> 10 & 31;
   const double fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
@@ -187,7 +187,7 @@ double of_half(std::uint16_t bits) {
   return exponent == 0 ? sign * std::ldexp(fraction, -24) : sign * std::ldexp(fraction + 1024, exponent - 25);
 }
 
-/// Bytes of an element, by the number in its type, which for text counts characters of four bytes.
+/// Returns the bytes of an element from the number in its type, which for text counts characters of four bytes.
 std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
 
 }  // namespace
@@ -286,7 +286,7 @@ void NpyWriter::write_header(std::uint64_t rows) {
   for (const NpyField& field : fields_) text += fmt::format("('{}', '{}'), ", field.name, field.type);
   text.resize(text.size() - 2);
   text += "], 'fortran_order': False, 'shape': (";
-  // The same length for every count of rows, so that it can be written over.
+  // The header has the same length for every count of rows, so that it can be overwritten.
   const std::size_t least = preamble + text.size() + std::to_string(UINT64_MAX).size() + std::string_view(",), }\n").size();
   const std::size_t length = (least + alignment - 1) / alignment * alignment - preamble;
   text += fmt::format("{},), }}", rows);

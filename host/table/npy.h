@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// NumPy's array files (.npy, NEP 1): the parts that tables of numbers need. A file is never held in memory as a whole.
+// NumPy's array files (.npy, NEP 1), as far as tables of numbers need them. No file is held in memory as a whole.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +20,20 @@ struct NpyHeader {
   std::vector<std::uint64_t> shape;
 };
 
-/// Reads arrays of rows of numbers: halves, floats and whole numbers of 1 to 8 bytes, of either byte order; two-dimensional ones
-/// in C or Fortran order, of more dimensions (all but the last of which count rows) in C order.
+/// Reads arrays of rows of numbers: halves, floats and integers of 1 to 8 bytes, of either byte order; two-dimensional ones in C
+/// or Fortran order, those of more dimensions (all but the last count rows) in C order.
 class NpyReader {
  public:
-  /// `columns`: how many a row may have. Throws InputError with the file's name for what is missing, no .npy file, of another
-  /// type, order or shape, and for files of another length than their header says.
+  /// `columns`: the allowed numbers of columns. Throws InputError with the file's name for a missing file, one that is no .npy
+  /// file, another type, order or shape, and a length that differs from the header's.
   NpyReader(const std::filesystem::path& path, std::vector<std::size_t> columns, std::size_t dimensions = 2);
 
   std::uint64_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }
   const std::vector<std::uint64_t>& shape() const { return shape_; }
-  /// The next row that is read. At most rows().
+  /// Sets the next row to read, at most rows().
   void go_to(std::uint64_t row) { next_ = row; }
-  /// The next `out.size()` / columns() rows, which must be there.
+  /// Reads the next `out.size()` / columns() rows, which must exist.
   void read(std::span<double> out);
 
  private:
@@ -57,12 +57,12 @@ struct NpyField {
 /// Writes a one-dimensional structured array row by row. Elements are little-endian and packed, in the order of the fields.
 class NpyWriter {
  public:
-  /// Creates the file. Throws RunError, as all members do, when it cannot be written. `name`: of the file, for messages.
+  /// Creates the file. All members throw RunError when it cannot be written. `name`: the file's name in messages.
   NpyWriter(const std::filesystem::path& path, std::vector<NpyField> fields, const std::filesystem::path& name);
   NpyWriter(const std::filesystem::path& path, std::vector<NpyField> fields) : NpyWriter(path, std::move(fields), path) {}
-  /// Whole rows.
+  /// Appends complete rows.
   void append(std::span<const char> bytes);
-  /// Completes the header. What is not finished is no .npy file.
+  /// Completes the header. Without it the file is not valid.
   void finish();
 
  private:
@@ -76,10 +76,10 @@ class NpyWriter {
   std::uint64_t rows_ = 0;
 };
 
-/// Appends `text` (UTF-8; bytes that are none become U+FFFD) as an element of type "<U" of `length` characters; a longer text is
+/// Appends `text` (UTF-8; invalid bytes become U+FFFD) as an element of type "<U" of `length` characters; a longer text is
 /// cut.
 void append_unicode(std::string& row, const std::string& text, std::size_t length);
-/// Characters of `text` by the same count.
+/// Counts the characters of `text` in the same way.
 std::size_t unicode_length(const std::string& text);
 
 }  // namespace caplet

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t block_bytes = std::size_t{1} << 20;  // read at a time; no line is longer
 
-/// In quotes, shortened, unprintable bytes as \xNN.
+/// Quotes a token: shortened, unprintable bytes as \xNN.
 std::string quoted(std::string_view token) {
   constexpr std::size_t longest = 32;
   std::string out = "'";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lists of rays in files, read piece by piece: text of six numbers a line, or .npy.
+// Reads lists of rays from files piece by piece: text of six numbers per line, or .npy.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace caplet {
 /// Origin, then direction (of any length).
 using RayNumbers = std::array<float, 6>;
 
-/// One of a list: what lies before t_min or from t_max on, in lengths of the direction, is not met.
+/// A ray of a list. Only hits from t_min to before t_max count, in lengths of the direction.
 struct ListedRay {
   RayNumbers numbers{};
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();
@@ -31,27 +31,27 @@ struct ListedRay {
 /// Squares of larger coordinates, and of directions longer than this or shorter than its inverse, do not fit into floats.
 inline constexpr double largest_ray_number = 0x1p60;  // 1.15e18
 
-/// The six numbers as floats. Otherwise what is wrong (not finite, too large, no direction) and with which number.
+/// Returns the six numbers as floats. Otherwise returns the error (not finite, too large, no direction) and the number's index.
 struct BadRay {
   std::size_t number;  // 0..5
   std::string message;
 };
 std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& ray);
 
-/// A whole token as a number, decimal notation, a leading '+' allowed. Otherwise what is wrong with it.
+/// Parses a whole token as a number in decimal notation; a leading '+' is allowed. Otherwise returns the error.
 std::optional<std::string> parse_number(std::string_view token, double& value);
 
-/// .npy by extension (rows of six or eight numbers, NpyReader), else text: six or eight numbers a line, blanks or commas between
-/// them, `#` starts a comment, blank lines are passed over. The seventh and eighth are t_min, from 0, and t_max, above it or
-/// `inf`.
-/// "-" is the standard input, text.
+/// Reads .npy by extension (rows of six or eight numbers, NpyReader), else text: six or eight numbers
+/// per line, separated by blanks or commas; `#` starts a comment, blank lines are skipped. The
+/// seventh and eighth are t_min, from 0, and t_max, above it or `inf`. "-" is the standard input, as
+/// text.
 class RayFile {
  public:
-  /// Throws InputError when the file is missing, unreadable or no such list.
+  /// Throws InputError when the file is missing, unreadable or not such a list.
   explicit RayFile(const std::filesystem::path& path);
 
-  /// Up to `most` more rays; fewer only at the end. Throws InputError with every bad ray among them, up to 20, with line and
-  /// column or, in a .npy file, its row.
+  /// Returns up to `most` more rays; fewer only at the end. Throws InputError with every bad ray among them, up to 20, with line
+  /// and column or, in a .npy file, its row.
   std::vector<ListedRay> next(std::size_t most);
 
  private:

@@ -20,7 +20,7 @@ double stretch_of(const dmat4& m) {
   return std::sqrt(squares);
 }
 
-// Distance from `center` of the furthest corner of an axis-aligned box around any solid of a csg shape, at most.
+// Returns an upper bound of the distance from `center` to the corners of the boxes around all solids of a csg shape.
 double furthest_corner(const reference::Csg& csg, const dvec3& center, const dmat4& outer_from_csg, double stretch) {
   double out = 0;
   for (const reference::CsgOperand& operand : csg.body->operands) {
@@ -38,9 +38,9 @@ double furthest_corner(const reference::Csg& csg, const dvec3& center, const dma
 }
 
 // The kernels' stated bound for a ray from a distance D of the primitive's ball (docs/numerics.md), in multiples of eps. Every
-// size in the bounds is at most twice the ball's radius R and every |o - p0| at most D + R: a factor of D + 3 R. Of csg shapes 3
-// D + 16 (R + 3 e), and half as much again for operands in spaces of their own; R is that of the shape's box and e the distance
-// of the furthest corner of an operand's.
+// size in the bounds is at most twice the ball's radius R and every |o - p0| at most D + R: a factor of D + 3 R. For csg shapes
+// it is 3 D + 16 (R + 3 e), and half as much again for operands in spaces of their own; R is that of the shape's box and e the
+// distance of the furthest corner of an operand's.
 double bound_of(const reference::Primitive& primitive, const reference::Ball& ball, double corner, double distance) {
   if (std::holds_alternative<reference::Csg>(primitive)) return 3 * distance + 24 * (std::sqrt(3.0) * ball.radius + 3 * corner);
   return (std::holds_alternative<reference::Bilinear>(primitive) ? 24 : 16) * (distance + 3 * ball.radius);
@@ -51,13 +51,13 @@ double altitude(const dvec3& a, const dvec3& b, const dvec3& c) {
   return glm::length(glm::cross(b - a, c - a)) / longest;
 }
 
-// The angle by which a plane or axis turns when the points that span it move by `moved`: that over their least extent.
+// The angle by which a plane or axis turns when the points that span it move by `moved`: the quotient by their least extent.
 double tilt_of(const reference::Primitive& primitive, double moved);
 
 struct TiltOf {
   double moved;
   double operator()(const reference::Capsule& c) const {
-    // The shorter it is, the more it is a ball.
+    // The shorter it is, the closer it is to a ball.
     const double length = glm::length(c.p1 - c.p0);
     return length > 0 ? std::min(moved / length, 2 * length / std::max(c.radius0, c.radius1)) : 0;
   }
@@ -82,7 +82,7 @@ struct TiltOf {
   double operator()(const reference::Solid<Model>& solid) const {
     return tilt_of(solid.shape, moved);
   }
-  // Balls, and planes whose normals are given.
+  // These are balls, and planes whose normals are given.
   double operator()(const reference::Sphere&) const { return 0; }
   double operator()(const reference::Disk&) const { return 0; }
   double operator()(const reference::Polyhedron&) const { return 0; }
@@ -109,9 +109,9 @@ Bounds::Bounds(const reference::SceneWitness& witness) : witness_(&witness) {
   }
 }
 
-// The kernels' own, and the way into the primitive's space: the matrices' entries are rounded (1), and multiplied and added (3);
-// of baked shapes the own numbers are rounded in the world (1). Six times eps of all terms, as large as they get anywhere on the
-// primitive, is more than both.
+// The bound includes the kernels' own and the transform into the primitive's space: the matrices' entries are rounded (1), and
+// multiplied and added (3); the numbers of baked shapes are rounded in the world (1). Six times eps of all terms, as large as
+// they get anywhere on the primitive, is more than both.
 LocalRay Bounds::local(std::size_t primitive, const reference::Ray& ray) const {
   const auto placed = witness_->placed(primitive);
   const Place& place = places_[primitive];
@@ -131,7 +131,7 @@ double Bounds::rounding(std::size_t primitive) const {
 
 double Bounds::tilt(std::size_t primitive) const {
   const Place& place = places_[primitive];
-  // Both ends of what is spanned move.
+  // Both ends of a span move.
   return condition(primitive) * tilt_of(witness_->placed(primitive).primitive, 2 * rounding(primitive) * place.object_stretch);
 }
 

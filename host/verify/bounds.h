@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What each primitive of a scene may be off by, for a ray: the kernels' stated bounds (docs/numerics.md) and the rounding of the
-// scene's numbers to 32-bit floats on their way to the device.
+// Bounds the error of each primitive for a ray: the kernels' stated bounds (docs/numerics.md) and the rounding of the scene's
+// numbers to 32-bit floats on their way to the device.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,14 +12,14 @@
 
 namespace caplet::verify {
 
-/// Half the distance from 1 to the next float: what rounding to a float changes at most, relative.
+/// Half the distance from 1 to the next float: the greatest relative error of rounding to a float.
 inline constexpr double eps = 0x1p-24;
 
 /// A ray in the space of a primitive.
 struct LocalRay {
   const reference::Primitive* primitive;
   reference::Ray ray;  // t in (0, infinity)
-  double bound;        // most that a crossing may be off the primitive's surface, in its space
+  double bound;        // the most that a crossing may be off the primitive's surface, in its space
   double value(double t) const { return reference::value(*primitive, ray.origin + t * ray.direction); }
 };
 
@@ -28,20 +28,20 @@ class Bounds {
   explicit Bounds(const reference::SceneWitness& witness);
 
   LocalRay local(std::size_t primitive, const reference::Ray& ray) const;
-  /// A world length of any direction is at most this long in the primitive's space.
+  /// Returns the longest image, in the primitive's space, of a world vector of length 1.
   double stretch(std::size_t primitive) const { return places_[primitive].object_stretch; }
-  /// Product of the stretches there and back: 3 for similarities.
+  /// Returns the product of the stretches in both directions: 3 for similarities.
   double condition(std::size_t primitive) const { return places_[primitive].object_stretch * places_[primitive].world_stretch; }
-  /// Rounding of the primitive's own numbers, and of those of its transform, to floats: as far as a point of its surface may move
-  /// in the world.
+  /// Bounds how far a point of the surface may move in the world by the rounding of the primitive's numbers and of its transform
+  /// to floats.
   double rounding(std::size_t primitive) const;
-  /// Angle (radians, world) by which that, and the kernels' differences of its points, may turn the primitive's planes and axis.
+  /// Bounds the angle (radians, world) by which that, and the kernels' differences of its points, may turn its planes and axis.
   double tilt(std::size_t primitive) const;
 
  private:
   struct Place {
     double object_stretch, world_stretch, world_size, object_shift;
-    double corner;  // of csg shapes: how far their solids' boxes reach from the ball's centre
+    double corner;  // for csg shapes: the greatest distance of a box of their solids from the ball's centre
   };
   const reference::SceneWitness* witness_;
   std::vector<Place> places_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Failures as files that a later run asks again: JSON, with every float of the ray in hexadecimal, so that its bits are kept.
+// Stores failures in files that a later run can repeat: JSON, with every float of the ray in hexadecimal to keep its bits.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace caplet::verify {
 
-/// Writes case-00001.json, ... into the folder, which is made when missing. Throws RunError.
+/// Writes case-00001.json, ... into the folder, which is created if it is missing. Throws RunError.
 void save_cases(const std::filesystem::path& folder, const std::vector<Failure>& failures);
 
 struct Case {
@@ -20,7 +20,7 @@ struct Case {
   RayRecord ray{};
 };
 
-/// One case, or all case-*.json of a folder in order. Throws InputError when there is none, or one is not a case.
+/// Loads one case, or all case-*.json of a folder in order. Throws InputError when there is none, or one is not a case.
 std::vector<Case> load_cases(const std::filesystem::path& path);
 
 }  // namespace caplet::verify

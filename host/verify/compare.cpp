@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crossings are compared primitive by primitive: a primitive displaced by no more than its bound explains a difference or it does
-// not, whatever lies before or behind it.
+// Compares crossings primitive by primitive: whether a displacement of the primitive by at most its bound explains a difference
+// does not depend on other primitives.
 #include "verify/compare.h"
 
 #include <fmt/format.h>
@@ -30,14 +30,14 @@ double ulp_of(double x) {
   return static_cast<double>(std::nextafter(at, HUGE_VALF)) - static_cast<double>(at);
 }
 
-/// Open shapes: only their normal, which ReverseOrientation turns, tells entering from leaving.
+/// Recognises open shapes: only their normal, which ReverseOrientation turns, distinguishes entering from leaving.
 bool is_sheet(const reference::Primitive& primitive) {
   return !reference::is_solid(primitive) && !std::holds_alternative<reference::Spool>(primitive);
 }
 
 bool begins_at(const LocalRay& local) { return std::abs(local.value(0)) <= local.bound; }
 
-/// t of all crossings of the solids of a csg shape.
+/// Collects t of all crossings of the solids of a csg shape.
 void collect_crossings(const reference::Csg& csg, const reference::Ray& ray, std::vector<double>& out) {
   for (const reference::CsgOperand& operand : csg.body->operands) {
     const glm::dmat4& m = operand.operand_from_csg;
@@ -49,7 +49,7 @@ void collect_crossings(const reference::Csg& csg, const reference::Ray& ray, std
   }
 }
 
-/// Csg shapes take walls and gaps thinner than the bounds of both sides as closed, and may see one where solids just touch.
+/// Csg shapes treat walls and gaps thinner than the bounds of both sides as closed, and may see one where solids just touch.
 bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
   std::vector<double> events;
   collect_crossings(csg, local.ray, events);
@@ -63,8 +63,8 @@ bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
   return false;
 }
 
-/// Whether both answers are right: the ray begins at the surface, the line touches it or passes a rim, all within the bound; of
-/// csg shapes, so with one of their solids.
+/// Returns whether both answers are right: the ray begins at the surface, the line touches it or passes a rim, all within the
+/// bound. For csg shapes, it is enough that this holds for one of their solids.
 bool is_grazing(const LocalRay& local) {
   if (begins_at(local)) return true;
   const auto* csg = std::get_if<reference::Csg>(local.primitive);
@@ -78,15 +78,15 @@ bool is_grazing(const LocalRay& local) {
   return has_thin_wall(*csg, local) || reference::comes_within(*local.primitive, local.ray, local.bound);
 }
 
-/// How far from the surface the ray goes between two parameters of one crossing, in bounds. It may pass the hole or the
-/// gap of a partial disk there; from the disk's plane it is furthest at an end.
+/// Returns the greatest distance of the ray from the surface between two parameters of one crossing, in bounds. The ray may pass
+/// the hole or the gap of a partial disk there; its distance from the disk's plane is greatest at an end.
 double apart(const LocalRay& local, double t, double other) {
   const double at_end = std::abs(local.value(t));
   if (std::holds_alternative<reference::PartialDisk>(*local.primitive)) return at_end / local.bound;
   return std::max(at_end, std::abs(local.value(0.5 * (t + other)))) / local.bound;
 }
 
-/// The least and greatest of `f` at x and the corners of an octahedron that holds the ball of radius `reach` around it.
+/// Returns the least and greatest of `f` at x and the corners of an octahedron that contains the ball of radius `reach` around x.
 template <class T, class F>
 std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   T low = f(x), high = low;
@@ -101,7 +101,7 @@ std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   return {low, high};
 }
 
-/// The solid that a surface belongs to: for csg shapes the operand.
+/// The solid that a surface belongs to; for csg shapes, this is the operand.
 struct Solid {
   const reference::Primitive* primitive;
   glm::dmat4 object_from_world;
@@ -120,8 +120,8 @@ Solid solid_of(const reference::SceneWitness::PlacedPrimitive& placed, std::uint
   return out;
 }
 
-/// By how much v of a chain may be off where its axis and the ray are off by `angle` (radians): both say what is across, which is
-/// undefined where one runs along the other.
+/// Bounds the error of v of a chain whose axis and ray are off by `angle` (radians): both define the direction across, which is
+/// undefined where they are parallel.
 double turn_of_v(const reference::Primitive& primitive, const dvec3& direction, double angle) {
   const auto* capsule = std::get_if<reference::Capsule>(&primitive);
   if (!capsule || !capsule->u) return 0;
@@ -150,7 +150,7 @@ Expected Comparison::expected(const RayRecord& r) const {
   return out;
 }
 
-/// The witness's index of what the device names; no_primitive where the scene has no such primitive.
+/// Returns the witness's index of the device's primitive; no_primitive where the scene has no such primitive.
 std::size_t Comparison::primitive_of(const PickRecord& pick) const {
   const std::size_t in_world = scene_.shapes.size();
   std::optional<std::size_t> index;
@@ -164,7 +164,7 @@ std::size_t Comparison::primitive_of(const PickRecord& pick) const {
   return index.value_or(no_primitive);
 }
 
-/// For messages: "capsule 7 of shape 2 of instance 3: ".
+/// Returns the name for messages: "capsule 7 of shape 2 of instance 3: ".
 std::string Comparison::name_of(std::size_t primitive) const {
   const auto placed = witness_.placed(primitive);
   const SceneHit& id = placed.identity;
@@ -180,7 +180,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   const double t = pick.t;
   Match out{hit.index, {}};
   const auto set = [&](Quantity q, double off, double allowed, double ulp) {
-    // NaN is as far off as can be.
+    // NaN counts as an infinite deviation.
     out.deviations[static_cast<std::size_t>(q)] =
         std::isfinite(off) ? Deviation{off / allowed, off / ulp} : Deviation{HUGE_VAL, HUGE_VAL};
   };
@@ -188,7 +188,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   out.deviations[0].in_ulps = std::abs(t - hit.t) / ulp_of(hit.t);
 
   const dvec3 point = to_dvec3(pick.point), x(solid.object_from_world * glm::dvec4(point, 1));
-  // Within this of x lies a point of the surface, and the normal is that of any point as close.
+  // A point of the surface lies within this distance of x, and the normal may be that of any point as close.
   const double error = static_cast<double>(pick.error) + bounds_.rounding(hit.index);
   const double reach = error * bounds_.stretch(hit.index) * solid.stretch;
   const dmat3 normal_matrix = glm::transpose(dmat3(solid.object_from_world));
@@ -203,16 +203,16 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
       ulp_of(largest));
 
   const dvec3 own = to_dvec3(pick.normal), unit = world_normal(x);
-  // The device's arithmetic: a unit vector by a square root and quotients (16 eps), the sine and cosine of a cone (16), through a
-  // matrix and back to unit length.
+  // The device's arithmetic contributes: a unit vector by a square root and quotients (16 eps), the sine and cosine of a cone
+  // (16), then a matrix and normalisation.
   double allowed = bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
   if (!(off <= 0.25 * allowed)) {
-    // The surface is curved: as much as its normal changes within the point's error.
+    // On a curved surface, the normal may also change within the point's error.
     const auto [low, high] = range_around<dvec3>(x, reach, world_normal);
     allowed += glm::length(high - low);
   }
-  // It has to point against the ray.
+  // The normal must point against the ray.
   off = std::max(off, glm::dot(own, ray.direction) / glm::length(ray.direction));
   set(Quantity::normal, off, allowed, 0x1p-23);
 
@@ -222,14 +222,14 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   };
   const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
   const auto apart_by = [](const dvec2& a, const dvec2& b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };
-  // Half a dozen operations on numbers of the size of a uv, an arc tangent (6 ulp) among them; the frame that angles begin at,
-  // with a quotient that makes the rounding of an axis (4 eps) up to ten times larger, and 1 / 2 pi of that.
+  // A uv takes half a dozen operations on numbers of its size, including an arc tangent (6 ulp); the frame of the angles, with a
+  // quotient that makes the rounding of an axis (4 eps) up to ten times larger; and 1 / 2 pi of that.
   double allowed_uv = 64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index) +
                       turn_of_v(primitive, dmat3(solid.object_from_world) * ray.direction,
                                 bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps);
   if (!(apart_by(own_uv, uv) <= 0.25 * allowed_uv)) {
     const auto [least, most] = range_around<dvec2>(x, reach, uv_there);
-    // Around poles, centres and seams u may be anything in its turn.
+    // At poles, centres and seams u may take any value of its range.
     allowed_uv += most.x - least.x > 0.24 ? std::max(1.0, most.x - least.x) : apart_by(least, most);
   }
   set(Quantity::uv, apart_by(own_uv, uv), allowed_uv, 0x1p-23);
@@ -243,7 +243,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
 
-  // Rounding may decide which crossings there are, but not what is reported of each.
+  // Rounding may decide which crossings exist, but not the properties reported for each.
   std::string different;
   Fault fault = Fault::hit;
   if (pair.expected.size() != pair.found.size()) {
@@ -290,7 +290,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     if (!matched || pick.surface != hit.surface) {
       const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
                                                            static_cast<int>(pick.surface));
-      // An open surface seen edge-on may be met beside its edge.
+      // A ray along an open surface may hit it beside its edge.
       if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
         disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says {}", pick.surface, t, away,
                                              local.bound, matched ? std::to_string(hit.surface) : "otherwise"));
@@ -308,7 +308,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
   }
 }
 
-/// The nearest crossing lies where its primitive has one, and what the witness has before it is not further away than the bounds.
+/// The nearest crossing must lie where its primitive has one, and earlier crossings of the witness must be within the bounds.
 void Comparison::compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const {
   const bool hit = nearest.object != CAPLET_NONE;
   const std::size_t own = hit ? primitive_of(nearest) : no_primitive;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One ray on the device and by the witness: where they disagree, and how far apart they are where they agree.
+// Compares one ray on the device with the witness: their disagreements, and the size of the differences where they agree.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace caplet::verify {
 
-/// What is measured of a crossing.
+/// The quantities that are measured at a crossing.
 enum class Quantity {
-  t,       // how far the ray goes from the surface between both parameters
+  t,       // the distance of the ray from the surface between both parameters
   point,   // distance of the reported point from the surface
   normal,  // length of the difference of unit vectors
   uv,      // greater of both differences
@@ -27,35 +27,35 @@ enum class Quantity {
 inline constexpr std::array quantity_names = {"t", "point", "normal", "uv"};
 
 struct Deviation {
-  double in_bounds = 0;  // in units of what is allowed: more than 1 is a disagreement
+  double in_bounds = 0;  // in units of the allowed deviation: more than 1 is a disagreement
   double in_ulps = 0;    // in units in the last place (of t; of the point's largest coordinate; of 1)
 };
 
-/// A crossing that both have.
+/// A crossing that both find.
 struct Match {
   std::size_t primitive = 0;  // witness index
   std::array<Deviation, quantity_names.size()> deviations;
 };
 
-/// What a disagreement is about.
+/// The subject of a disagreement.
 enum class Fault { hit, id, surface, order, side, material, t, point, normal, uv };
 inline constexpr std::array fault_names = {"hit", "id", "surface", "order", "side", "material", "t", "point", "normal", "uv"};
 
 struct Disagreement {
   Fault fault = Fault::hit;
-  std::size_t primitive = 0;  // witness index; no_primitive: it is about none
+  std::size_t primitive = 0;  // witness index, or no_primitive
   std::string text;
 };
 inline constexpr std::size_t no_primitive = ~std::size_t{0};
 
-/// What the witness says of a ray; the same for all devices.
+/// The witness's answer for a ray, which is the same for all devices.
 struct Expected {
   reference::Ray ray;
   std::vector<reference::SceneHit> hits;  // in order
-  std::vector<std::uint32_t> near;        // primitives whose balls the line goes through
+  std::vector<std::uint32_t> near;        // primitives whose balls the line hits
 };
 
-/// What a device says of it.
+/// A device's answer.
 struct Found {
   PickRecord nearest;
   std::span<const PickRecord> list;  // all crossings
@@ -69,7 +69,7 @@ struct Outcome {
 
 class Comparison {
  public:
-  /// Both last as long as this.
+  /// Both arguments must outlive this.
   Comparison(const Scene& scene, const reference::SceneWitness& witness);
 
   Expected expected(const RayRecord& ray) const;
@@ -77,7 +77,7 @@ class Comparison {
   const Bounds& bounds() const { return bounds_; }
 
  private:
-  struct Pair;  // crossings of one primitive
+  struct Pair;  // the crossings of one primitive
   std::size_t primitive_of(const PickRecord& pick) const;
   std::string name_of(std::size_t primitive) const;
   void compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Random numbers addressed by (seed, stream, index): ray number i is the same however the work is cut. Own distributions, since
-// those of the standard library differ from one library to another.
+// Random numbers addressed by (seed, stream, index): ray number i does not depend on how the work is divided. Distributions are
+// our own, because those of standard libraries differ.
 #pragma once
 
 #include <cmath>
@@ -20,18 +20,18 @@ class Random {
   /// In [0, 1).
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * unit(); }
-  /// 10 to a uniform power.
+  /// Returns 10 to a uniform power.
   double power(double low, double high) { return std::pow(10.0, uniform(low, high)); }
   /// In [0, n).
   std::size_t below(std::size_t n) { return static_cast<std::size_t>(unit() * static_cast<double>(n)); }
   bool one_in(std::size_t n) { return below(n) == 0; }
   double sign() { return one_in(2) ? -1 : 1; }
-  /// Uniform over the unit sphere.
+  /// Returns a uniform point of the unit sphere.
   glm::dvec3 direction() {
     const double z = uniform(-1, 1), phi = uniform(0, 6.283185307179586), r = std::sqrt((1 - z) * (1 + z));
     return {r * std::cos(phi), r * std::sin(phi), z};
   }
-  /// Uniform in the unit ball.
+  /// Returns a uniform point in the unit ball.
   glm::dvec3 in_ball() { return std::cbrt(unit()) * direction(); }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Points on surfaces are found by the witness, along random lines through a primitive: no shape has code of its own here.
+// Finds points on surfaces with the witness, along random lines through a primitive, so that no shape needs code here.
 #include "verify/rays.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ bool is_usable(const RayRecord& r) {
     if (!std::isfinite(x)) return false;
   }
   for (const float x : {r.dx, r.dy, r.dz}) largest = std::max(largest, std::abs(x));
-  // Directions whose squares overflow or vanish are outside what the kernels promise (docs/numerics.md).
+  // The kernels do not support directions whose squares overflow or vanish (docs/numerics.md).
   return largest > 0x1p-50f && largest < 0x1p50f;
 }
 
@@ -43,10 +43,10 @@ RayRecord ray_record(const dvec3& o, const dvec3& d) {
           static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
 }
 
-/// On a primitive's surface, in its space.
+/// A point on a primitive's surface, in its space.
 struct RaySource::Point {
   dvec3 at, normal;  // unit
-  double size;       // of the primitive around there: the length of a chord, at most the ball's radius
+  double size;       // of the primitive near the point: the length of a chord, at most the ball's radius
 };
 
 RaySource::RaySource(const Scene& scene, const reference::SceneWitness& witness, std::uint64_t seed)
@@ -55,7 +55,7 @@ RaySource::RaySource(const Scene& scene, const reference::SceneWitness& witness,
   std::erase_if(by_kind_, [](const auto& primitives) { return primitives.empty(); });
 }
 
-/// A random primitive: each kind as often as every other, however many primitives are of it.
+/// Returns a random primitive. All kinds are equally likely, whatever their numbers of primitives.
 std::size_t RaySource::primitive(Random& random) const {
   const auto& primitives = by_kind_[random.below(by_kind_.size())];
   return primitives[random.below(primitives.size())];
@@ -66,7 +66,7 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
   const reference::Ball& ball = placed.ball;
   Point out{ball.center, random.direction(), ball.radius};
   for (int attempt = 0; attempt < 12; ++attempt) {
-    // Thin shapes are hit along lines through two points near them: one of them on the way to the centre.
+    // Thin shapes are hit along lines through two points of the ball, the second of which is drawn near the centre.
     const dvec3 a = ball.center + ball.radius * random.in_ball();
     const dvec3 b = ball.center + ball.radius * std::pow(random.unit(), 3.0) * random.direction();
     const reference::Ray line{a, b - a, -HUGE_VAL, HUGE_VAL};
@@ -84,7 +84,7 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
   return out;
 }
 
-/// A point where one surface of a shape meets another, or on the boundary of an open shape.
+/// Returns a point where two surfaces of a shape meet, or on the boundary of an open shape.
 std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random) const {
   const auto placed = witness_.placed(index);
   if (const auto curves = reference::boundary(placed.primitive);
@@ -96,7 +96,7 @@ std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random
   const Point a = surface_point(index, random), b = surface_point(index, random);
   const int surface = reference::surface_at(placed.primitive, a.at).surface;
   if (reference::surface_at(placed.primitive, b.at).surface == surface) return std::nullopt;
-  // Bisection along the segment between them, whose points are projected from the ball's centre, to where the surface changes.
+  // Bisection along the segment between the points, projected from the ball's centre, finds where the surface changes.
   const dvec3 from = placed.ball.center;
   double low = 0, high = 1;
   Point out = a;
@@ -191,7 +191,7 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
 
 VerifyRay RaySource::ray(std::uint64_t index) const {
   Random random(seed_, 0, index);
-  // Two of sixteen rays are the camera's, three are bounces, two chords, the others hard.
+  // Two rays in sixteen come from the camera, three are bounces, two are chords, and the others are hard.
   constexpr std::array<RayFamily, 16> turns = {
       RayFamily::camera, RayFamily::camera,   RayFamily::bounce,   RayFamily::bounce,    RayFamily::bounce,  RayFamily::chord,
       RayFamily::chord,  RayFamily::touching, RayFamily::touching, RayFamily::grazing,   RayFamily::grazing, RayFamily::rim,
@@ -208,7 +208,7 @@ VerifyRay RaySource::ray(std::uint64_t index) const {
       return out;
     }
   }
-  // Nothing to bounce from, or a shape without rims.
+  // No surface to bounce from, or a shape without rims, gives a chord.
   out.family = RayFamily::chord;
   for (int attempt = 0; attempt < 8; ++attempt)
     if (out.ray = chord(random); is_usable(out.ray)) return out;

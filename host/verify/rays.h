@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The rays that `verify` asks: of the camera, of diffuse bounces, chords between what the scene holds, and hard ones.
+// The rays of `verify`: camera rays, diffuse bounces, chords between primitives, and hard ones.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@
 namespace caplet::verify {
 
 enum class RayFamily {
-  camera,     // through the middle of a random pixel
-  bounce,     // from where a camera ray or chord hits, cosine-distributed
+  camera,     // through the centre of a random pixel
+  bounce,     // from the hit of a camera ray or chord, cosine-distributed
   chord,      // between two primitives: from outside, or from between them
-  touching,   // along the tangent plane of a surface point, up to 1e-8 to 1e-1 of the size beside it
+  touching,   // along the tangent plane of a surface point, offset by up to 1e-8 to 1e-1 of the size
   grazing,    // to a surface point, at 1e-6 to 1e-1 to its tangent plane
-  rim,        // through a place where one surface goes over into another, or where an open one ends
+  rim,        // through a point where two surfaces meet, or where an open one ends
   axis,       // along a coordinate axis, with zeros of both signs, to a surface point or beside it
   far,        // to a surface point, from 10 to 1e6 times the size away
   inside,     // from within
-  on_surface  // from a surface point as rounded
+  on_surface  // from a surface point after rounding
 };
 inline constexpr std::array family_names = {"camera", "bounce", "chord", "touching", "grazing",
                                             "rim",    "axis",   "far",   "inside",   "on_surface"};
@@ -36,10 +36,10 @@ struct VerifyRay {
   RayFamily family = RayFamily::chord;
 };
 
-/// Ray number `index` of a scene depends on the seed and the index alone. All are finite, with t in (0, infinity).
+/// Ray number `index` of a scene depends only on the seed and the index. All are finite, with t in (0, infinity).
 class RaySource {
  public:
-  /// Both last as long as this.
+  /// Both arguments must outlive this.
   RaySource(const Scene& scene, const reference::SceneWitness& witness, std::uint64_t seed);
   VerifyRay ray(std::uint64_t index) const;
 
@@ -56,10 +56,10 @@ class RaySource {
   const Scene& scene_;
   const reference::SceneWitness& witness_;
   std::uint64_t seed_;
-  std::vector<std::vector<std::size_t>> by_kind_;  // primitives of each kind there is
+  std::vector<std::vector<std::size_t>> by_kind_;  // the primitives of each existing kind
 };
 
-/// The record of a ray as floats.
+/// Rounds a ray to a record of floats.
 RayRecord ray_record(const glm::dvec3& origin, const glm::dvec3& direction);
 
 }  // namespace caplet::verify

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Counts and distributions that many threads fill and that are added up.
+// Counts and distributions that many threads collect and that are then added up.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace caplet::verify {
 
-/// A distribution of numbers >= 0, kept by the logarithm: percentiles are within 5 %.
+/// A distribution of numbers >= 0, stored logarithmically: percentiles are within 5 %.
 class Distribution {
  public:
   void add(double value);
   void add(const Distribution& other);
   std::uint64_t count() const { return count_; }
   double worst() const { return worst_; }
-  /// The value that a share of 0 to 1 of all stay below or reach; 0 when there are none.
+  /// Returns the value that a share of 0 to 1 of all do not exceed; 0 when there are none.
   double percentile(double share) const;
 
  private:
@@ -30,10 +30,10 @@ class Distribution {
   double worst_ = 0;
 };
 
-/// What is counted for one kind of shape.
+/// The counts for one kind of shape.
 struct KindStatistics {
-  std::uint64_t rays = 0;    // whose line passes the ball of a primitive of this kind
-  std::uint64_t hits = 0;    // crossings compared
+  std::uint64_t rays = 0;    // rays whose line hits the ball of a primitive of this kind
+  std::uint64_t hits = 0;    // crossings that were compared
   std::uint64_t grazed = 0;  // rays that graze one: both answers are right
   std::uint64_t disagreements = 0;
   struct Quantity {
@@ -49,7 +49,7 @@ struct Statistics {
   std::uint64_t disagreements = 0;   // rays with at least one
   std::array<std::uint64_t, fault_names.size()> faults{};
   std::array<std::uint64_t, family_names.size()> family_rays{}, family_disagreements{};
-  std::vector<KindStatistics> kinds;  // as reference::kind_names
+  std::vector<KindStatistics> kinds;  // in the order of reference::kind_names
   Statistics();
   void add(const Statistics& other);
   double worst() const;

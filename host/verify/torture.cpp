@@ -52,8 +52,8 @@ class Maker {
   }
 
  private:
-  /// A random transform: moved, turned, and scaled by 10^-scales to 10^scales; every third one stretched and half of those
-  /// mirrored.
+  /// Returns a random transform: a translation, a rotation and a scale of 10^-scales to 10^scales; one in three is stretched and
+  /// half of those are mirrored.
   dmat4 placement(double scales) {
     const double size = random_.power(-scales, scales);
     const double away = std::min(random_.power(-1, 5), most_sizes * size);
@@ -80,7 +80,7 @@ class Maker {
 
   vec3 point() { return vec3(random_.direction()); }
 
-  /// What a geometry's own file draws, from the numbers of this scene.
+  /// Draws a geometry's random numbers from those of this scene.
   class OwnDraws : public Draws {
    public:
     explicit OwnDraws(Random& random) : random_(random) {}
@@ -99,7 +99,7 @@ class Maker {
   }
   Geometry drawn_of(std::type_identity<CsgShape>, Draws&) { return csg(random_.one_in(2) ? 1 : 2); }
 
-  /// `kind`: all sorts of a geometry, one geometry after the other.
+  /// `kind` numbers the variants of all geometries, one geometry after the other.
   Geometry geometry(int kind) {
     OwnDraws draws(random_);
     draws.size = random_.uniform(0.2, 1);
@@ -141,7 +141,7 @@ class Maker {
     return out;
   }
 
-  /// Shapes that touch, in one place.
+  /// Returns shapes that touch each other, in one place.
   std::vector<Shape> neighbours(int which) {
     std::vector<Shape> out;
     const dmat4 placed = placement(2);

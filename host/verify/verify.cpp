@@ -22,7 +22,7 @@ namespace caplet::verify {
 
 namespace {
 
-// Room for the crossings of a ray; those few that have more are asked again. PoCL's batch is just below 65,536 rays.
+// Most rays fit the small limit; the few that have more crossings are traced again. PoCL's batch is just below 65,536 rays.
 constexpr std::size_t few_crossings = 32, many_crossings = std::size_t{1} << 16;
 constexpr std::size_t chunk_rays = 65'536 - 64;
 constexpr std::uint64_t rays_a_round = 250'000;
@@ -93,7 +93,7 @@ void count(Statistics& out, const reference::SceneWitness& witness, const Expect
   once_a_kind(primitives, [](KindStatistics& kind) { ++kind.disagreements; });
 }
 
-/// What the threads of a run fill.
+/// The results that the threads of a run collect.
 struct Work {
   std::vector<Statistics> statistics;
   std::vector<Difference> differences;
@@ -194,7 +194,7 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
         for (Difference& difference : own.differences)
           count(difference, ray.found[difference.first].nearest, ray.found[difference.second].nearest);
       });
-      // In the order of the rays, whatever the threads did.
+      // Results are in the order of the rays, independent of the threads.
       for (std::size_t d = 0; d < devices.size(); ++d) {
         std::ranges::sort(failures[d], {}, &std::pair<std::size_t, Failure>::first);
         for (auto& [ray, failure] : failures[d])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Devices and the witness, asked the same: millions of rays through traversal and hit lists, compared one by one.
+// Compares devices with the witness: millions of rays through traversal and hit lists, compared one by one.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@
 
 namespace caplet::verify {
 
-/// A scene on one or more devices and with the witness.
+/// A scene on one or more devices and in the witness.
 class SceneCheck {
  public:
-  /// The scene and the devices last as long as this. Throws RunError, InputError.
+  /// The scene and the devices must outlive this. Throws RunError, InputError.
   SceneCheck(const Scene& scene, const std::vector<Device>& devices);
 
-  /// What every device found for a ray, beside what is expected. `found` and `outcomes` have an entry a device.
+  /// The devices' answers for a ray, and the expected one. `found` and `outcomes` have an entry per device.
   struct Checked {
     std::size_t ray;
     const Expected& expected;
@@ -37,7 +37,7 @@ class SceneCheck {
   void check(std::span<const RayRecord> rays, const std::function<void(const Checked&)>& visit);
 
   const reference::SceneWitness& witness() const { return witness_; }
-  /// Seconds in the devices' queries so far, an entry a device.
+  /// Returns the seconds in the devices' queries so far, an entry per device.
   const std::vector<double>& device_seconds() const { return device_seconds_; }
 
  private:
@@ -47,13 +47,13 @@ class SceneCheck {
   std::vector<double> device_seconds_;
 };
 
-/// Which scene a case is of: a file, or torture_scene(seed, round).
+/// The scene of a case: a file, or torture_scene(seed, round).
 struct SceneName {
   std::string file;  // empty: a torture scene
   std::uint64_t seed = 0, round = 0;
 };
 
-/// A ray that a device and the witness disagree on.
+/// A ray on which a device and the witness disagree.
 struct Failure {
   SceneName scene;
   RayRecord ray{};
@@ -67,14 +67,14 @@ struct Failure {
 struct DeviceReport {
   DeviceInfo info;
   Statistics statistics;
-  double seconds = 0;             // of its queries
-  std::vector<Failure> failures;  // the first of them
+  double seconds = 0;             // of the device's queries
+  std::vector<Failure> failures;  // the first failures
 };
 
-/// Nearest hits of two devices beside each other. Both are right or wrong by the witness; this says how alike they are.
+/// Compares the nearest hits of two devices. The witness decides which are right; this measures how similar they are.
 struct Difference {
   std::size_t first = 0, second = 0;  // indices into Report::devices
-  std::uint64_t same = 0;             // to the bit
+  std::uint64_t same = 0;             // bit for bit
   std::uint64_t other_t = 0;          // on the same surface, at another t
   std::uint64_t other_place = 0;      // on another primitive or surface, or one of them misses
   double worst_ulps = 0;              // of t, where the surface is the same
@@ -82,30 +82,30 @@ struct Difference {
 
 struct Report {
   std::vector<DeviceReport> devices;
-  std::vector<Difference> differences;  // of every two devices
+  std::vector<Difference> differences;  // of each pair of devices
   double seconds = 0;
   bool interrupted = false;
-  bool is_empty = false;                // the scene has no shapes: no ray was asked
+  bool is_empty = false;                // the scene has no shapes, so no ray was traced
   std::uint64_t disagreements() const;  // of all devices
 };
 
 struct Options {
   std::uint64_t rays = 1'000'000;
   std::uint64_t seed = 0;
-  std::size_t kept_failures = 100;  // a device
+  std::size_t kept_failures = 100;  // per device
   std::function<void(std::uint64_t rays_done)> progress = {};
 };
 
-/// `scene`: what to verify, and its file; none: torture scenes, a new one every 250,000 rays. Rays are those of RaySource. Ends
-/// early when interrupt_requested().
+/// `scene`: the scene to verify, and its file; null: torture scenes, a new one every 250,000 rays. Rays are those of RaySource.
+/// Ends early when interrupt_requested().
 Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices, const Options& options);
 
-/// One pixel's ray through its middle.
+/// The ray through a pixel's centre.
 struct HeatPixel {
   bool hit = false, grazed = false, disagrees = false;
-  std::array<float, quantity_names.size()> in_bounds{};  // of the nearest crossing that both have
+  std::array<float, quantity_names.size()> in_bounds{};  // of the nearest crossing that both find
 };
-/// The window of the scene's film in scan order, on the first device.
+/// Traces the window of the scene's film in scan order, on the first device.
 std::vector<HeatPixel> heatmap(const Scene& scene, const std::vector<Device>& devices);
 
 }  // namespace caplet::verify

@@ -8,14 +8,14 @@
 
 namespace caplet::view {
 
-/// Whether only this machine itself reaches a server that listens at `host`, a numeric address: 127.0.0.0/8 and ::1.
+/// Returns whether only this machine can reach a server at `host`, a numeric address: 127.0.0.0/8 and ::1.
 bool is_this_machine_alone(const std::string& host);
 
-/// Addresses at which a server that listens at `host` is reached: of 0.0.0.0 and :: those of the machine's networks, else the
-/// host itself. Never empty: a machine without a network has its own 127.0.0.1 or ::1.
+/// Returns the addresses of a server that listens at `host`: for 0.0.0.0 and :: those of the machine's networks, else the host
+/// itself. The list is never empty: without a network it is 127.0.0.1 or ::1.
 std::vector<std::string> addresses_reached(const std::string& host);
 
-/// "127.0.0.1:8080", "[::1]:8080".
+/// Returns "127.0.0.1:8080", "[::1]:8080".
 std::string authority_of(const std::string& host, std::uint16_t port);
 
 }  // namespace caplet::view

@@ -18,13 +18,13 @@ namespace caplet::view {
 
 namespace {
 
-/// Throws InputError when there is no such thing.
+/// Throws InputError when the thing does not exist.
 void check_thing(const Scene& scene, std::uint32_t id) {
   const std::size_t count = scene.shapes.size() + scene.instances.size();
   if (id >= count) throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
 }
 
-/// What the edit takes the place of.
+/// Returns the edit that restores the present state.
 SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
   if (const auto* capsule = std::get_if<CapsuleEdit>(&edit))
     return CapsuleEdit{capsule->at, capsule->capsule, capsule_at(scene, capsule->at, capsule->capsule)};
@@ -41,7 +41,7 @@ SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
   return InstanceEdit{instance.instance, scene.instances.at(instance.instance).world_from_object};
 }
 
-/// Two edits of the same take the same place.
+/// Two edits with the same key replace each other.
 std::tuple<std::size_t, std::uint32_t, std::size_t> place_of(const SceneEdit& edit) {
   if (const auto* capsule = std::get_if<CapsuleEdit>(&edit)) return {edit.index(), capsule->at.shape, capsule->capsule};
   if (const auto* transform = std::get_if<TransformEdit>(&edit)) return {edit.index(), transform->at.shape, 0};
@@ -70,7 +70,7 @@ namespace {
 
 using Materials = std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::vector<std::uint32_t>>>>;
 
-/// Shapes' `material` and `materials`.
+/// Returns the rearrangement that sets the materials of shapes.
 template <class Rearrange>
 Rearrange painting(Materials materials) {
   return {[materials = std::move(materials)](Scene& scene, HiddenPointer&) {
@@ -154,7 +154,7 @@ Editor::Step Editor::step_of(const Change& change) const {
   return removal<Rearrange>(std::move(shapes), std::move(instances));
 }
 
-/// Does it, and returns what takes it back. Throws InputError, and then nothing has changed.
+/// Makes the step and returns the one that undoes it. Throws InputError and then changes nothing.
 Editor::Step Editor::take(const Step& step) {
   if (const auto* rearrange = std::get_if<Rearrange>(&step)) {
     Scene scene = live_.scene();
@@ -200,7 +200,7 @@ void Editor::make(const Change& change, bool goes_on) {
   made_ = made_by(change);
   const bool is_new = std::exchange(ends_here_, false);
   if (goes_on && !is_new && !done_.empty() && have_same_places(done_.back().step, back))
-    done_.back().state = states_;  // what is there takes back both
+    done_.back().state = states_;  // the existing entry undoes both
   else
     done_.push_back({std::move(back), states_});
 }

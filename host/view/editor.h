@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Changes of a live scene that can be taken back.
+// Undoable changes of a live scene.
 #pragma once
 
 #include <functional>
@@ -17,54 +17,54 @@
 
 namespace caplet::view {
 
-/// Makes changes of a scene, each as a whole or not at all, and keeps what takes them back, without a limit. The camera is no
-/// change; the film's size is one, and of the document alone.
+/// Changes a scene, each time completely or not at all, and records an unlimited undo history. Camera moves are no changes; a new
+/// film size is one, but of the document only.
 class Editor {
  public:
-  /// `live` must outlive this, and be changed (but for its view) by this alone.
+  /// `live` must outlive this, and only this may change it (except for its view).
   explicit Editor(LiveScene& live) : live_(live), view_(view_of(live.scene())) {}
 
-  /// Throws InputError when there is no such thing, or when validate() would refuse what is to stand there.
-  /// `goes_on`: with the change before, as one, where that is of the same places.
+  /// Throws InputError when the thing does not exist or validate() would refuse the result. `goes_on`: merges the change with the
+  /// one before if both affect the same things.
   void make(const Change& change, bool goes_on = false);
-  /// What goes on from here is a change of its own: this state can be come back to.
+  /// Ends the merging of changes: undo can return to this state.
   void end_gesture() { ends_here_ = true; }
-  /// False when there is nothing to take back, or to make again.
+  /// Return false when there is nothing to undo, or to redo.
   bool undo() { return go(done_, undone_); }
   bool redo() { return go(undone_, done_); }
-  /// Names the state that the scene is in: 0 in the beginning, and again the same number when what was changed since is taken
-  /// back.
+  /// Returns a number for the scene's state: 0 at first. Undoing later changes gives the same number
+  /// again.
   std::uint64_t state() const { return done_.empty() ? 0 : done_.back().state; }
-  /// How that state is got to: by undo (false), by redo (true), or not any more.
+  /// Returns how to reach that state: by undo (false), by redo (true), or no value if it is lost.
   std::optional<bool> way_to(std::uint64_t state) const;
   bool can_undo() const { return !done_.empty(); }
   bool can_redo() const { return !undone_.empty(); }
 
-  /// What is hidden: shapes, then instances, are its list.
+  /// Returns the hidden things, listed as shapes, then instances.
   const Hidden& hidden() const { return *hidden_; }
-  /// How the scene itself is rendered, whatever is looked at now.
+  /// Returns the settings that the scene itself is rendered with, independent of the present view.
   const ViewEdit& view() const { return view_; }
-  /// The scene as it is to be kept: with what is hidden, and its own view.
+  /// Returns the scene to save: with hidden things, and with its own view.
   Scene document() const;
-  /// What the last change made: things by their numbers, or a part by its index.
+  /// Returns what the last change made: numbers of things, or the index of a part.
   const std::vector<std::uint32_t>& made() const { return made_; }
 
-  /// Changes so far, those taken back included, of what is told of the scene (rearrangements), and of those such that give things
-  /// other numbers (renumberings).
+  /// Count all changes so far, including undone ones: those that alter the described scene (rearrangements), and of these, those
+  /// that renumber things (renumberings).
   std::uint64_t rearrangements() const { return rearrangements_; }
   std::uint64_t renumberings() const { return renumberings_; }
 
  private:
-  /// In place, or of the scene as a whole. Doing it gives what takes it back.
+  /// A step is an edit in place or a change of the whole scene. Making it returns the step that undoes it.
   using InPlace = std::vector<SceneEdit>;
   struct Rearrange {
     std::function<Rearrange(Scene&, HiddenPointer&)> work;
-    HiddenPointer hidden = {};  // of what takes back: what was hidden
+    HiddenPointer hidden = {};  // for undo: the things that were hidden
   };
   using Step = std::variant<InPlace, Rearrange, ViewEdit>;
 
   struct Done {
-    Step step;                // what takes back, or makes again
+    Step step;                // undoes or redoes the change
     std::uint64_t state = 0;  // after the change
   };
 
@@ -88,7 +88,7 @@ class Editor {
   bool ends_here_ = false;
 };
 
-/// A shape of the world by its number. Throws InputError when it is none, or an instance.
+/// Returns a shape of the world by number. Throws InputError if it does not exist or is an instance.
 std::uint32_t world_shape(const Scene& scene, std::uint32_t id);
 
 }  // namespace caplet::view

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Changes of parts by their forms, parts that come and go, and what is hidden.
+// Changes of parts by their forms, new and removed parts, and hidden things.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace caplet::view {
 
 namespace {
 
-/// One of the scene's lists as it is to be.
+/// Returns the rearrangement that replaces one of the scene's lists.
 template <auto list, class Rearrange, class List>
 Rearrange replacing(List to) {
   return {[to = std::move(to)](Scene& scene, HiddenPointer&) {
@@ -26,7 +26,7 @@ Rearrange replacing(List to) {
   }};
 }
 
-/// A shape of the world as it is to be.
+/// Returns the rearrangement that replaces a shape of the world.
 template <class Rearrange>
 Rearrange reshaping(std::uint32_t id, std::shared_ptr<const Shape> to) {
   return {[id, to = std::move(to)](Scene& scene, HiddenPointer&) {
@@ -52,7 +52,7 @@ void hide_some(std::vector<T>& of, const std::vector<std::size_t>& places, Hidde
   std::ranges::sort(hidden, {}, [](const auto& one) { return one.first; });
 }
 
-/// Those of `hidden` that `is_wanted` says of their place in its list come to be things that are shown.
+/// Moves those of `hidden` whose index `is_wanted` accepts to the shown things.
 template <class T, class Wanted>
 void show_some(HiddenList<T>& hidden, Wanted&& is_wanted, std::vector<std::pair<std::size_t, T>>& things) {
   HiddenList<T> rest;

@@ -56,7 +56,7 @@ void whole(FormFields& to, const Field& field, int& value) {
   to.whole(field.name, value, static_cast<int>(field.low), static_cast<int>(field.high));
 }
 
-/// Calls textures "field" what scene files call them.
+/// Names the textures of fields as scene files do.
 class MaterialFields : public CompositesInParts<MaterialFields> {
  public:
   MaterialFields(FormFields& to, Material& material) : to_(to), material_(material) {}
@@ -99,7 +99,7 @@ class MaterialFields : public CompositesInParts<MaterialFields> {
   void drop(const std::string& field) {
     std::erase_if(material_.textures, [&](const TexturedField& one) { return one.field == field; });
   }
-  /// A reflectance that may replace what is said otherwise.
+  /// Offers a reflectance as an alternative to other fields.
   void instead(const char* name, const std::vector<std::string>& options, const std::vector<std::string>& others,
                std::optional<Spectrum>& reflectance) {
     const int before = reflectance ? 1 : 0;
@@ -124,7 +124,7 @@ MaterialModel default_material(std::size_t kind, std::uint32_t own, std::size_t 
   return out;
 }
 
-/// Not seen, so that files know no shape that has it and parts no media.
+/// The interface cannot be seen: files drop shapes that have it and separate no media.
 bool bounds_alone(std::size_t kind) { return std::holds_alternative<InterfaceMaterial>(model_of<MaterialModel>(kind)); }
 
 class TextureFields : public IgnoresFields {
@@ -172,7 +172,7 @@ class TextureFields : public IgnoresFields {
   std::uint32_t own_;
 };
 
-/// Whether a texture can be made out of nothing: what is of images cannot, and what is of operands alone is a constant then.
+/// Describes a texture: one of images needs a file, and one of operands only would be a constant.
 struct TextureKind : IgnoresFields {
   bool has_image = false, has_more = false;
   std::optional<bool> is_float = {};
@@ -228,7 +228,7 @@ struct LightFields {
   }
 };
 
-/// What options' `fields` visit.
+/// Visits the fields of options.
 class OptionFields {
  public:
   explicit OptionFields(FormFields& to) : to_(to) {}
@@ -236,7 +236,7 @@ class OptionFields {
   void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
   void integer(const Field& field, int& value) { whole(to_, field, value); }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
-  /// An integer, as scene files say it.
+  /// An unsigned integer, as in scene files.
   void seed(const Field& field, std::uint32_t& value) {
     int seed = static_cast<int>(value);
     to_.whole(field.name, seed, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
@@ -253,12 +253,12 @@ class OptionFields {
   FormFields& to_;
 };
 
-/// What lights of different kinds have alike.
+/// Properties that lights of different kinds share.
 struct LightTraits {
   std::optional<Spectrum> spectrum = {};
   std::optional<glm::dvec3> at = {}, towards = {};
 };
-/// Takes them, or puts them.
+/// Reads or writes the shared properties.
 struct LightCopy : IgnoresFields {
   explicit LightCopy(LightTraits& of, bool puts = false) : traits_(of), puts_(puts) {}
 
@@ -289,7 +289,7 @@ LightModel light_of(std::size_t kind, LightTraits& traits) {
   return out;
 }
 
-/// What validate() says of a light with nothing else there.
+/// Returns whether validate() accepts the light on its own.
 bool stands_alone(LightModel model) {
   Scene scene;
   scene.materials.emplace_back();
@@ -305,7 +305,7 @@ struct NewShape {
   Geometry geometry;
 };
 
-/// What scene/geometries.def has that is a shape without more being said, and capsules.
+/// Lists capsules and the shapes of scene/geometries.def whose defaults are complete.
 const std::vector<NewShape>& new_shapes() {
   static const std::vector<NewShape> all = [] {
     std::vector<NewShape> out;
@@ -477,7 +477,7 @@ void visit_form(FormFields& fields, ViewEdit& view, Part::Kind of) {
     FilmSettings& film = view.film;
     const int width = film.width, height = film.height;
     FilmSettings::fields(film, options);
-    if (film.width != width || film.height != height) film.crop.reset();  // a part of the picture that was
+    if (film.width != width || film.height != height) film.crop.reset();  // the crop was part of the old picture
     fields.number("exposure time", film.exposure_time, 0, infinity);
     film.space = options.kind("colorspace", film.space, color_space_names);
   } else if (of == Part::Kind::filter) {
@@ -548,7 +548,7 @@ Light new_light(const Add& add) {
   if (glm::length(add.towards) > 0) traits.towards = glm::normalize(add.towards);
   Light out;
   out.model = light_of(row_of(light_kinds, add.kind), traits);
-  // As bright at that distance whatever it is.
+  // The light has the same brightness at that distance, whatever its kind.
   if (std::visit([](const auto& m) { return m.unit; }, out.model) == LightUnit::power) out.scale = add.size * add.size;
   return out;
 }

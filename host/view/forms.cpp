@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_text = 100;
 constexpr std::size_t most_mix_depth = 8;
 
-/// What scene files call these samples; empty: nothing.
+/// Returns the name of these samples in scene files; empty: none.
 std::string name_of(const SampledSpectrum& spectrum) {
   static const auto named = [] {
     std::map<std::vector<double>, std::string> out;
@@ -50,7 +50,7 @@ Json spectrum_text(const Spectrum& spectrum) {
   return name.empty() ? Json{{"samples", sampled.values.size()}} : Json{{"name", name}};
 }
 
-/// Says what there is.
+/// Writes all fields.
 class Writer final : public FormFields {
  public:
   Json fields = Json::array();
@@ -196,7 +196,7 @@ class Setter final : public FormFields {
     if (to.size() != 3) refuse("is not a list of three numbers");
     return {to[0], to[1], to[2]};
   }
-  /// Whether a texture comes to stand there; else none does from now on.
+  /// Sets the texture of a slot and returns true; without a texture it clears the slot.
   bool textured(Slot* slot) const {
     const auto* choice = std::get_if<TextureChoice>(&set_.to);
     if (!choice) {
@@ -217,7 +217,7 @@ class Setter final : public FormFields {
   bool found_ = false;
 };
 
-/// A colour to know a material by, in linear sRGB: of its first spectrum.
+/// Finds a colour that represents a material, in linear sRGB: that of its first spectrum.
 struct Swatch : IgnoresFields {
   explicit Swatch(const Scene& of, std::size_t within = 0) : scene(of), depth(within) {}
   const Scene& scene;
@@ -240,7 +240,7 @@ struct Swatch : IgnoresFields {
     const glm::dvec3 absorbed = of(sigma_a);
     take({std::exp(-2 * absorbed.x), std::exp(-2 * absorbed.y), std::exp(-2 * absorbed.z)});
   }
-  /// At normal incidence.
+  /// The colour is the reflectance at normal incidence.
   void metal(const MetalFields&, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
     if (reflectance) return take(of(*reflectance));
     const glm::dvec3 n = of(eta), e = of(k);
@@ -305,7 +305,7 @@ Json form_text(const Scene& scene, const ViewEdit& view, const Part& part) {
     if (!has(scene.shapes)) return nullptr;
     const Shape& shape = scene.shapes[part.number];
     out["title"] = geometry_name(shape);
-    // The fields alone: what is not one of them may be large.
+    // Only the fields are copied, because other data may be large.
     Shape one;
     one.name = shape.name;
     one.one_sided = shape.one_sided;

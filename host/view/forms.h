@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Forms of a scene's parts, made from the lists of host/scene.
+// Makes forms of a scene's parts from the lists of host/scene.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,17 +12,17 @@
 
 namespace caplet::view {
 
-/// A part's fields in order, each with its name, type, value and range (docs/viewer.md). Null where there is no such part.
+/// Returns a part's fields in order, with name, type, value and range (docs/viewer.md), or null if the part does not exist.
 nlohmann::ordered_json form_text(const Scene& scene, const ViewEdit& view, const Part& part);
 
-/// What there is to be chosen: the kinds that the lists know, and the spectra that have names.
+/// Returns the choices: the kinds of every list, and the named spectra.
 nlohmann::ordered_json lists_text();
 
-/// Materials with a colour each, textures and lights by their names.
+/// Returns materials with a representative colour, textures and lights, by name.
 nlohmann::ordered_json parts_text(const Scene& scene);
 
-// Sets `field`. Throw InputError with the field as its place when there is none of that name, or the value is not one of its kind
-// and range.
+// Sets `field`. Throw InputError with the field as its place when no field has that name, or the value has the wrong type or is
+// out of range.
 void set_field(Material& material, const Scene& scene, const Set& set);
 void set_field(Texture& texture, const Scene& scene, const Set& set);
 void set_field(Light& light, const Scene& scene, const Set& set);

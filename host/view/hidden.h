@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Things that are not shown.
+// Things that are hidden.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 namespace caplet::view {
 
-/// Things by the places that they have in the whole, in ascending order.
+/// Things and their indices among all things, in ascending order.
 template <class T>
 using HiddenList = std::vector<std::pair<std::size_t, std::shared_ptr<const T>>>;
-/// What is left out of the picture.
+/// The things that are left out of the picture.
 struct Hidden {
   HiddenList<Shape> shapes;
   HiddenList<Instance> instances;

@@ -44,7 +44,7 @@ bool Journal::begin(const fs::path& file, const std::vector<std::string>& lines)
     check_ = check_of(check_, line);
     text += check_ + " " + line + "\n";
   }
-  // The old one stands until the new one is whole.
+  // The old file stays until the new one is complete.
   const fs::path fresh = file.string() + ".new";
   std::error_code ignored;
   fs::remove(fresh, ignored);
@@ -83,7 +83,7 @@ std::vector<std::string> Journal::read(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string line, check;
   std::size_t bytes = 0;
-  while (std::getline(in, line) && !in.eof()) {  // one without its end is torn
+  while (std::getline(in, line) && !in.eof()) {  // a last line without its end is incomplete
     bytes += line.size();
     if (bytes > most_journal_bytes || line.size() <= check_length || line[check_length] != ' ') break;
     std::string text = line.substr(check_length + 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lines of text in a file that is only appended to, so that a process that is killed leaves all that it had written.
+// An append-only file of lines: a killed process loses nothing that it has written.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace caplet::view {
 
-/// Each line has a check over itself and all lines before it (RFC 9923): what is torn, altered or out of its order ends what is
-/// believed of a file. Only for the user who writes it (mode 0600).
+/// Each line has a checksum over itself and all lines before it (RFC 9923). Reading stops at the first torn, altered or misplaced
+/// line. Only the user can read the file (mode 0600).
 class Journal {
  public:
   Journal() = default;
@@ -20,14 +20,14 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// Replaces the file by these lines. False when that cannot be; errno says why.
+  /// Replaces the file by these lines. Returns false on failure; errno says why.
   bool begin(const std::filesystem::path& file, const std::vector<std::string>& lines);
-  /// False when not all of it could be written: then nothing is, and the journal is closed.
+  /// Returns false if the line could not be written completely: it is then removed, and the journal is closed.
   bool append(std::string_view line);
   bool is_open() const { return descriptor_ >= 0; }
   void close();
 
-  /// The lines of a file that are whole, in their order; none of one that is not there. At most `most_journal_bytes` are read.
+  /// Returns the intact lines in order; none if the file does not exist. At most `most_journal_bytes` are read.
   static std::vector<std::string> read(const std::filesystem::path& file);
 
  private:
@@ -37,7 +37,7 @@ class Journal {
 
 inline constexpr std::size_t most_journal_bytes = std::size_t{1} << 30;
 
-/// 32 hexadecimal digits of what the file holds, read piece by piece; empty when it cannot be read.
+/// Returns a hash of the file's content as 32 hexadecimal digits, read in pieces; empty if it cannot be read.
 std::string file_hash(const std::filesystem::path& file);
 
 }  // namespace caplet::view

@@ -43,9 +43,9 @@ std::optional<Json> object_of(const std::string& line) {
   return out.is_object() ? std::optional(std::move(out)) : std::nullopt;
 }
 
-constexpr std::string_view of_bytes = "bytes:";  // absolute paths begin with a slash
+constexpr std::string_view of_bytes = "bytes:";  // marks encoded bytes: absolute paths begin with a slash
 
-/// A path as JSON holds it. One that is no UTF-8 has a character for each byte behind `of_bytes`: it is read again as it was.
+/// Returns a path for JSON. One that is not UTF-8 is encoded as a character per byte behind `of_bytes`, and can be read back.
 std::string json_of_path(const std::string& path) {
   if (valid_utf8(path) == path) return path;
   std::string out(of_bytes);
@@ -87,7 +87,7 @@ bool is_written_by_caplet(const fs::path& file) {
 }  // namespace
 
 Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolute(scene).lexically_normal()) {
-  for (const auto& [name, value] : read_as) read_as_.emplace(name, valid_utf8(value));  // as the journal gives it back
+  for (const auto& [name, value] : read_as) read_as_.emplace(name, valid_utf8(value));  // as the journal returns it
   const std::string known_as = fs::weakly_canonical(scene_).string();
   const fs::path folder = scene_.parent_path(), name = scene_.filename();
   copy_ = folder / fmt::format(".{}.unsaved.pbrt", name.stem().string());
@@ -95,7 +95,7 @@ Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolu
   elsewhere_ = in_cache("unsaved " + known_as, "unsaved");
   default_name_ = name.extension() == ".pbrt" ? name.string() : name.stem().string() + ".pbrt";
   if (fs::path(default_name_).stem().extension() == ".pbrt")
-    default_name_ = fs::path(default_name_).stem().string();  // of .pbrt.gz
+    default_name_ = fs::path(default_name_).stem().string();  // removes the first ending of .pbrt.gz
 
   lock_file_ = in_cache("lock " + known_as, "lock");
   if (!lock_file_.empty()) {
@@ -110,14 +110,14 @@ Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolu
       return;
     }
   }
-  // Hashing a large file takes a while, and nothing needs the hash before there is something to
+  // Hashing a large file takes a while, and the hash is needed only when there is something to
   // keep.
   scene_hash_ = std::async(std::launch::deferred, [content = content_of(scene_)] { return hash_of(content); }).share();
   base_hash_ = scene_hash_;
   for (const fs::path& place : {journal_, elsewhere_})
     if (!place.empty()) find_left(place);
   std::error_code ignored;
-  if (!base_is_copy_) fs::remove(copy_, ignored);  // of a session that had saved all
+  if (!base_is_copy_) fs::remove(copy_, ignored);  // a copy left by a session that had saved everything
 }
 
 Keeper::~Keeper() {
@@ -143,7 +143,7 @@ void Keeper::find_left(const fs::path& journal) try {
     return;
   }
   lines.erase(lines.begin());
-  // What the scene's file holds if nobody else has written it.
+  // The hash of the scene's file, unless another program has written it.
   std::string wanted = head->value("content", "");
   std::size_t saved = 0;
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -166,7 +166,7 @@ void Keeper::find_left(const fs::path& journal) try {
   }
   if (!fits) {
     lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(saved));
-    // Alone, without what they began with.
+    // These lines are put aside without the content that they began with.
     Journal aside;
     if (aside.begin(journal, lines)) put_aside(journal);
     return;
@@ -175,7 +175,7 @@ void Keeper::find_left(const fs::path& journal) try {
   base_is_copy_ = begins_in_copy;
   if (begins_in_copy) base_hash_ = ready(head->value("content", ""));
   if (journal != journal_) std::swap(journal_, elsewhere_);
-} catch (const Json::exception& error) {  // lines that are whole, but none of ours
+} catch (const Json::exception& error) {  // intact lines that Caplet has not written
   log::warn("{}: {}", journal.string(), error.what());
 }
 
@@ -273,7 +273,7 @@ void Keeper::keep(const std::string& line) {
 }
 
 fs::path Keeper::target(const std::optional<std::string>& name) const {
-  // A page has the name as UTF-8.
+  // The page has the name as UTF-8.
   std::string out = name && *name != valid_utf8(default_name_) ? *name : default_name_;
   const auto refuse = [&](const char* why) { throw InputError(SourceLocation{"name"}, fmt::format("'{}' {}", out, why)); };
   if (out.empty()) refuse("is no name");

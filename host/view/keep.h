@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What outlives a session: the scene as it is saved, and changes that are not.
+// Data that outlive a session: the saved scene and unsaved changes.
 #pragma once
 
 #include <cstdint>
@@ -18,67 +18,67 @@
 
 namespace caplet::view {
 
-/// Files of a session of one scene file.
+/// The files of a session of one scene file.
 ///
-/// Changes that are made are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that folder cannot be
-/// written, in the cache: what the page said, in its order, undos too, so that the same lines made again on the same content give
-/// the same scene with the same way back. Its first line names that content by a hash, and how it was read. The journal is there
-/// from the first change to the next save. What the file held before it was saved over stays beside it, `.STEM.unsaved.pbrt`,
-/// while the session lasts: the lines of changes after that begin there, too.
+/// Changes are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that folder is not writable, in the
+/// cache: the messages of the page in order, including undos, so that replaying them on the same content gives the same scene and
+/// the same undo history. The first line has a hash of that content and the options it was read with. The journal exists from the
+/// first change to the next save. The content before a save is kept beside it, `.STEM.unsaved.pbrt`, during the session: later
+/// lines of changes start from it, too.
 ///
-/// If two sessions show one file at a time, the second keeps nothing.
+/// If two sessions open one file at the same time, the second keeps nothing.
 class Keeper {
  public:
-  /// What a user asked of the file's reader, by name: another scene, to which changes of this one do not belong.
+  /// The reading options of a user, by name. Changes made with other options do not fit this scene.
   using ReadAs = std::map<std::string, std::string>;
 
-  /// Looks for what an earlier session left. `scene` exists.
+  /// Looks for files of an earlier session. `scene` must exist.
   explicit Keeper(const std::filesystem::path& scene, const ReadAs& read_as = {});
   ~Keeper();
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
 
-  /// What is to be imported: the file, or what it held before.
+  /// Returns the file to import: the scene's file, or its former content.
   const std::filesystem::path& base() const { return base_is_copy_ ? copy_ : scene_; }
-  /// Other files that base() was read from. To be called once, when it has been.
+  /// Tells which other files base() was read from. It must be called once, after reading.
   void has_read(const std::vector<std::string>& files);
-  /// To be called when nobody waits for the processor: from now on the files' contents are looked at, elsewhere. The first change
-  /// does it too, and waits.
+  /// Starts hashing the files on another thread; to be called when the processor is idle. The first change also starts it, and
+  /// waits for it.
   void look_at_contents();
 
-  /// Lines that an earlier session left of base(), oldest first, to be made again before any other.
+  /// Returns the lines that an earlier session left for base(), oldest first. They must be replayed before other changes.
   const std::vector<std::string>& lines() const { return lines_; }
-  /// The first `count` of them could be made again; others are put aside.
+  /// Reports that the first `count` lines could be replayed; the others are put aside.
   void has_made(std::size_t count);
-  /// What an earlier session left of another content, newest first; null where there is none.
+  /// Lines that an earlier session left for other content, newest first; null where there are none.
   struct Old {
     std::filesystem::path file;
-    std::vector<std::string> lines;  // since the file was saved last
+    std::vector<std::string> lines;  // since the last save
   };
   const Old* old() const { return old_.empty() ? nullptr : &old_.back(); }
   void forget_old();
 
-  /// A change that was made, as a line.
+  /// Records a change as a line.
   void keep(const std::string& line);
-  /// Why changes are not kept; empty where they are, or would be.
+  /// Returns why changes cannot be kept; empty if they can.
   const std::string& failure() const { return failure_; }
-  /// Where they are kept.
+  /// Returns the journal's path.
   const std::filesystem::path& journal() const { return journal_; }
 
-  /// The file that a name means, beside the scene's; none: the last one, or the scene's own as .pbrt. Throws InputError for a
-  /// name that is none, or leads elsewhere.
+  /// Returns the file of a name, beside the scene's; without a name the last one, or the scene's own name as .pbrt. Throws
+  /// InputError for an invalid name, or one that leads to another folder.
   std::filesystem::path target(const std::optional<std::string>& name) const;
   std::string default_name() const { return default_name_; }
-  /// What would be lost with the file that is there, in words; empty when nothing would be.
+  /// Describes what overwriting the file would lose; empty if nothing.
   std::string lost_with(const std::filesystem::path& target) const;
-  /// Writes the scene, and ends the journal. `mark` is kept with what comes after. Throws as write_scene does, and then all is as
-  /// before.
+  /// Writes the scene and ends the journal. `mark` is kept with later changes. Throws as write_scene does, and then leaves
+  /// everything as before.
   void save(const Scene& scene, const std::filesystem::path& target, const std::string& mark,
             const std::function<bool()>& cancelled = {});
 
-  /// All that was changed is saved, or taken back: there is no journal until the next change.
+  /// Removes the journal until the next change, because all changes are saved or undone.
   void rest();
-  /// Nothing more comes. What is kept stays when it has unsaved changes.
+  /// Ends the session. The journal stays if there are unsaved changes.
   void end(bool has_unsaved);
 
  private:
@@ -91,7 +91,7 @@ class Keeper {
   void fail(const std::string& why);
 
   ReadAs read_as_;
-  std::filesystem::path scene_, copy_, journal_, elsewhere_;  // elsewhere: the journal's second place
+  std::filesystem::path scene_, copy_, journal_, elsewhere_;  // elsewhere: the journal's alternative path
   std::filesystem::path lock_file_;
   int lock_ = -1;
   bool base_is_copy_ = false, is_second_ = false;
@@ -101,20 +101,20 @@ class Keeper {
   Journal file_;
   struct Content {
     std::string path;
-    std::int64_t bytes = -1, written = 0;  // when it was read; another time since: the content is not known
+    std::int64_t bytes = -1, written = 0;  // at the time of reading; if they differ later, the content is unknown
   };
   static Content content_of(const std::filesystem::path& file);
   static std::string hash_of(const Content& content);
 
-  std::shared_future<std::string> scene_hash_;  // as it was read, or saved last
+  std::shared_future<std::string> scene_hash_;  // at the time of reading or of the last save
   std::shared_future<std::string> base_hash_;
   std::shared_future<Others> others_;
   std::future<void> looking_;
-  std::map<std::filesystem::path, std::string> written_;  // by this session
+  std::map<std::filesystem::path, std::string> written_;  // hashes of files that this session wrote
 };
 
-/// The token kept for this address and scene, or a fresh one that is kept from now on: a page that is open goes on with the next
-/// session. In the cache, in a file for this user alone.
+/// Returns the token stored for this address and scene, or a new one that is stored: an open page then continues with the next
+/// session. It is in the cache, in a file that only this user can read.
 std::string kept_token(const std::string& host, std::uint16_t port, const std::filesystem::path& scene);
 
 }  // namespace caplet::view

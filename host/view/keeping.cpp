@@ -21,10 +21,10 @@ using Json = nlohmann::ordered_json;
 constexpr const char* undo_line = R"({"type":"undo","again":false})";
 constexpr const char* redo_line = R"({"type":"undo","again":true})";
 
-/// In one line.
+/// Returns the text as a single line.
 std::string line_of(const std::string& text) { return json_dump(Json::parse(text)); }
 
-/// That the scene was saved there, and no change.
+/// Returns whether the line marks a save and not a change.
 bool is_mark(const std::string& line) {
   const Json text = Json::parse(line, nullptr, false);
   return text.is_object() && text.value("type", "") == "saved";
@@ -52,7 +52,7 @@ bool Keeping::change(const Message& message) {
   return false;
 }
 
-/// Whether it could be made.
+/// Returns whether the change could be made.
 bool Keeping::make_line(const std::string& line) try {
   if (!is_mark(line)) return change(parse_message(line));
   const Json text = Json::parse(line);
@@ -83,7 +83,7 @@ std::size_t Keeping::make_lines(const std::vector<std::string>& lines) {
 bool Keeping::make(const Message& message, const std::string& text) {
   if (std::holds_alternative<Discard>(message)) {
     const std::uint64_t state = editor_.state();
-    // As the undos that it is.
+    // A discard is recorded as the undos that it consists of.
     const auto go = [&](bool again) {
       if (!(again ? editor_.redo() : editor_.undo())) return false;
       if (keeper_) keeper_->keep(again ? redo_line : undo_line);

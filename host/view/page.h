@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The files of the page (host/view/page), which are part of the program.
+// The page's files (host/view/page), which are embedded in the program.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace caplet::view {
 
-/// The file of that name; "" is index.html.
+/// Returns the file of that name; "" is index.html.
 std::optional<PageFile> page_file(std::string_view name);
 
 }  // namespace caplet::view

@@ -52,7 +52,7 @@ std::string deflated(const std::string& data) {
   return out;
 }
 
-/// Bytes of `count` words of `width` bytes, the most significant of all first: each word as its difference to the one before.
+/// Splits words of `width` bytes into planes, most significant first; each word is stored as its difference to the last.
 template <class Word>
 void add_planes(std::string& out, const std::vector<Word>& words) {
   const std::size_t first = out.size(), count = words.size();
@@ -69,12 +69,12 @@ void add_planes(std::string& out, const std::vector<Word>& words) {
 }  // namespace
 
 std::uint16_t to_half(float value) {
-  if (!(value > 0)) return 0;  // nothing that is shown is below black
+  if (!(value > 0)) return 0;  // no displayed value is below black
   constexpr std::uint32_t bias = (127 - 15) << 10;
   const auto bits = std::bit_cast<std::uint32_t>(std::min(value, 65000.0f));
-  const std::uint32_t rounded = bits + (1u << 15);  // to 16 of 32 bits: 7 of the fraction
+  const std::uint32_t rounded = bits + (1u << 15);  // rounds to 16 of 32 bits: 7 of the fraction
   const std::uint32_t half = rounded >> 13 & ~7u;
-  if (half < bias + (1u << 10)) return 0;  // below the least normal number
+  if (half < bias + (1u << 10)) return 0;  // below the least normal half float
   return static_cast<std::uint16_t>(half - bias);
 }
 

@@ -43,7 +43,7 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   out["device"] = device;
   out["samples"] = samples;
   out["bounds"] = to_json(bounds_or_unit_of(scene));
-  // By the numbers of the layer object.id (lower/identity.h).
+  // Things are numbered as in the layer object.id (lower/identity.h).
   Json things = Json::array();
   for (const Shape& shape : scene.shapes) {
     if (things.size() >= most_named) break;

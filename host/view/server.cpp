@@ -46,13 +46,13 @@ using Parser = http::request_parser<http::empty_body>;
 
 std::string_view view_of(boost::string_view text) { return {text.data(), text.size()}; }
 
-/// A Host header: "127.0.0.1:8080", "[::1]:80", "localhost".
+/// The value of a Host header: "127.0.0.1:8080", "[::1]:80", "localhost".
 struct Authority {
   std::string_view host;
   std::optional<std::uint16_t> port;
 };
 
-/// None of what is no host and at most one port (RFC 3986, section 3.2).
+/// Parses a host with at most one port (RFC 3986, section 3.2); no value for anything else.
 std::optional<Authority> authority_in(std::string_view text) {
   Authority out;
   const bool is_bracketed = text.starts_with('[');
@@ -69,20 +69,20 @@ std::optional<Authority> authority_in(std::string_view text) {
   return out;
 }
 
-/// The one value of a header; none where it is missing or there are several.
+/// Returns the only value of a header; none if it is missing or repeated.
 std::optional<std::string_view> only(const Request& request, http::field name) {
   const auto [begin, end] = request.equal_range(name);
   if (begin == end || std::next(begin) != end) return {};
   return view_of(begin->value());
 }
 
-/// An IPv4 address that came through an IPv6 socket as itself.
+/// Returns the IPv4 address of a client that came through an IPv6 socket.
 asio::ip::address plain(const asio::ip::address& address) {
   if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
   return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
 }
 
-/// Messages that a client may send: so many a second, and some more at once.
+/// Limits a client's messages: a rate per second and a burst.
 class Allowance {
  public:
   Allowance(double rate, double burst) : rate_(rate), burst_(burst), left_(burst) {}
@@ -112,7 +112,7 @@ class Server::State {
       const tcp::endpoint at(asio::ip::make_address(options.host), options.port);
       acceptor_.open(at.protocol());
       acceptor_.set_option(asio::socket_base::reuse_address(true));
-      if (at.protocol() == tcp::v6()) acceptor_.set_option(asio::ip::v6_only(false));  // "::" is all of IPv4, too
+      if (at.protocol() == tcp::v6()) acceptor_.set_option(asio::ip::v6_only(false));  // "::" accepts all of IPv4, too
       acceptor_.bind(at);
       acceptor_.listen();
       port_ = acceptor_.local_endpoint().port();
@@ -144,7 +144,7 @@ class Server::State {
   }
   ClientId next_client() { return ++last_client_; }
 
-  /// Names by which a page of this machine calls it; a name that an attacker's DNS leads here is none of them.
+  /// Accepts only names that a page of this machine uses, and so no name that an attacker's DNS resolves to it.
   bool is_own(std::string_view text, const tcp::endpoint& here) const {
     const std::optional<Authority> authority = authority_in(text);
     if (!authority || authority->port.value_or(80) != port_) return false;
@@ -153,7 +153,7 @@ class Server::State {
     return host == plain(here.address()).to_string();
   }
 
-  // Connections that have not named the token yet, in the order in which they came.
+  // Strangers are connections that have not sent the token yet, in the order of arrival.
   void add_stranger(const std::shared_ptr<Connection>& one) { strangers_.push_back(one); }
   void forget_stranger(const Connection* one);
 
@@ -165,9 +165,9 @@ class Server::State {
   ServerEvents events_;
   std::map<ClientId, std::weak_ptr<Client>> clients_;
   std::list<std::weak_ptr<Connection>> strangers_;
-  std::size_t connections_ = 0;  // those that have named the token, sockets among them
+  std::size_t connections_ = 0;  // those that have sent the token, including sockets
   ClientId last_client_ = 0;
-  asio::io_context context_{1};  // ends before what its handlers, and the connections that they hold, refer to
+  asio::io_context context_{1};  // it is destroyed before the objects that its handlers refer to
   tcp::acceptor acceptor_;
   std::uint16_t port_ = 0;
   std::thread thread_;
@@ -208,12 +208,12 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
   void send(std::shared_ptr<const std::string> message, bool binary) {
     waiting_bytes_ += message->size();
-    if (waiting_bytes_ > server_.options().most_waiting_bytes) return drop();  // it takes nothing, a reason neither
+    if (waiting_bytes_ > server_.options().most_waiting_bytes) return drop();  // it reads nothing, not even a reason
     waiting_.push_back({std::move(message), binary});
     go_on();
   }
 
-  /// Writes what waits, or else the newest picture.
+  /// Writes waiting messages, or else the newest picture.
   void go_on() {
     if (writing_ || ended_ || !joined_) return;
     bool binary = true;
@@ -247,7 +247,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     });
   }
 
-  /// Tells it why; what it does not take within the patience is not waited for.
+  /// Closes with a reason. Data that the client does not read within the timeout are dropped.
   void end(websocket::close_code why) {
     if (std::exchange(ended_, true)) return;
     waiting_.clear();
@@ -311,7 +311,7 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     if (request.count(http::field::host) > 1) return answer(http::status::bad_request, {}, false);
     const std::string_view host = only(request, http::field::host).value_or("");
     if (!server_.is_own(host, here_)) return answer(http::status::forbidden, {}, false);
-    // "/TOKEN/path"
+    // The path is "/TOKEN/path".
     std::string_view path = view_of(request.target());
     path = path.substr(0, path.find('?'));
     const std::size_t slash = path.find('/', 1);
@@ -329,7 +329,7 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
            request.method() == http::verb::head);
   }
 
-  /// False where there is no place for one more.
+  /// Returns false if there are too many connections.
   bool become_known() {
     if (is_known_) return true;
     if (server_.connections() >= server_.options().most_connections) return false;
@@ -341,7 +341,7 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
   void upgrade(std::string_view path, std::string_view host) {
     const Request& request = parser_->get();
     if (path != "socket") return answer(http::status::not_found, {}, false);
-    // Pages of others can open sockets here; browsers tell whose page it is.
+    // Pages of other sites can open sockets here; the browser sends the site in Origin.
     if (only(request, http::field::origin).value_or("") != fmt::format("http://{}", host))
       return answer(http::status::forbidden, {}, false);
     const auto joined = static_cast<std::size_t>(
@@ -387,7 +387,7 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
   beast::tcp_stream stream_;
   tcp::endpoint here_;
   asio::ip::address from_;
-  bool is_known_ = false;  // it has named the token
+  bool is_known_ = false;  // it has sent the token
   beast::flat_buffer buffer_{most_header_bytes + 4096};
   std::optional<Parser> parser_;
   std::optional<http::response<http::string_body>> response_;
@@ -397,8 +397,8 @@ void Server::State::forget_stranger(const Connection* one) {
   std::erase_if(strangers_, [&](const auto& other) { return other.expired() || other.lock().get() == one; });
 }
 
-/// Whoever holds places and says nothing loses them to those who come: a browser sends its request at once. So nobody can keep
-/// others out by waiting, from the same address neither.
+/// Drops the oldest silent connection when a new one needs its place: a browser sends its request at once. So nobody can keep
+/// others out by waiting, not even those from the same address.
 void Server::State::make_room_for(const asio::ip::address& from) {
   std::shared_ptr<Connection> oldest, oldest_from_there;
   std::size_t all = 0, from_there = 0;
@@ -431,7 +431,7 @@ void Server::State::accept() {
   });
 }
 
-// --- The face ---
+// --- The public interface ---
 
 Server::Server(const ServerOptions& options, ServerEvents events) : state_(std::make_unique<State>(options, std::move(events))) {}
 Server::~Server() = default;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A small server for a page of our own: HTTP for its files, a WebSocket for what it says and is told. It knows nothing of scenes.
+// A small server for our own page: HTTP for its files, a WebSocket for messages. It does not depend on scenes.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 
 namespace caplet::view {
 
-/// Numbers clients in the order in which they came, from 1.
+/// Clients are numbered in the order of arrival, from 1.
 using ClientId = std::uint64_t;
 
 struct ServerOptions {
   std::string host = "127.0.0.1";                        // an address of this machine
-  std::uint16_t port = 0;                                // 0: any that is free
-  std::string token;                                     // first part of every path; whoever does not know it is refused
-  std::size_t most_clients = 16, most_connections = 64;  // that know the token
-  std::size_t most_strangers_an_address = 16;            // connections that have not named it yet: the oldest one goes
-  double stranger_seconds = 5;                           // after which such a one is gone
-  double silence_seconds = 8;                            // after which a client that answers no ping is gone
+  std::uint16_t port = 0;                                // 0: any free port
+  std::string token;                                     // first part of every path; requests without it are refused
+  std::size_t most_clients = 16, most_connections = 64;  // limits for clients that have sent the token
+  std::size_t most_strangers_an_address = 16;            // limit of connections per address without token; the oldest is dropped
+  double stranger_seconds = 5;                           // time limit for sending the token
+  double silence_seconds = 8;                            // time limit for answering a ping
   std::size_t most_message_bytes = std::size_t{1} << 16;
-  double messages_a_second = 300, burst = 600;             // of a client
-  std::size_t most_waiting_bytes = std::size_t{32} << 20;  // of messages that a client has not taken
+  double messages_a_second = 300, burst = 600;             // limits per client
+  std::size_t most_waiting_bytes = std::size_t{32} << 20;  // of messages that a client has not read
 };
 
 /// A file of the page.
@@ -35,20 +35,20 @@ struct PageFile {
   std::string_view type, text;
 };
 
-/// What a server asks and tells, on its own thread. None of them may block or throw.
+/// Callbacks of a server, called on its own thread. None of them may block or throw.
 struct ServerEvents {
-  std::function<std::optional<PageFile>(std::string_view path)> file;  // below the token; "" is the page itself
+  std::function<std::optional<PageFile>(std::string_view path)> file;  // `path` comes after the token; "" is the page itself
   std::function<void(ClientId)> joined, left;
   std::function<void(ClientId, std::string)> message;
-  /// The next picture for a client that has taken all that was sent to it, or null: `shown` is what it was given last (0: none),
-  /// and becomes what it is given.
+  /// Returns the next picture for a client that has read all earlier messages, or null. `shown` is the number of its last picture
+  /// (0: none), and receives that of the new one.
   std::function<std::shared_ptr<const std::string>(ClientId, std::uint64_t& shown)> picture;
 };
 
-/// Serves on a thread of its own from its making to its end. What is not asked for by the page's own address is refused: another
-/// token, another Host than this machine's, another Origin than the page's. Messages, rates, connections and waiting bytes have
-/// limits; a client beyond them is closed, and one that is slow gets fewer pictures. Who has not named the token has few places,
-/// for seconds, and none of those of others.
+/// Serves on its own thread for the lifetime of the object. It refuses requests with another token, another Host than this
+/// machine's, or another Origin than the page's. Messages, rates, connections and waiting bytes are limited; a client that
+/// exceeds a limit is closed, and a slow one gets fewer pictures. Connections without the token have few places, for seconds, and
+/// cannot take those of clients.
 class Server {
  public:
   /// Throws RunError when it cannot listen there.
@@ -61,10 +61,10 @@ class Server {
   /// Returns the address of the page, with the token.
   std::string address() const;
 
-  // From any thread:
+  // These may be called from any thread:
   void send(ClientId to, std::shared_ptr<const std::string> message, bool binary = false);
   void send_to_all(std::shared_ptr<const std::string> message);
-  /// There is a picture that clients do not have.
+  /// Announces a picture that clients do not have yet.
   void picture_changed();
 
  private:
@@ -72,10 +72,10 @@ class Server {
   std::unique_ptr<State> state_;
 };
 
-/// 128 bits that nobody can guess, as 32 hexadecimal digits. Throws RunError when the machine has none.
+/// Returns 128 random bits as 32 hexadecimal digits. Throws RunError when the machine has no random source.
 std::string random_token();
 
-/// Whether they are equal, in a time that depends on their lengths alone.
+/// Compares in a time that depends only on the lengths.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 
 }  // namespace caplet::view

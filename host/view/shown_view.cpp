@@ -11,7 +11,7 @@ namespace caplet::view {
 
 namespace {
 
-constexpr double usual_fov = 0.7;  // of an orthographic or spherical camera that becomes a perspective one
+constexpr double usual_fov = 0.7;  // used if an orthographic or spherical camera becomes a perspective one
 
 }  // namespace
 

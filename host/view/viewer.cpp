@@ -44,16 +44,16 @@ namespace {
 constexpr int coarsest_scale = 16;
 constexpr double first_guess_paths_a_second = 5e5;
 constexpr std::size_t most_crossings = 4096;
-constexpr std::size_t most_questions = 16, most_edits = 1000;  // that wait
+constexpr std::size_t most_questions = 16, most_edits = 1000;  // limits of waiting messages
 
 using Text = std::shared_ptr<const std::string>;
 
 Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<const std::string>(json_dump(message)); }
 
-/// A new view is wanted: the picture under way is of no more use.
+/// Thrown when a new view is requested, to abandon the picture in progress.
 struct Superseded {};
 
-/// `number`: of what was asked for, where that has one.
+/// `number`: of the request, if it has one.
 std::string error_text(const std::string& what, double number = 0) {
   nlohmann::ordered_json out{{"type", "error"}, {"text", what}};
   if (number > 0) out["number"] = number;
@@ -71,7 +71,7 @@ class Viewer::State {
     (void)live_.take_changes();
     query_.emplace(*session_->scene_on(0));
     const RayRecord any{0, 0, 0, 0, 0, 0, 1, INFINITY};
-    (void)query_->closest(std::span(&any, 1));  // compiles its kernel
+    (void)query_->closest(std::span(&any, 1));  // compiles the query's kernel
     ServerEvents events;
     events.file = page_file;
     events.joined = [this](ClientId id) { joined(id); };
@@ -79,7 +79,7 @@ class Viewer::State {
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
     checked_ = view_of(live_.scene());
-    checked_.camera.medium.reset();  // is no look's to say
+    checked_.camera.medium.reset();  // looks do not set the medium
     hello_ = told_scene();
     hello_["parts"] = told_parts();
     hello_["lists"] = lists_text();
@@ -124,7 +124,7 @@ class Viewer::State {
   };
   struct Client {
     bool seen = true;
-    std::array<std::shared_ptr<const Picture>, 2> shown;  // of both eyes
+    std::array<std::shared_ptr<const Picture>, 2> shown;  // for both eyes
     std::deque<Question> asked;
     bool wants_snapshot = false;
   };
@@ -166,7 +166,7 @@ class Viewer::State {
     clients_.erase(id);
   }
 
-  /// Throws InputError for a look that this scene cannot have, so that it is nobody's.
+  /// Throws InputError for a look that this scene cannot have; such a look is not accepted.
   void check_look(const Look& look) const {
     for (const int eye : {0, 1}) check_edit(Scene(), shown_view(checked_, look, 1, eye));
   }
@@ -186,7 +186,7 @@ class Viewer::State {
       } else if (const Seen* seen = std::get_if<Seen>(&message)) {
         client.seen = seen->seen;
       } else if (const Ask* ask = std::get_if<Ask>(&message)) {
-        // Only the last one of several questions for what is under the cursor counts.
+        // Only the last of several queries for the pixel under the cursor counts.
         if (!ask->all)
           std::erase_if(client.asked,
                         [](const Question& other) { return std::holds_alternative<Ask>(other) && !std::get<Ask>(other).all; });
@@ -250,7 +250,7 @@ class Viewer::State {
         if (is_seen_now() && has_more()) step();
       } catch (const Superseded&) {
         scale_ = 0;
-      } catch (const InputError& error) {  // a view that the scene cannot have
+      } catch (const InputError& error) {  // the scene cannot have such a view
         server_->send_to_all(std::make_shared<const std::string>(error_text(error.what())));
       }
     }
@@ -260,7 +260,7 @@ class Viewer::State {
     failed_.notify_all();
   }
 
-  // With the mutex:
+  // These require the mutex:
   bool is_seen() const {
     return std::ranges::any_of(clients_, [](const auto& client) { return client.second.seen; });
   }
@@ -281,7 +281,7 @@ class Viewer::State {
     return wanted_;
   }
 
-  /// Makes the changes that wait, and saves; whether the scene is another one now.
+  /// Makes the waiting changes and saves; returns whether the scene has changed.
   bool edit_all() {
     std::deque<Wish> wishes;
     {
@@ -300,7 +300,7 @@ class Viewer::State {
         edited = keeping_.make(wish.message, wish.text) || edited;
         if (const Edit* edit = std::get_if<Edit>(&wish.message); edit && edit->number > 0)
           made.emplace_back(wish.from, text_of({{"type", "made"}, {"number", edit->number}, {"ids", editor_.made()}}));
-      } catch (const std::exception& error) {  // what is wrong with it, or a file that cannot be written
+      } catch (const std::exception& error) {  // an invalid scene, or a file that cannot be written
         const Edit* edit = std::get_if<Edit>(&wish.message);
         server_->send(wish.from, std::make_shared<const std::string>(error_text(error.what(), edit ? edit->number : 0)));
       }
@@ -323,7 +323,7 @@ class Viewer::State {
     return edited;
   }
 
-  /// What came of saving: a question to the one who asked, else to all.
+  /// Sends the result of saving: questions to the client that asked, all else to everyone.
   void tell(const nlohmann::ordered_json& told, ClientId asked) {
     if (told["type"] != "saved") return server_->send(asked, text_of(told));
     {
@@ -353,7 +353,7 @@ class Viewer::State {
     eye_ = eye;
   }
 
-  /// The film for `look`, a pixel for each square of `scale` pixels.
+  /// Starts the film of `look` with a pixel for each square of `scale` pixels.
   void set_film(const Look& look, int scale) {
     look_with(look, scale, 0);
     scale_ = scale;
@@ -361,7 +361,7 @@ class Viewer::State {
     films_ = {};
   }
 
-  /// The other of a pair, with the samples that it has.
+  /// Switches to the other eye of a pair and resumes its film.
   void change_eyes() {
     films_[eye_] = session_->film();
     look_with(full_, scale_, 1 - eye_);
@@ -396,7 +396,7 @@ class Viewer::State {
     const Clock::time_point start = Clock::now();
     session_->render(count, [&](const SessionProgress&) {
       answer_all();
-      // A coarse picture is shown in any case: while the camera moves there is nothing else to see.
+      // A coarse picture is always shown, because nothing else appears while the camera moves.
       if (!is_coarse && is_superseded()) throw Superseded();
     });
     const double seconds = std::max(1e-4, seconds_since(start));
@@ -436,7 +436,7 @@ class Viewer::State {
           question = found->second.asked.front();
           found->second.asked.pop_front();
         } else {
-          if (scale_ != 1 || samples_[0] == 0) return;  // as soon as there is a picture
+          if (scale_ != 1 || samples_[0] == 0) return;  // waits for the first picture
           found->second.wants_snapshot = false;
         }
       }
@@ -450,13 +450,13 @@ class Viewer::State {
   Text answer(const Ask& ask) {
     nlohmann::ordered_json out{{"type", "answer"}, {"number", ask.number}};
     const Scene& scene = live_.scene();
-    // The ray of the full picture's pixel, whatever is rendered now.
+    // The ray belongs to the pixel of the full picture, even if a coarse one is rendered.
     const RayRecord ray = ray_at(ask);
     report::PickReport told;
     told.pixel = {ask.x, ask.y};
     told.ray = ray;
     told.device = device_.info().name;
-    told.all = true;  // a list, be it of the nearest alone
+    told.all = true;  // reports a list, even for the nearest crossing only
     if (ask.all) {
       told.crossings = query_->all(std::span(&ray, 1), most_crossings).crossings;
     } else if (const PickRecord pick = query_->closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
@@ -508,13 +508,13 @@ class Viewer::State {
   Look full_;
   std::uint64_t number_ = 0, version_ = 0;
   std::uint32_t view_ = 1;
-  std::array<std::uint32_t, 2> samples_{};  // of both eyes
+  std::array<std::uint32_t, 2> samples_{};  // for both eyes
   std::array<std::optional<Film>, 2> films_;
-  std::size_t eye_ = 0;  // whose film the session has
-  int scale_ = 0;        // of the film; 0: it has nothing
+  std::size_t eye_ = 0;  // the eye whose film is in the session
+  int scale_ = 0;        // of the film; 0: it is empty
   double paths_a_second_ = first_guess_paths_a_second;
 
-  std::mutex mutex_;  // of all that follows
+  std::mutex mutex_;  // guards everything below
   std::condition_variable changed_, failed_;
   Look wanted_;
   std::uint64_t wanted_number_ = 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet view`: a scene, live, for the pages of a server.
+// `caplet view`: serves a live scene to pages.
 #pragma once
 
 #include <filesystem>
@@ -18,19 +18,19 @@ namespace caplet::view {
 
 struct ViewerOptions {
   ServerOptions server;
-  bool read_only = false;                          // changes are refused
-  int samples = 0;                                 // of every pixel, at which the picture is done; 0: the scene's own
-  double coarse_seconds = 0.08;                    // of the first picture of a view, about
-  double step_seconds = 0.5;                       // between two pictures, about
-  std::size_t batch_paths = std::size_t{1} << 15;  // questions are answered between batches
+  bool read_only = false;                          // refuse changes
+  int samples = 0;                                 // per pixel of a finished picture; 0: the scene's own
+  double coarse_seconds = 0.08;                    // approximate time of a view's first picture
+  double step_seconds = 0.5;                       // approximate time between two pictures
+  std::size_t batch_paths = std::size_t{1} << 15;  // queries are answered between batches
 };
 
-/// Renders on a thread of its own: the view that was asked for last, coarsely at first, then in full, then sample by sample until
-/// it is done or nobody sees it. What pixels show is answered between batches of paths. A new view ends the picture under way.
+/// Renders the latest requested view on its own thread: coarsely at first, then in full, then with more samples until it is done
+/// or no page is visible. Queries are answered between batches of paths. A new view ends the picture in progress.
 class Viewer {
  public:
-  /// `keeper`: of the scene's file, from whose base() the scene is; null: nothing is saved or kept. Changes that it has of an
-  /// earlier session are made again. Throws RunError when the device or the address is of no use.
+  /// `keeper` belongs to the scene's file, and `scene` was read from its base(); null: nothing is saved or kept. Changes that it
+  /// has from an earlier session are replayed. Throws RunError when the device or the address cannot be used.
   Viewer(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;
@@ -38,9 +38,9 @@ class Viewer {
 
   std::string address() const;
   std::uint16_t port() const;
-  /// Waits a little, and throws what ended the rendering, if anything has.
+  /// Waits a short time, and throws the error that has ended rendering, if any.
   void wait(double seconds);
-  /// Ends the session. Where changes stay that are not saved: the file in which they are kept.
+  /// Ends the session. Returns the journal if there are unsaved changes.
   std::optional<std::filesystem::path> end();
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The OpenCL devices that renders and questions run on.
+// The OpenCL devices that run renders and ray queries.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@
 CAPLET_BEGIN
 
 struct DeviceInfo {
-  int index = 0;  // over all platforms
+  int index = 0;  // counts over all platforms
   std::string name, vendor, driver, version, platform;
   std::string type;  // "cpu", "gpu", "accelerator", "other"
   unsigned compute_units = 0;
   std::uint64_t global_bytes = 0;  // memory
-  bool bundled = false;            // of the driver that came with this library
+  bool bundled = false;            // belongs to the driver that came with this library
 };
 
-/// OpenCL does not work in a process that was forked from one that had used it. There every call that needs a device throws this
-/// RunError, and destructors give nothing back to OpenCL. A program with locks of its own around such calls asks before it waits
-/// for them.
+/// Throws RunError in a forked process: OpenCL does not work if the process that was forked had used it. Every call that needs a
+/// device does this check, and destructors then return nothing to OpenCL. A program with locks around such calls should check
+/// before it waits for them.
 CAPLET_API void check_process();
 
-/// All of them; empty when there is none.
+/// Lists all devices; empty when there are none.
 CAPLET_API std::vector<DeviceInfo> devices();
 
-/// An open device. Copies are the same one.
+/// An open device. Copies refer to the same device.
 class CAPLET_API Device {
  public:
   Device(const Device&);
@@ -50,11 +50,11 @@ class CAPLET_API Device {
 };
 
 /// `choice`: an index, "cpu", "gpu", "bundled" or part of a name; empty: a GPU if there is one, else the first device. Throws
-/// InputError that lists the devices when none or more than one is meant, and RunError when there is none. Before its first
-/// render or question a device is tried once with answers that are known, which takes the time that its kernels take to compile;
-/// a wrong one throws RunError.
+/// InputError that lists the devices when none or several match, and RunError when there is no device. Before its first render
+/// or query a device is tested once on known answers, which includes the compilation of its kernels; a wrong device throws
+/// RunError.
 CAPLET_API Device choose_device(const std::string& choice = {});
-/// Several: "all", or such choices between commas, none of them twice.
+/// Chooses several: "all", or such choices separated by commas, all different.
 CAPLET_API std::vector<Device> choose_devices(const std::string& choice);
 
 CAPLET_END

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Errors with a place: what the library throws.
+// The errors that the library throws, with their places.
 #pragma once
 
 #include <stdexcept>
@@ -12,18 +12,18 @@
 
 namespace caplet {
 
-/// Where something was said. Lines and columns count from 1; 0: unknown. `file` may also be what else was wrong: an option, a
-/// device.
+/// A place in the input. Lines and columns count from 1; 0: unknown. `file` may also name another source of the error: an option
+/// or a device.
 struct CAPLET_API SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
 
-  /// "file:line:column", leaving out what is unknown.
+  /// Returns "file:line:column" without the unknown parts.
   std::string to_string() const;
 };
 
-/// Wrong input or usage. One line per message, each already carrying its place.
+/// Wrong input or usage. Each message is one line that contains its place.
 class CAPLET_API InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message);
@@ -35,7 +35,7 @@ class CAPLET_API InputError : public std::runtime_error {
   std::vector<std::string> messages_;
 };
 
-/// Failed while working (device, disk).
+/// A failure of a device or a disk during work.
 class CAPLET_API RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the library shows of itself.
+// The symbols that the library exports.
 #pragma once
 
 #define CAPLET_API __attribute__((visibility("default")))
 
-/// Names of the library are caplet::Name. The namespace in between changes when programs must be compiled again, so that one that
-/// was not fails to link in place of going wrong.
+/// Names of the library are caplet::Name. The inner namespace changes when programs must be recompiled, so that an old program
+/// fails to link instead of misbehaving.
 #ifdef CAPLET_INSIDE
-// The library's own sources, which have other things of the same names: v0::Scene is the public one there.
+// The library's own sources use the same names for other classes, so there the public one is v0::Scene.
 #define CAPLET_BEGIN \
   namespace caplet { \
   namespace v0 {

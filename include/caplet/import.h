@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes from files.
+// Imports scenes from files.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@ CAPLET_BEGIN
 struct SceneFormat {
   std::string name;                     // "pbrt-v4"
   std::vector<std::string> extensions;  // ".pbrt"
-  std::vector<std::string> options;     // names of import options that say something to it
+  std::vector<std::string> options;     // names of the import options that it knows
 };
 
-/// Values of import options by name, as the program's --NAME takes them: {{"style", "sticks"}, {"up", "z"}}.
+/// Values of import options by name, as for the program's --NAME: {{"style", "sticks"}, {"up", "z"}}.
 using ImportOptions = std::map<std::string, std::string>;
 
 CAPLET_API std::vector<SceneFormat> scene_formats();
 
-/// Reads a scene of any of these formats, chosen by extension. What the file leaves open (camera, light, material) gets good
-/// values. `options`: what the program takes as --NAME VALUE, {{"view", "top"}, {"background", "white"}, {"style", "sticks"}}.
-/// Throws InputError with every mistake's file, line and column, or naming the option.
+/// Reads a scene of any of these formats, chosen by extension. A missing camera, light or material gets sensible defaults.
+/// `options`: the program's options --NAME VALUE, {{"view", "top"}, {"background", "white"}, {"style", "sticks"}}. Throws
+/// InputError with the file, line and column of every error, or with the option's name.
 CAPLET_API Scene import_scene(const std::filesystem::path& file, const std::map<std::string, std::string>& options = {});
 
 CAPLET_END

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the library says beside its results: warnings, and at `info` what takes long.
+// Messages of the library: warnings, and at `info` long operations.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,12 @@ namespace caplet {
 
 enum class LogLevel { info, warning, error, none };
 
-/// One message without line break; from any thread, one at a time. It may not call the library.
+/// Receives one message without line break. It is called from any thread, one call at a time, and may not call the library.
 using LogSink = std::function<void(LogLevel level, std::string_view message)>;
 
-/// Where messages go, for the whole process; empty: to stderr, as "caplet: warning: message".
+/// Sets the receiver of messages for the whole process; empty: stderr, as "caplet: warning: message".
 CAPLET_API void set_log_sink(LogSink sink);
-/// The least that is said; `warning` unless set.
+/// Sets the lowest level that is logged; the default is `warning`.
 CAPLET_API void set_log_level(LogLevel least);
 
 }  // namespace caplet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What surfaces are made of: materials and textures of a scene.
+// Materials and textures of a scene.
 #pragma once
 
 #include <array>
@@ -17,22 +17,22 @@
 
 CAPLET_BEGIN
 
-/// Linear sRGB, from 0 up.
+/// A colour in linear sRGB, from 0 up.
 struct Rgb {
   double r = 0, g = 0, b = 0;
 };
 
-/// The colours that tell numbers (viridis): perceptually even from dark blue at 0 to yellow at 1; beyond, those of the ends.
+/// Returns a colour of viridis: perceptually uniform from dark blue at 0 to yellow at 1; other values give the end colours.
 CAPLET_API Rgb color_map(double part);
 
-/// The same at all wavelengths, a colour, or a name that pbrt scenes may use: "metal-Au-eta", "glass-BK7", "stdillum-D65".
+/// A constant, a colour, or one of pbrt's names of spectra: "metal-Au-eta", "glass-BK7", "stdillum-D65".
 using Spectrum = std::variant<double, Rgb, std::string>;
 
 struct Diffuse {
   Spectrum reflectance = 0.5;
 };
 
-/// Roughness is GGX's alpha along dp/du and dp/dv; 0: perfectly smooth.
+/// Roughness is GGX's alpha along dp/du and dp/dv; 0 is perfectly smooth.
 struct Conductor {
   Spectrum eta = std::string("metal-Cu-eta"), k = std::string("metal-Cu-k");
   std::optional<Spectrum> reflectance = {};  // at normal incidence, 0 to 1; replaces eta and k
@@ -43,41 +43,41 @@ struct Dielectric {
   double roughness_u = 0, roughness_v = 0;
 };
 
-/// A texture of a scene, by the number that Scene::add_texture gave it.
+/// A texture of a scene, by the number that Scene::add_texture returned.
 struct TextureNumber {
   std::uint32_t number = 0;
 };
 
-/// Light of a black body.
+/// The light of a black body.
 struct Blackbody {
   double kelvin = 6500;
 };
 
-/// An image of a texture, row by row from the top: `channels` numbers a pixel, 1 of grey, 3 of linear sRGB, 4 with alpha, which
-/// is not multiplied in.
+/// An image for a texture, row by row from the top: `channels` numbers per pixel, 1: grey, 3: linear sRGB, 4: with alpha, which
+/// is not premultiplied.
 struct Pixels {
   int width = 0, height = 0, channels = 3;
   std::vector<float> values;
 };
 
-/// What a parameter may be: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, the
-/// numbers of two materials; of shapes, lights and media also a black body, many numbers (points one behind the other), or many
-/// names; of textures an image.
+/// The value of a parameter: a number, a colour, a name (of a spectrum, a choice or a file), a switch, a texture, a vector, or
+/// the numbers of two materials; for shapes, lights and media also a black body, a list of numbers (points are concatenated) or
+/// of names; for textures an image.
 using Parameter = std::variant<double, Rgb, std::string, bool, TextureNumber, std::array<double, 3>, std::array<std::uint32_t, 2>,
                                Blackbody, std::vector<double>, std::vector<std::string>, std::shared_ptr<const Pixels>>;
 using Parameters = std::map<std::string, Parameter>;
 
-/// Any material by the name that scene files have for it: "coateddiffuse", "hair", "principled". Parameters are those that
-/// material_parameters tells, and "displacement" and "normalmap", textures that bend the normals; those that are left out have
-/// the values of docs/formats/pbrt.md.
+/// Any material by its name in scene files: "coateddiffuse", "hair", "principled". Its parameters are those of
+/// material_parameters, and "displacement" and "normalmap", textures that change the normals; parameters that are not given have
+/// the defaults of docs/formats/pbrt.md.
 struct NamedMaterial {
   std::string type;
   Parameters parameters = {};
 };
 
-/// The same of a texture, of floats or of spectra. An imagemap has "filename" and "encoding" ("sRGB", "linear" or "gamma 2.2"),
-/// or "pixels" in place of both; a scene with such cannot be written as text. A mapping "mapping" and its numbers.
-/// world_from_texture: three rows of four numbers, of textures that go by points of space.
+/// Any texture by its name in scene files, of floats or of spectra. An imagemap has "filename" and "encoding" ("sRGB", "linear"
+/// or "gamma 2.2"), or "pixels" in place of both (such a scene cannot be written as text). "mapping" and its numbers set the
+/// mapping. world_from_texture: three rows of four numbers, for textures that are looked up by points in space.
 struct NamedTexture {
   std::string type;
   bool is_float = false;
@@ -87,11 +87,11 @@ struct NamedTexture {
 
 using Material = std::variant<Diffuse, Conductor, Dielectric, NamedMaterial>;
 
-/// What NamedMaterial and NamedTexture may be.
+/// List the types of NamedMaterial and NamedTexture.
 CAPLET_API std::vector<std::string> material_types();
 CAPLET_API std::vector<std::string> texture_types();
-/// The names of a type's parameters. Roughnesses "alpha_u" and "alpha_v" are GGX's, along dp/du and dp/dv. Throws InputError for
-/// an unknown type.
+/// Returns the names of a type's parameters. Roughnesses "alpha_u" and "alpha_v" are GGX's, along dp/du and dp/dv. Throws
+/// InputError for an unknown type.
 CAPLET_API std::vector<std::string> material_parameters(const std::string& type);
 CAPLET_API std::vector<std::string> texture_parameters(const std::string& type);
 

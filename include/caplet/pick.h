@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a pixel shows, and what rays hit.
+// Queries of what a pixel shows and what rays hit.
 #pragma once
 
 #include <array>
@@ -21,26 +21,26 @@ CAPLET_BEGIN
 
 struct Ray {
   std::array<float, 3> origin{};
-  std::array<float, 3> direction{0, 0, 1};                          // of any length, in which t counts
+  std::array<float, 3> direction{0, 0, 1};                          // of any length, which is the unit of t
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();  // hits are strictly between
 };
 
-/// A crossing of a ray and a surface.
+/// An intersection of a ray with a surface.
 struct Hit {
   float t = 0;
-  std::array<float, 3> point{};   // within `error` of the surface, world space
+  std::array<float, 3> point{};   // within `error` of the surface, in world space
   std::array<float, 3> normal{};  // unit, outward
   std::array<float, 2> uv{};
   float error = 0;                           // scene units
-  bool entering = false;                     // the ray goes into the solid
+  bool entering = false;                     // the ray enters the solid
   std::string object, material;              // names; empty where the scene gives none
   std::uint32_t object_id = 0;               // as in the film's channel "object.id"
   std::uint32_t material_id = 0;             // index into Scene::materials()
   std::uint32_t primitive = 0, surface = 0;  // within the object
-  std::optional<std::uint32_t> instance;     // number of the instance, of shapes that are in one
+  std::optional<std::uint32_t> instance;     // the instance's number, for shapes of an instance
 };
 
-/// The same in plain numbers, without padding: what arrays of them hold.
+/// The same as plain numbers without padding, for arrays.
 struct Crossing {
   static constexpr std::uint32_t none = 0xffffffff;
 
@@ -48,32 +48,32 @@ struct Crossing {
   float error = 0;
   std::array<float, 2> uv{};
   std::uint32_t object_id = none, material_id = none, primitive = none, surface = none;
-  std::uint32_t shape = none;     // the shape's number (Scene::shapes)
-  std::uint32_t instance = none;  // of shapes that are in one
-  std::uint32_t leaving = 0;      // 1: the ray comes out of the solid
-  std::uint32_t ray = 0;          // its number among those asked
+  std::uint32_t shape = none;     // number of the shape (Scene::shapes)
+  std::uint32_t instance = none;  // for shapes of an instance
+  std::uint32_t leaving = 0;      // 1: the ray leaves the solid
+  std::uint32_t ray = 0;          // index of the ray in the query
   std::array<float, 3> point{}, normal{};
 };
 
-/// Holds a scene, as it was when this was made, on a device. Members throw RunError.
+/// Holds a copy of a scene on a device. Members throw RunError.
 class CAPLET_API Picker {
  public:
-  /// Throws InputError when the scene is beyond a limit.
+  /// Throws InputError when the scene exceeds a limit.
   Picker(const Scene& scene, const Device& device);
   Picker(Picker&&) noexcept;
   Picker& operator=(Picker&&) noexcept;
   ~Picker();
 
-  /// Through the middle of this pixel of the whole picture, from the top left. Throws InputError when it is not in the picture or
-  /// its crop.
+  /// Queries the centre of a pixel of the whole picture, counted from the top left. Throws InputError when the pixel is outside
+  /// the picture or its crop.
   std::optional<Hit> pixel(int x, int y);
   std::optional<Hit> nearest(const Ray& ray);
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);
-  /// Every hit in order; throws RunError when a ray has more than `most` (1 to 2^20).
+  /// Returns every hit in order. Throws RunError when a ray has more than `most` (1 to 2^20).
   std::vector<std::vector<Hit>> all(std::span<const Ray> rays, std::size_t most = 256);
-  /// The nearest hit of each ray into `out`, which has as many.
+  /// Writes the nearest hit of each ray to `out`, which has the same size.
   void nearest(std::span<const Ray> rays, std::span<Crossing> out);
-  /// Every hit, by rays and in order.
+  /// Returns every hit, by ray and in order along it.
   std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most = 256);
 
  private:

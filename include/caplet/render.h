@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// From a scene to a film.
+// Renders a scene to a film.
 #pragma once
 
 #include <functional>
@@ -19,12 +19,12 @@ struct RenderProgress {
 };
 
 struct RenderOptions {
-  std::optional<double> time_limit;  // seconds: the pass of samples under way is finished
+  std::optional<double> time_limit;  // seconds; the pass of samples in progress is finished
   std::function<void(const RenderProgress&)> progress;
 };
 
-/// Renders the scene's picture with its number of samples. Blocks. Throws RunError, and InputError when the scene is beyond a
-/// limit.
+/// Renders the scene's picture with its number of samples, and blocks until it is done. Throws RunError, and InputError when the
+/// scene exceeds a limit.
 CAPLET_API Film render(const Scene& scene, const Device& device, const RenderOptions& options = {});
 
 CAPLET_END

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A scene on devices that is rendered, looked at and changed again and again.
+// A scene on devices that is rendered, queried and changed repeatedly.
 #pragma once
 
 #include <cstdint>
@@ -18,34 +18,34 @@
 
 CAPLET_BEGIN
 
-/// Members throw RunError. One thread at a time, but for cancel().
+/// Members throw RunError. Only one thread at a time may call them, except cancel().
 class CAPLET_API Session {
  public:
-  /// Puts the scene as it now is on the devices. Several share the samples; what comes out does not depend on who did what, as
-  /// long as they are of one kind. One that fails or hangs is left out with a warning, and the others do its work again; a
-  /// session fails with its last device. Throws InputError when the scene is beyond a limit.
+  /// Copies the scene to the devices. Several devices share the samples; the result does not depend on the division of work as
+  /// long as they are of one kind. A device that fails or hangs is dropped with a warning, and the others repeat its work; a
+  /// session fails with its last device. Throws InputError when the scene exceeds a limit.
   Session(const Scene& scene, const Device& device);
   Session(const Scene& scene, std::span<const Device> devices);
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();
 
-  /// The scene as it now is; the film is empty again. Of the scene that was here, or a copy of it, with edits since, only what
-  /// differs is sent; any other takes the whole way. Throws InputError when it is beyond a limit; the session then shows what it
-  /// showed, with such edits as came before.
+  /// Takes the scene's present state, and empties the film. For the same scene or a copy with edits since, only differences are
+  /// sent; any other scene is sent as a whole. Throws InputError when it exceeds a limit; the session then keeps its former
+  /// state, with the edits that were made before.
   void update(const Scene& scene);
 
-  /// Adds the next `samples` samples of every pixel to the film and returns how many were finished. Blocks.
+  /// Adds the next `samples` samples of every pixel to the film, and returns how many were finished. Blocks.
   int render(int samples, const RenderOptions& options = {});
-  /// From any thread: the render under way, or else the next one, finishes its passes and begins no more.
+  /// May be called from any thread: the render in progress, or else the next one, finishes its passes and starts no more.
   void cancel();
-  /// What has been added up, as of now.
+  /// Returns the film so far.
   Film film() const;
-  /// Begins with this film's samples: renders add those that come after. Throws InputError when it is of another scene, view or
-  /// layers.
+  /// Starts from this film's samples: renders add the samples after them. Throws InputError when it belongs to another scene,
+  /// view or layers.
   void resume(const Film& film);
 
-  /// As Picker, of the scene as it is here.
+  /// These are queries as in Picker, for the session's scene.
   std::optional<Hit> pixel(int x, int y);
   std::optional<Hit> nearest(const Ray& ray);
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Does a device compute right? Its hits beside those of a host reference that finds them by another method, ray by ray.
+// Verifies a device: compares its hits, ray by ray, with a host reference that uses another method.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,12 @@ struct VerifyReport {
   struct OfDevice {
     DeviceInfo device;
     std::uint64_t rays = 0, hits = 0;
-    std::uint64_t disagreements = 0;  // rays
-    double worst = 0;                 // error of a hit, in units of the bound that is stated for it
-    double seconds = 0;               // on the device
+    std::uint64_t disagreements = 0;  // number of rays
+    double worst = 0;                 // error of a hit, in units of its stated bound
+    double seconds = 0;               // device time
   };
   std::vector<OfDevice> devices;
-  std::string text, json;  // the whole of it: for people, and for machines
+  std::string text, json;  // the full report, for people and for programs
 
   bool agrees() const {
     for (const OfDevice& one : devices)
@@ -41,7 +41,7 @@ struct VerifyReport {
 
 /// Throws RunError, InputError.
 CAPLET_API VerifyReport verify(const Scene& scene, std::span<const Device> devices, const VerifyOptions& options = {});
-/// On scenes of all shapes, made to be difficult.
+/// Verifies on difficult scenes with all kinds of shapes.
 CAPLET_API VerifyReport verify(std::span<const Device> devices, const VerifyOptions& options = {});
 
 CAPLET_END

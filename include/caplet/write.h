@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes to files.
+// Writes scenes to files.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 CAPLET_BEGIN
 
-/// Writes the scene as pbrt text to a file `.pbrt`, which is replaced as a whole. import_scene of it gives the same picture, bit
-/// for bit; the scene's images and other files are named, not copied. Throws InputError, and leaves the file as it was, for what
-/// no text says (an image that was read from no file); RunError when writing fails.
+/// Writes the scene as pbrt text to a file `.pbrt`, which is replaced atomically. import_scene reads it to the same picture, bit
+/// for bit; images and other files are referenced, not copied. Throws InputError, and leaves the file as it was, for what text
+/// cannot express (an image that was read from no file); RunError when writing fails.
 CAPLET_API void write_scene(const Scene& scene, const std::filesystem::path& file);
 
 CAPLET_END

@@ -5,8 +5,8 @@
 // operands are visited in order along the ray, and each turns its operand on or off; where the
 // expression's value changes the ray crosses the result.
 //
-// host/lower/csg.cpp writes leaves[begin ..] in rows of 8; whole numbers by their bits; offsets
-// count floats of `leaves`:
+// host/lower/shapes/csg.cpp writes leaves[begin ..] in rows of 8; whole numbers by their bits;
+// offsets count floats of `leaves`:
 //   header: centre c (3), radius of a ball around c that holds the result, groups, length of the
 //     program, operands, 0
 //   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the

@@ -22,7 +22,7 @@ struct BsdfParameters {
   float transmittance = 0;
   float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0, max_depth = 100, samples = 1;
   float tilt = 0;  // radians
-  // Of principled: reflectance is its base colour, k its sheen, albedo its coat's colour, coat_alpha_u its coat's roughness.
+  // Principled uses reflectance as base colour, k as sheen, albedo as the coat's colour, coat_alpha_u as the coat's roughness.
   float metallic = 0, transmission = 0, roughness = 0, tint = 0, normal_tinted = 0, coat = 0;
 
   /// All of them in the order in which kernels take them.
@@ -32,7 +32,7 @@ struct BsdfParameters {
 using Direction = std::array<float, 3>;
 Direction direction(double theta, double phi);
 
-/// Of [0, 1), from a fixed seed.
+/// Returns numbers in [0, 1) from a fixed seed.
 std::vector<float> random_numbers(std::size_t count, unsigned seed);
 
 /// What a call of bsdf_sample gave, and bsdf_eval at the direction it took.

@@ -48,7 +48,7 @@ struct BsdfTrial {
   std::vector<std::array<BsdfParameters, 2>> unlike;
   std::vector<KnownValue> values;
   std::vector<KnownSample> samples;
-  /// Of the scene, such that lowering it gives this kind.
+  /// The material of the scene, which is lowered to this kind.
   Material model;
   /// The most that f |cos wi| integrates to; a sample weighs at most `heaviest` times that.
   double (*most)(const BsdfParameters& bsdf, bool inside);

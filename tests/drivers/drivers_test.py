@@ -110,7 +110,7 @@ class Crossings(unittest.TestCase):
         theirs = ["0,1.5,a,0,0,m,1,0", "1,2,a,1,0,m,1,0", "3,4,b,2,0,m,1,0", "4,8,b,2,0,m,1,0"]
         ours = ["0,1.5,a,0,0,m,1,9", "1,2.5,a,1,0,m,1,0", "2,1,a,0,0,m,1,0", "3,4,b,3,0,m,1,0", "4,8,b,2,0,m,0,0"]
         self.assertEqual(checks.compare_crossings(theirs, theirs), {"rays": 4, "t": 4, "worst": 0.0, "other": 0})
-        # Of five rays one is equal, one a quarter of t further, one new, one of another primitive, one of another side.
+        # One of the five rays is equal, one has t a quarter larger, one is new, one hits another primitive, one another side.
         self.assertEqual(checks.compare_crossings(ours, theirs), {"rays": 5, "t": 1, "worst": 0.25, "other": 3})
 
 

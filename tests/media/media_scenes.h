@@ -23,7 +23,7 @@ std::string white_walls();
 Mean seen(const std::string& text, int samples, int size = 16);
 /// The same of a scene of that size.
 Mean seen(const Scene& scene, int samples);
-/// Of the three channels.
+/// Returns the means of the three channels.
 std::array<Mean, 3> colors_seen(const std::string& text, int samples, int size = 16);
 
 /// Within four standard errors and a share of it.

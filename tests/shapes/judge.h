@@ -23,7 +23,7 @@ struct Case {
 };
 
 Case make_case(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray);
-/// Of a placed primitive: the kernel's ray in object space is that of the float matrix, rounded; the case's is exact.
+/// For a placed primitive, the kernel's ray in object space comes from the rounded float matrix; the case's ray is exact.
 Case make_case(const PlacedPrimitive& placed, const reference::Primitive& witness, const RayRecord& world_ray);
 
 struct Judgement {
@@ -34,8 +34,8 @@ struct Judgement {
 /// `listed` with a capacity of `capacity`.
 Judgement judge(const Case& c, const Listed& listed, std::uint32_t capacity);
 
-/// Of solids: whether the device is wrong on where the ray is inside, at any of 63 points of each stretch between crossings that
-/// is further than `slack` from the surface. Says how, or nothing. Crossings of the list come in turns.
+/// For solids: checks where the device says that the ray is inside, at 63 points of each stretch between crossings that are
+/// further than `slack` from the surface. Returns the error, or nothing. Crossings of the list alternate.
 std::string wrong_way(const Case& c, const std::vector<HitRecord>& list, double slack);
 
 /// The primitive's and the ray's bits.

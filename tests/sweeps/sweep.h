@@ -61,8 +61,8 @@ struct Cell {
   double bound_worst = 0, bound_p99 = 0;              // distance of the hit from the true surface over the bound
   double radius_worst = 0, radius_p99 = 0;            // the same over the radius
   double ulps_p50 = 0, ulps_p99 = 0, ulps_worst = 0;  // error of t
-  // Of the rays made to pass closely: all, where device and witness differ on whether there is a hit, and how far from touching
-  // (in radii, and over the bound) such a ray was at most.
+  // These concern rays that pass closely: their number, how many get different answers from device and witness, and the greatest
+  // distance from touching of such a ray (in radii, and over the bound).
   std::uint64_t passing = 0, differ = 0;
   double differ_radii = 0, differ_bound = 0;
   std::vector<std::string> examples;  // of what is wrong, at most three

@@ -22,7 +22,7 @@ struct TextureTrial {
     std::array<float, 3> dpdx = {}, dpdy = {};    // the sides of what is seen
     std::array<float, 2> duvdx = {}, duvdy = {};  // along them
   };
-  /// Of floats, the last of them the one on trial. The test tries the same with spectra that are constant over wavelengths.
+  /// Textures of floats; the last is on trial. The test repeats the trial with spectra that are constant over wavelengths.
   std::vector<Texture> textures;
   std::vector<Value> values;
   double tolerance = 4 * 0x1p-24;  // relative: products, a sum and a root

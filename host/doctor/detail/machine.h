@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Findings about the machine: GPU nodes and who may use them, memory, cache folders. No OpenCL call.
+// Checks of the machine without OpenCL: GPU nodes and their permissions, memory, cache folders.
 #pragma once
 
 #include <filesystem>
@@ -11,30 +11,30 @@
 
 namespace caplet::doctor {
 
-/// Whether the kernel module of NVIDIA's driver is there.
+/// Returns whether the kernel module of NVIDIA's driver is loaded.
 bool has_nvidia(const Surroundings& machine);
 
-/// GPU nodes in /dev that this user may not open.
+/// Reports GPU nodes in /dev that this user may not open.
 Findings check_permissions(const Surroundings& machine);
 
-/// An NVIDIA GPU without a registered OpenCL driver. `loadable`: whether libnvidia-opencl.so.1 can be loaded.
+/// Reports an NVIDIA GPU without a registered OpenCL driver. `loadable`: libnvidia-opencl.so.1 can be loaded.
 Findings check_nvidia(const Surroundings& machine, const Registry& registry, const Loader& loader, bool loadable);
 
-/// A GPU node of AMD or Intel where no platform offers a GPU.
+/// Reports a GPU node of AMD or Intel where no platform offers a GPU.
 Findings check_unused_gpus(const Surroundings& machine, const std::vector<PlatformFacts>& platforms);
 
-/// Free memory of the host, within the limits of its control group, and the address space (ulimit -v).
+/// Reports the free memory of the host, within the limits of its control group, and the address space (ulimit -v).
 Findings check_memory(const Surroundings& machine);
 
-/// Caplet's cache: where, how much, and whether it can be written.
+/// Reports the place and size of Caplet's cache, and whether it is writable.
 Findings check_cache(const Surroundings& machine, const std::filesystem::path& folder);
 
-/// A missing /sys, as containers may have it, without which PoCL ends the process.
+/// Reports a missing /sys, as in some containers, without which PoCL ends the process.
 Findings check_sys(const Surroundings& machine);
 
-/// PoCL's cache. $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache; without any PoCL uses /tmp.
+/// Reports PoCL's cache: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache, else in /tmp.
 Findings check_pocl_cache(const Surroundings& machine);
-/// That of the driver that came with this program.
+/// Reports the cache of the driver that came with this program.
 Findings check_bundled_cache(const Surroundings& machine);
 
 }  // namespace caplet::doctor

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The statements of textures, materials, media, lights and shapes: their parameters are those that the lists of host/scene visit.
+// Writes the statements of textures, materials, media, lights and shapes; their parameters are the fields of host/scene's lists.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace caplet::pbrt_text {
 
-/// No value for a texture that has no statement of its own, as it stands in that of a material.
+/// Returns no value for a texture that a material's statement contains, and that has no statement of its own.
 std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t texture, const Names& names, const Stream& stream);
 Statement material_statement(const Scene& scene, std::uint32_t material, const Names& names, const Stream& stream);
 Statement medium_statement(const Medium& medium, const std::string& name, const Stream& stream);
@@ -27,12 +27,12 @@ Statement area_statement(const AreaEmission& emission, const SourceLocation& whe
 struct ShapeReferences {
   const Scene& scene;
   const Names& names;
-  std::function<std::string(const Shape&)> operand;  // the object that holds it
+  std::function<std::string(const Shape&)> operand;  // returns the object that holds an operand
 };
-/// Without what only the graphics state says. `as_operand`: nor what an operand has not.
+/// Leaves out what the graphics state holds. `as_operand`: also what operands cannot have.
 Statement shape_statement(const Shape& shape, const ShapeReferences& references, bool as_operand = false);
 
-/// Whether a closed shape has hair on it, which importers take for one-sided where nothing is said.
+/// Returns whether a closed shape has hair on it; importers make such a shape one-sided by default.
 bool is_hair(const Scene& scene, const Shape& shape);
 
 }  // namespace caplet::pbrt_text

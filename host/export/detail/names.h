@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the parts of a scene are called in a file: their own names where they have some that no other part of the kind has.
+// Names of a scene's parts in a file: their own names, where they are not empty and unique among the parts of the kind.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace caplet::pbrt_text {
 
 class NameList {
  public:
-  /// `wanted`, or where that is empty or taken a name after `kind` that is free.
+  /// Returns `wanted`; if it is empty or taken, a free name that begins with `kind`.
   std::string take(const std::string& wanted, const std::string& kind) {
     if (!wanted.empty() && taken_.insert(wanted).second) return wanted;
     for (;; ++next_)
@@ -30,7 +30,7 @@ class NameList {
   std::size_t next_ = 1;
 };
 
-/// By index in the scene.
+/// Names by index in the scene.
 struct Names {
   std::vector<std::string> textures, materials, media, objects;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Statements of pbrt text with their parameters, and what of the graphics state they stand in.
+// Statements of pbrt text, their parameters, and the graphics state around them.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace caplet::pbrt_text {
 
-/// Where statements go, and the colour space there.
+/// The output of statements, and the colour space there.
 struct Stream {
   Text& text;
   std::filesystem::path folder;  // of the file, absolute
@@ -32,8 +32,8 @@ struct Stream {
   }
 };
 
-/// One statement: `head` and the parameters that are asked for, in order. What a list of parameters holds of other colour spaces
-/// than the stream's is put before it (Attribute `target`).
+/// One statement: `head` and its parameters, in order. A parameter in another colour space than the stream's is written before
+/// the statement (Attribute `target`).
 class Statement {
  public:
   Statement(std::string head, const char* target, const SourceLocation& where)
@@ -51,12 +51,12 @@ class Statement {
   void point(const std::string& name, const glm::dvec3& p) { numbers("point3", name, {p.x, p.y, p.z}); }
   void vector(const std::string& name, const glm::dvec3& v) { numbers("vector3", name, {v.x, v.y, v.z}); }
   void spectrum(const std::string& name, const Spectrum& value);
-  /// A path as the scene has it: of a file that the statement's file then names. Throws InputError when it is empty.
+  /// Writes a path of the scene so that it is valid from the written file's folder. Throws InputError when it is empty.
   void file(const std::string& name, const std::string& path, const char* what, const Stream& stream);
-  /// `count` values that `write` writes one by one, while the statement is written.
+  /// Adds `count` values that `write` writes one by one, when the statement is written.
   void list(const char* type, const std::string& name, std::size_t count, std::function<void(Text&, std::size_t)> write,
             std::optional<ColorSpace> space = {});
-  /// The statement stands in a block, after this line.
+  /// Puts the statement in a block, after this line.
   void within(const std::string& line) { before_ += line; }
 
   const SourceLocation& where() const { return where_; }
@@ -79,7 +79,7 @@ class Statement {
   std::vector<Parameter> parameters_;
 };
 
-/// `ColorSpace` from here on.
+/// Changes the `ColorSpace` from here on.
 void set_space(Stream& stream, ColorSpace space);
 
 }  // namespace caplet::pbrt_text

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Pieces of pbrt text: numbers that are read again to the bit, strings, and where they go.
+// Writes pbrt text: numbers that are read back exactly, strings, and their output.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@
 
 namespace caplet::pbrt_text {
 
-/// Throws the InputError of what pbrt text cannot say.
+/// Throws InputError for a scene that pbrt text cannot express.
 [[noreturn]] inline void refuse(const SourceLocation& where, const std::string& what) {
   throw InputError(where, what + ": it cannot be written");
 }
 
-/// Collects text and hands it on in pieces of some 64 KiB.
+/// Collects text and passes it on in pieces of about 64 KiB.
 class Text {
  public:
   using Sink = std::function<void(std::string_view)>;
@@ -30,7 +30,7 @@ class Text {
     if (buffer_.size() >= most) flush();
     return *this;
   }
-  /// The shortest digits that are read as the same number.
+  /// Writes the shortest digits that are read back as the same number.
   Text& operator<<(double value);
   Text& operator<<(float value);
   Text& operator<<(std::int64_t value);
@@ -42,7 +42,7 @@ class Text {
   std::string buffer_;
 };
 
-/// What `write` writes.
+/// Returns the text that `write` writes.
 template <class Write>
 std::string text_of(Write&& write) {
   std::string out;
@@ -55,20 +55,20 @@ inline std::string number_text(double value) {
   return text_of([&](Text& text) { text << value; });
 }
 
-/// In quotes, with escapes. Throws InputError at `where` for control characters that no text may have.
+/// Quotes and escapes text. Throws InputError at `where` for control characters that no text may have.
 std::string quoted(std::string_view text, const SourceLocation& where);
 
-/// `[ 16 numbers ]`, column by column.
+/// Returns `[ 16 numbers ]`, column by column.
 std::string matrix_text(const glm::dmat4& matrix);
 
-/// Degrees that readers turn into these radians, of as few digits as may be. Where no number of degrees does, those that come
+/// Returns degrees that readers convert to these radians, with as few digits as possible. Where there are none, it returns the
 /// nearest, which is off by a unit in the last place.
 double degrees_of(double radians);
 
-/// What readers take from `degrees` to get these radians, likewise.
+/// Returns the number that readers subtract from `degrees` to get these radians, in the same way.
 double degrees_below(double degrees, double radians);
 
-/// A transform that readers turn around to get `inverse`, as a statement with its line's end.
+/// Returns a transform whose inverse, as readers compute it, is `inverse`: a statement with the end of its line.
 std::string inverse_text(const glm::dmat4& inverse);
 
 }  // namespace caplet::pbrt_text

@@ -9,8 +9,8 @@
 
 namespace caplet {
 
-/// The first `most` bytes of base64 (RFC 4648), or as many as there are; blanks are passed over, and after padding another text
-/// may follow, whose bytes join. None where a letter is none of base64.
+/// Decodes up to `most` bytes of base64 (RFC 4648). Blanks are skipped. After padding another text may follow, whose bytes are
+/// appended. There is no value where a letter does not belong to base64.
 std::optional<std::string> bytes_of_base64(std::string_view text, std::size_t most = std::string::npos);
 
 }  // namespace caplet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Cubic curves with radii as chains of tapered capsules.
+// Converts cubic curves with radii to chains of tapered capsules.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace caplet {
 
-/// Bezier control points x y z and, as w, radii: the union of balls, or what a circle sweeps.
+/// Bezier control points x y z with the radius as w. The tube is the union of the balls, that is, what a circle sweeps.
 using CubicTube = std::array<glm::dvec4, 4>;
 
-/// Adds the ends of the chords of cubics that go on from one to the next. No point of a curve is farther than the tolerance from
-/// where it lies on its chord, the difference of radii added: so far at most the union of the curve's balls and the capsules are
-/// apart.
+/// Adds the end points of the chords of consecutive cubics. The distance of each point of a curve from its point on the chord,
+/// plus the difference of radii, is at most the tolerance: this bounds the distance between the union of the curve's balls and
+/// the capsules.
 class CubicChain {
  public:
   explicit CubicChain(CapsulesShape& out) : out_(out) {}
   void start(const glm::dvec4& p);
-  /// The chords' u run from u0 to u1 as the cubic's parameter does from 0 to 1.
+  /// u of the chords runs from u0 to u1 as the cubic's parameter runs from 0 to 1.
   void add(const CubicTube& c, double tolerance, double u0, double u1);
 
  private:

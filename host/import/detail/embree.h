@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Embree's scenes, as its tutorials read them: XML with a companion of numbers, and the viewer's .ecs. Conventions:
+// Scenes in the formats that Embree's tutorials read: XML with a companion file of numbers, and the viewer's .ecs. Conventions:
 // docs/formats/embree.md.
 #pragma once
 
@@ -23,7 +23,7 @@
 
 namespace caplet::embree {
 
-/// An XML file and the lists of numbers of its elements, which stand there or in the companion, NAME.bin or NAME.xml.bin.
+/// An XML file and its lists of numbers, which are in the elements or in the companion file NAME.bin or NAME.xml.bin.
 class SceneFile {
  public:
   explicit SceneFile(const std::filesystem::path& path, const SourceLocation& named_at = {}) : xml_(path, named_at) {}
@@ -33,22 +33,22 @@ class SceneFile {
   SourceLocation place(pugi::xml_node node) const { return xml_.place(node); }
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const { throw InputError(place(node), message); }
 
-  /// The numbers of an element, `width` a row; no element: none. Finite, but for `with_nan`. Throws InputError.
+  /// Returns an element's numbers, `width` per row; none without an element. Finite unless `with_nan`. Throws InputError.
   std::vector<float> floats(pugi::xml_node node, std::size_t width, bool with_nan = false);
   std::vector<std::uint32_t> indices(pugi::xml_node node, std::size_t width);
   std::vector<std::uint32_t> bytes(pugi::xml_node node);
-  /// The text of an element, of all its pieces between comments.
+  /// Returns all text of an element, across comments.
   static std::string text_of(pugi::xml_node node);
 
  private:
-  /// The bytes of `size` rows from `ofs` on.
+  /// Returns the bytes of `size` rows from `ofs` on.
   std::string_view binary(pugi::xml_node node, std::size_t row);
 
   XmlFile xml_;
   std::optional<std::string> companion_;
 };
 
-/// What is drawn otherwise or not at all: how often, and where first.
+/// Counts what is drawn differently or not at all, and keeps the first place.
 class Notes {
  public:
   void add(const std::string& what, const SourceLocation& where);
@@ -62,19 +62,19 @@ class Notes {
   std::map<std::string, Note> notes_;
 };
 
-/// What shapes have from a material.
+/// What shapes take from a material.
 using Look = MtlMaterial;
 
-/// The shapes of an element of geometry, in its own coordinates; those of no geometry: none. Throws InputError.
+/// Makes the shapes of a geometry element in its own coordinates; other elements give none. Throws InputError.
 bool is_geometry(std::string_view name);
 std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes);
 
-/// A <material>, added to the scene. Throws InputError.
+/// Adds a <material> to the scene. Throws InputError.
 Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images, Notes& notes);
 
-/// A light of its element or of the viewer's options: E, I or L, from its own space, along whose z it shines.
+/// A light of an element or of the viewer's options: E, I or L. It shines along z of its own space.
 struct LightElement {
-  std::string name;  // the element's
+  std::string name;  // the element's name
   glm::dvec3 emission{0};
   glm::dmat4 space{1};
   double least_angle = 0, most_angle = 0;  // degrees from the axis
@@ -83,26 +83,26 @@ struct LightElement {
 bool is_light(std::string_view name);
 /// Throws InputError.
 LightElement read_light(SceneFile& file, pugi::xml_node node);
-/// Adds a light, or a shape that shines; nothing where there is no light. Throws InputError.
+/// Adds a light or an emissive shape; nothing where the light is dark. Throws InputError.
 void add_light(const LightElement& light, const glm::dmat4& world, Scene& scene);
 
-/// An AffineSpace. Throws InputError.
+/// Reads an AffineSpace. Throws InputError.
 glm::dmat4 affine_space(SceneFile& file, pugi::xml_node node);
 
-/// Embree's camera; the field of view, in degrees, is over the height.
+/// Embree's camera. The field of view, in degrees, spans the height.
 struct View {
   glm::dvec3 from{0.0001, 0.0001, -3}, to{0}, up{0, 1, 0};
   double fov = 90;
   bool is_left_handed = false;
 };
-/// Throws InputError at `where` where there is no such direction or angle.
+/// Throws InputError at `where` when the direction or angle is not valid.
 Camera camera_of(const View& view, const FilmSettings& film, const SourceLocation& where);
 
-/// What a .ecs says.
+/// The contents of a .ecs file.
 struct ViewerOptions {
   std::vector<std::pair<std::filesystem::path, SourceLocation>> files;
   std::optional<View> view;
-  std::optional<glm::ivec2> size;  // of the picture, pixels
+  std::optional<glm::ivec2> size;  // of the picture, in pixels
   std::vector<LightElement> lights;
 };
 /// Throws InputError with line and column.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Files of polylines: hair and streamlines. Conventions: docs/formats/fibres.md.
+// Reads files of polylines: hair and streamlines. Conventions: docs/formats/fibres.md.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@ namespace caplet {
 
 struct Fibres {
   std::vector<glm::vec3> points;
-  std::vector<std::uint64_t> ends;  // of each fibre: one after its last point
-  std::vector<float> radii;         // empty, one in all, or one a point
-  std::vector<glm::vec3> colors;    // empty, one in all, or one a point: linear reflectance, 0 to 1
+  std::vector<std::uint64_t> ends;  // for each fibre, one after its last point
+  std::vector<float> radii;         // empty, one for all, or one per point
+  std::vector<glm::vec3> colors;    // empty, one for all, or one per point: linear reflectance, 0 to 1
 };
 
-/// Numbers of points or of fibres, which colours may tell: which of a file's, and then they.
+/// Scalars of points or of fibres that colours may show: the request, and then the values that a reader finds.
 struct FibreScalars {
-  std::string wanted;              // by its name; empty: the first
-  std::vector<std::string> names;  // of those that the file has, until the wanted one was found
-  std::string name;                // of what was taken; empty: none
+  std::string wanted;              // the requested name; empty: the first
+  std::vector<std::string> names;  // names of the file's scalars, up to the requested one
+  std::string name;                // the name of the scalar that was taken; empty: none
   bool of_points = true;
-  std::vector<float> values;  // one a point, or one a fibre
+  std::vector<float> values;  // one per point, or one per fibre
 
-  /// Which component of the file's next array is to be taken into `values`; -1: none. Components of several are "NAME[0]" and so
-  /// on. Once one was taken no other is.
+  /// Returns which component of the file's next array is to be taken into `values`, or -1. Arrays of several components are named
+  /// "NAME[0]" and so on. Only one array is taken.
   int take(const std::string& array, std::size_t components, bool are_of_points);
 };
 
-/// Readers of a file's bytes; `path` is for messages. What is announced and not there is an error before memory is taken for it.
-/// `scalars`: what is sought there too. Throw InputError.
+/// Readers of a file's bytes; `path` is for messages. Counts are checked against the size of the file before memory is allocated.
+/// `scalars`: also fills the requested scalars. They throw InputError.
 Fibres read_hair(std::string_view bytes, const std::string& path);     // cyHair
 Fibres read_tressfx(std::string_view bytes, const std::string& path);  // TressFX .tfx, version 4
 Fibres read_trk(std::string_view bytes, const std::string& path,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A glTF 2.0 file: its JSON with checked access, its buffers, its materials (Khronos, "glTF 2.0 Specification").
+// A glTF 2.0 file: checked access to its JSON, its buffers and its materials (Khronos, "glTF 2.0 Specification").
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@
 
 namespace caplet::gltf {
 
-/// Text or GLB. Members that are missing have the value that is given; those of another type, out of range or not finite throw
+/// A file as text or GLB. Missing members take the given default. Members of another type, out of range or not finite throw
 /// InputError.
 class File {
  public:
   using Json = nlohmann::json;
-  /// Parses `bytes`. Throws InputError with line and column for what is no JSON.
+  /// Parses `bytes`. Throws InputError with line and column for invalid JSON.
   File(std::filesystem::path path, std::string bytes);
 
   std::filesystem::path path;
@@ -35,7 +35,7 @@ class File {
   [[noreturn]] void fail(const std::string& message) const;
   void check_version() const;
 
-  /// A list of the root, or of an object; empty where there is none.
+  /// Returns a list of the root, or of an object; empty where it is missing.
   const Json& list(const char* name) const { return list_of(json, name); }
   const Json& list_of(const Json& object, const char* name) const;
   const Json& object(const Json& of, const char* name) const;
@@ -53,23 +53,23 @@ class File {
     return otherwise;
   }
   double number_value(const Json& value, const char* what) const;
-  /// An index below `count`.
+  /// Returns an index below `count`.
   std::size_t index_value(const Json& value, std::size_t count, const char* what) const;
   std::optional<std::size_t> index(const Json& of, const char* name, std::size_t count, const char* what) const;
-  /// `matrix`, or translation, rotation and scale.
+  /// Returns the node's `matrix`, or the product of its translation, rotation and scale.
   glm::dmat4 transform_of(const Json& node) const;
 
-  /// What an accessor says, of 1 to 4 components of any type; finite.
+  /// Returns the values of an accessor with 1 to 4 components of any type; they are finite.
   template <class Vector>
   std::vector<Vector> vectors(std::size_t accessor);
   std::vector<std::uint32_t> indices(std::size_t accessor);
-  /// Of three components, or four, the last of which is left out.
+  /// Returns colours of three components; a fourth is ignored.
   std::vector<glm::vec3> colors(std::size_t accessor);
-  /// The bytes of a buffer view.
+  /// Returns the bytes of a buffer view.
   std::string_view view(std::size_t index);
-  /// The bytes of "data:...;base64,...", or none where it is no such address.
+  /// Decodes "data:...;base64,..."; there is no value for other addresses.
   std::optional<std::string> data_uri(const std::string& uri) const;
-  /// The file that an address names, beside this one.
+  /// Returns the path of the file that an address names, relative to this one.
   std::filesystem::path beside(const std::string& uri) const;
 
  private:
@@ -78,12 +78,12 @@ class File {
   std::string_view buffer(std::size_t index);
 
   std::string bytes_;
-  std::string_view binary_;  // GLB's chunk
+  std::string_view binary_;  // the binary chunk of a GLB
   std::map<std::size_t, std::string> buffers_;
-  std::uintmax_t held_ = 0, taken_ = 0;  // bytes of the file and its buffers, and of what accessors took from them
+  std::uintmax_t held_ = 0, taken_ = 0;  // bytes of the file and its buffers, and bytes that accessors have read
 };
 
-/// What a shape of a glTF material has.
+/// What a shape takes from a glTF material.
 struct Look {
   std::uint32_t material = 0;
   std::optional<AreaEmission> emission;
@@ -93,7 +93,7 @@ struct Look {
 class Materials {
  public:
   Materials(File& file, Scene& scene, const ImageReader& reader) : file_(file), scene_(scene), reader_(reader) {}
-  /// Made when first asked for; none: the plain one.
+  /// Makes the material at its first use; without an index it is the default material.
   const Look& look(std::optional<std::size_t> material);
 
  private:
@@ -104,7 +104,7 @@ class Materials {
   };
   Look make(const Json& material);
   std::shared_ptr<const TextureImage> image(std::size_t index, bool is_srgb);
-  /// Which image a texture's reference names, and how it lies; none where there is no texture.
+  /// Returns the image that a texture reference names, and its sampler; no value without a texture.
   std::optional<std::pair<std::size_t, Sampler>> lookup(const Json& of, const char* name);
   std::uint32_t add_texture(std::shared_ptr<const TextureImage> image, const Sampler& sampler, bool is_float);
 

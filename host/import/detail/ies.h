@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Photometric files of ANSI/IES LM-63 (docs/formats/ies.md).
+// Reads photometric files of ANSI/IES LM-63 (docs/formats/ies.md).
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace caplet {
 
-/// Candela of all directions: the numbers of the file times its multiplier and its ballast's factors. Type C, TILT=NONE; what a
-/// file leaves to symmetry is filled in. Throws InputError with the place of the first thing wrong.
+/// Returns the candela in all directions: the file's numbers times its multiplier and ballast factors. Reads type C with
+/// TILT=NONE, and fills in the directions that a file leaves to symmetry. Throws InputError at the first error.
 IesProfile parse_ies(const std::string& name, std::string_view text);
 IesProfile read_ies(const std::filesystem::path& path);
 

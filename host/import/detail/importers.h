@@ -22,7 +22,7 @@ namespace caplet {
 #undef IMPORTER
 #undef FULL_IMPORTER
 
-/// Samples and least width of the format's row.
+/// Sets the samples and the least width of the format's row.
 void set_usual_picture(Scene& scene, const std::string& name);
 
 }  // namespace caplet

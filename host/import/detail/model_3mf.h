@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// 3MF packages: their parts of XML, colours, and beam lattices as shapes. Conventions: docs/formats/3mf.md.
+// Reads 3MF packages: their XML parts, colours and beam lattices. Conventions: docs/formats/3mf.md.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace caplet::model_3mf {
 
-/// Names without the prefixes of their namespaces: of an element, of an attribute.
+/// Returns the name of an element or attribute without its namespace prefix.
 std::string_view local_name(const char* name);
 bool is(pugi::xml_node node, std::string_view name);
 pugi::xml_node child(pugi::xml_node node, std::string_view name);
@@ -32,29 +32,29 @@ struct Part {
   Part(const std::filesystem::path& name, std::string text) : file(name, std::move(text)) {}
 
   [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const;
-  /// The values of attributes; what is missing is an error unless there is an `otherwise`.
+  /// Return the value of an attribute. A missing one is an error unless there is an `otherwise`.
   std::uint32_t whole(pugi::xml_node node, std::string_view name) const;
   std::optional<std::uint32_t> whole_if(pugi::xml_node node, std::string_view name) const;
   float number(pugi::xml_node node, std::string_view name) const;
   std::optional<float> positive_if(pugi::xml_node node, std::string_view name) const;
-  /// 3 x 4 of the file, as a matrix of columns; none: identity.
+  /// Returns the file's 3 x 4 transform as a matrix of columns; the identity if it is missing.
   glm::dmat4 transform(pugi::xml_node node) const;
 
   XmlFile file;
-  double millimetres = 1;  // a unit of length
+  double millimetres = 1;  // per unit of length
   std::map<std::uint32_t, pugi::xml_node> objects;
-  std::map<std::uint32_t, std::vector<glm::dvec4>> colors;  // linear; alpha
-  std::map<std::uint32_t, std::string> other_properties;    // what is not read, by its element's name
+  std::map<std::uint32_t, std::vector<glm::dvec4>> colors;  // linear, with alpha
+  std::map<std::uint32_t, std::string> other_properties;    // properties that are not read, by element name
 };
 
-/// Colours of resources as materials of the scene.
+/// Makes materials of the scene from the colours of resources.
 class Colors {
  public:
   explicit Colors(Scene& scene) : scene_(scene) {}
-  /// Of property `index` of resource `id`; none: what has no colour. Throws InputError at `node` for what is not there.
+  /// Returns the colour of property `index` of resource `id`, if it has one. Throws InputError at `node` for missing ones.
   std::optional<glm::dvec4> of(const Part& part, std::optional<std::uint32_t> id, std::optional<std::uint32_t> index,
                                pugi::xml_node node);
-  /// Between two: the same where they are, else their mean in steps of 1/31.
+  /// Returns the colour if all are equal, else their mean in steps of 1/31.
   static std::optional<glm::dvec4> mean(const std::vector<std::optional<glm::dvec4>>& colors);
   std::uint32_t material(const std::optional<glm::dvec4>& color);
 

@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// The grid of that name in a NanoVDB file: of 32-bit floats, uncompressed or by ZIP. Nothing where there is none of that name.
-/// Throws InputError at `where` for a file that cannot be read.
+/// Reads the named grid of a NanoVDB file: 32-bit floats, uncompressed or compressed by ZIP. Returns null when no grid has the
+/// name. Throws InputError at `where` for a file that cannot be read.
 SparseGridPointer read_nanovdb(const std::string& file, const std::string& grid, const SourceLocation& where);
 
 }  // namespace caplet

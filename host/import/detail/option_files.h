@@ -9,8 +9,8 @@
 
 namespace caplet {
 
-/// While one lives, files that options name may be read: those that the user gave lie anywhere, those of a statement of a scene
-/// where the scene's other files do.
+/// While an instance exists, files that options name may be read. Files that the user names may lie anywhere; those that a
+/// scene's statement names must lie where the scene's other files may.
 class OptionFiles {
  public:
   explicit OptionFiles(const ImportOptions& options) {

@@ -10,7 +10,7 @@
 
 namespace caplet::pbrt {
 
-/// Imports scene text that is in memory; `file` is its name for messages and for finding the files it names. Throws InputError.
+/// Imports scene text in memory. `file` is its name, for messages and for relative paths. Throws InputError.
 Scene import_text(const std::string& file, std::string text, const ImageReader& images);
 
 }  // namespace caplet::pbrt

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads what models' `fields` visit (scene/field.h) from the parameters of a statement.
+// Reads the `fields` of models (scene/field.h) from the parameters of a statement.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace caplet::pbrt {
 
-/// Numbers, flags and choices, which all families have alike. What is not given stays as it is.
+/// Reads numbers, flags and choices, which all families share. Fields that are not given keep their values.
 struct FieldReader {
   Parameters& parameters;
 
@@ -28,7 +28,7 @@ struct FieldReader {
     value = parameters.integer(field.name, value);
     check(field, value);
   }
-  /// Any integer, as its 32 bits.
+  /// Accepts any integer and keeps its 32 bits.
   void seed(const Field& field, std::uint32_t& value) {
     value = static_cast<std::uint32_t>(parameters.integer(field.name, static_cast<std::int32_t>(value)));
   }

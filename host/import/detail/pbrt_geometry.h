@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The geometry behind Shape statements, one reader a type (docs/formats/pbrt.md). What is wrong is reported with its place, and
-// something harmless is returned: the scene is then refused as a whole.
+// Readers of the geometry in Shape statements, one per type (docs/formats/pbrt.md). They report errors at their places and return
+// something harmless, because the scene is then refused as a whole.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,28 +17,28 @@ namespace caplet::pbrt {
 
 using Geometry = decltype(Shape::geometry);
 
-/// A number as a float; reports when it is too large for one.
+/// Converts a number to float, and reports one that is too large.
 float to_float(Parameters& parameters, std::string_view name, double value);
-/// All points or vectors of a parameter; none when it is not there.
+/// Returns all points or vectors of a parameter; none when it is missing.
 std::vector<glm::vec3> vectors3(Parameters& parameters, const Parameter* values);
-/// One point that must be given, each coordinate at most largest_length.
+/// Returns one mandatory point, each coordinate at most largest_length.
 glm::dvec3 required_point(Parameters& parameters, std::string_view name);
-/// "float NAME": one value, positive and at most largest_length.
+/// Reads "float NAME": one value, positive and at most largest_length.
 double positive_length(Parameters& parameters, std::string_view name, double fallback);
-/// "float radius": one value, positive and at most largest_length.
+/// Reads "float radius": one value, positive and at most largest_length.
 double positive_radius(Parameters& parameters, double fallback);
-/// "phimax" in radians, above 0 and at most a full turn (more is a full turn, as in pbrt).
+/// Reads "phimax" in radians, above 0 and at most a full turn (larger values become a full turn, as in pbrt).
 double phi_max(Parameters& parameters);
-/// A length of either sign, at most largest_length.
+/// Reads a length of either sign, at most largest_length.
 double length(Parameters& parameters, std::string_view name, double fallback);
 
-/// Asks a statement for the fields of a shape: corners must be given.
+/// Reads the fields of a shape from a statement. Corners are mandatory.
 class ReadFields : public Fields {
  public:
   explicit ReadFields(Parameters& parameters);
   void corners(const char* name0, const char* name1, glm::dvec3& p0, glm::dvec3& p1) override;
   void positive(const char* name, double& value) override;
-  /// Whether nothing is missing.
+  /// Returns whether all mandatory fields are present.
   bool complete() const { return complete_; }
 
  private:
@@ -46,7 +46,7 @@ class ReadFields : public Fields {
   bool complete_ = true;
 };
 
-/// What is wrong with a shape, at its statement or at the parameter of the field's name.
+/// Reports errors of a shape at its statement, or at the parameter of the field's name.
 class FieldCheck : public ShapeCheck {
  public:
   explicit FieldCheck(Parameters& parameters);
@@ -61,7 +61,7 @@ class FieldCheck : public ShapeCheck {
   bool good_ = true;
 };
 
-/// A shape whose model names its fields. Where something is missing or wrong, which is reported, as it is by default.
+/// Reads a shape whose model names its fields. If something is missing or wrong, it reports that and returns the default shape.
 template <FieldedShape Type>
 Type read_fields(Parameters& parameters) {
   Type shape;
@@ -73,27 +73,27 @@ Type read_fields(Parameters& parameters) {
   return report.good() ? shape : Type{};
 }
 
-/// Whole, or pbrt's part of one.
+/// Makes a whole sphere or pbrt's partial one.
 Geometry make_sphere(Parameters& parameters);
 DiskShape make_disk(Parameters& parameters);
 CapsulesShape make_capsule(Parameters& parameters);
-/// "float u": two a capsule, at p0 and at p1; none where it is not there or wrong (reported).
+/// Reads "float u": two per capsule, at p0 and at p1; none where it is missing or wrong (reported).
 std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules);
-/// The capsules of a statement's own lists.
+/// Makes the capsules of the lists in a statement.
 CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index);
-/// With "p0" or "p1" ours, otherwise pbrt's open one.
+/// Makes our cylinder if "p0" or "p1" is given, otherwise pbrt's open one.
 Geometry make_cylinder(Parameters& parameters);
 ConeShape make_cone(Parameters& parameters);
 PolyhedronShape make_polyhedron(Parameters& parameters);
 TriangleMeshShape make_triangle_mesh(Parameters& parameters);
-/// Its "P" and "indices" alone.
+/// Reads only "P" and "indices".
 TriangleMeshShape make_vertices_and_triangles(Parameters& parameters);
-/// "loopsubdiv": the limit of Loop's rules, as triangles of its level (shapes/loop_subdivision.cpp).
+/// Makes a "loopsubdiv": the limit surface of Loop's rules, as triangles of its level (shapes/loop_subdivision.cpp).
 TriangleMeshShape make_loop_subdivision(Parameters& parameters);
 BilinearMeshShape make_bilinear_mesh(Parameters& parameters);
-/// Chains of tapered capsules along pbrt's curve: no point of a chain's axis is further from the curve's point of the same
-/// parameter than max(1e-3 of the greater width, 1e-5 of the diagonal of the control points' bounds). As radii run linearly in
-/// the same parameter, that is also the Hausdorff distance of the chain from the round tube.
+/// Makes chains of tapered capsules along pbrt's curve. The distance between a chain's axis and the curve at the same parameter
+/// is at most max(1e-3 of the greater width, 1e-5 of the diagonal of the control points' bounds). Radii are linear in the same
+/// parameter, so this also bounds the Hausdorff distance of the chain from the round tube.
 CapsulesShape make_curve(Parameters& parameters);
 CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects);
 

@@ -13,11 +13,11 @@
 
 namespace caplet::pbrt {
 
-/// A statement that cannot be read further; the parser reports it and goes on at the next directive.
+/// A syntax error in a statement. The parser reports it and goes on at the next directive.
 struct SyntaxError {
   SourceLocation where;
   std::string message;
-  std::string kind = {};  // as for Diagnostics::error
+  std::string kind = {};  // as in Diagnostics::error
 };
 
 struct Token {
@@ -27,19 +27,19 @@ struct Token {
   int line = 0, column = 0;
 };
 
-/// Splits text into words, "strings" and brackets; `#` starts a comment. Columns count bytes from 1.
+/// Splits text into words, "strings" and brackets. `#` starts a comment. Columns count bytes from 1.
 class Lexer {
  public:
-  /// `behind`: what follows where this text ends, that of the file which includes it; null: nothing.
+  /// `behind`: the text that follows this one, that of the including file; null: nothing follows.
   Lexer(std::string file, std::string text, Lexer* behind = nullptr);
   Lexer(const Lexer&) = delete;
   Lexer& operator=(const Lexer&) = delete;
 
-  /// The next token, left in place. Throws SyntaxError for an unterminated string or an unknown escape.
+  /// Returns the next token without taking it. Throws SyntaxError for an unterminated string or an unknown escape.
   const Token& peek();
   Token next();
-  /// Appends the plain numbers (`whole`: of 32 bits) that stand next, up to the first token that is none: the quick way through
-  /// long lists. Blanks and line ends are between them, no comments.
+  /// Appends the plain numbers (`whole`: 32-bit integers) that come next, up to the first other token. This is a fast path for
+  /// long lists. Only blanks and line ends may separate them, no comments.
   void take_numbers(std::vector<double>& numbers, bool whole);
   SourceLocation place(const Token& token) const { return {file_, token.line, token.column}; }
   const std::string& file() const { return file_; }
@@ -60,12 +60,12 @@ class Lexer {
   std::deque<std::string> unescaped_;
 };
 
-/// "token" for messages, shortened, with control characters replaced.
+/// Quotes a token for messages: shortened, with control characters replaced.
 std::string in_quotes(std::string_view text);
 
-/// The number a word states; throws SyntaxError when it is none or not finite.
+/// Returns the number that a word states. Throws SyntaxError when it is not a number or not finite.
 double parse_number(const Token& token, const Lexer& lexer);
-/// The 32-bit integer a word states; throws SyntaxError otherwise.
+/// Returns the 32-bit integer that a word states. Throws SyntaxError otherwise.
 int parse_integer(const Token& token, const Lexer& lexer);
 
 }  // namespace caplet::pbrt

@@ -13,11 +13,11 @@
 
 namespace caplet::pbrt {
 
-/// The images and profiles that lights name, each read once.
+/// The images and profiles that lights name; each is read once.
 class LightFiles {
  public:
   explicit LightFiles(const ImageReader& reader) : reader_(reader) {}
-  /// Of parameter `name`. Reports what is wrong with it, and is null then.
+  /// Reads the file that parameter `name` names. Reports errors, and then returns null.
   std::shared_ptr<const EnvironmentImage> image(Parameters& parameters, const char* name);
   std::shared_ptr<const IesProfile> profile(Parameters& parameters, const char* name);
 
@@ -31,11 +31,11 @@ class LightFiles {
   std::map<std::string, std::shared_ptr<const IesProfile>> profiles_;
 };
 
-/// The light of a LightSource statement of an accepted type; no value when it had errors (reported).
+/// Makes the light of a LightSource statement of an accepted type; no value when it had errors (reported).
 std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
                                 LightFiles& files);
 
-/// The emission an AreaLightSource statement gives to the shapes after it.
+/// Makes the emission that an AreaLightSource statement gives to the shapes after it.
 AreaEmission make_area_emission(Parameters& parameters, LightFiles& files);
 
 }  // namespace caplet::pbrt

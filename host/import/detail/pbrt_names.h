@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What pbrt-v4 knows by name, and which of it is rendered: the tables behind docs/formats/pbrt.md.
+// The names of pbrt-v4, and which of them are supported: the tables behind docs/formats/pbrt.md.
 #pragma once
 
 #include <string>
@@ -14,26 +14,26 @@ namespace caplet::pbrt {
 
 struct NameTable {
   std::string directive;              // "Material"
-  std::vector<std::string> accepted;  // rendered
-  std::vector<std::string> refused;   // known, not rendered yet
+  std::vector<std::string> accepted;  // supported
+  std::vector<std::string> refused;   // known but not supported yet
 };
 
-/// One row a directive that takes a type name.
+/// Returns one row per directive that takes a type name.
 const std::vector<NameTable>& name_tables();
 
-/// Whether a type of Shape is a file of another format.
+/// Returns whether a type of Shape is a file of another format.
 bool is_file_shape(std::string_view type);
 
-/// All directives.
+/// Lists all directives.
 const std::vector<std::string>& directive_names();
 
-/// Whether pbrt-v4, or Caplet, has this type of `directive`.
+/// Returns whether pbrt-v4 or Caplet has this type of `directive`.
 bool is_known_name(std::string_view directive, const std::string& name);
 
-/// Why a type of `directive` cannot be used, and what groups such errors; `text` is empty where it is accepted.
+/// Says why a type of `directive` cannot be used, and how such errors are grouped; `text` is empty where it is accepted.
 struct Refusal {
   std::string text;
-  bool is_known = true;  // to pbrt-v4: not rendered yet
+  bool is_known = true;  // pbrt-v4 knows it, but it is not supported yet
 };
 Refusal refusal_of(std::string_view directive, const std::string& name);
 

@@ -22,10 +22,10 @@ void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
 /// Returns the sampler's own seed, if it has one.
 std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene);
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene);
-/// Accelerators change no picture: their parameters are checked and have no effect.
+/// Checks the parameters of an accelerator, which have no effect because accelerators do not change the picture.
 void check_accelerator(const std::string& type, Parameters& parameters);
 
-/// One Option statement; `value` is the token after the name. Returns the seed if it sets one.
+/// Handles one Option statement; `value` is the token after the name. Returns the seed if it sets one.
 std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const Lexer& lexer,
                                         Diagnostics& diagnostics);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parameter lists ("type name" values) of pbrt statements: parsing them, and reading them with their types checked. What a
-// statement asks for is what it knows: everything else in its list is an error.
+// Parses the parameter lists ("type name" values) of pbrt statements, and reads them with type checks. A parameter that a
+// statement does not ask for is an error.
 #pragma once
 
 #include <array>
@@ -31,11 +31,11 @@ struct Parameter {
   std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
   std::vector<bool> bools;
   ColorSpace space = ColorSpace::srgb;
-  std::string again;                       // what to warn of where an earlier one of its statement had its name and type
-  bool broken = false;                     // reported already; it counts as given, without a value
-  bool used = false;                       // something took its value
-  bool consulted = false;                  // an Attribute's: a statement of its target followed
-  std::shared_ptr<Parameter> replaced_by;  // an Attribute's: a later one of the same name
+  std::string again;                       // the warning for a duplicate of the same name and type
+  bool broken = false;                     // reported already; it counts as given but has no value
+  bool used = false;                       // its value was read
+  bool consulted = false;                  // of an Attribute: a statement of its target followed
+  std::shared_ptr<Parameter> replaced_by;  // of an Attribute: a later one of the same name
 };
 
 /// Reads the parameters up to the next directive. Errors of single parameters are reported
@@ -44,7 +44,7 @@ std::vector<Parameter> parse_parameters(Lexer& statement, ColorSpace space, Diag
 
 enum class SpectrumUse { albedo, unbounded, illuminant };
 
-/// What a Texture statement was resolved to: a constant, a texture of the scene, or the reason why it cannot be rendered.
+/// The value of a Texture statement: a constant, a texture of the scene, or the reason why it cannot be rendered.
 struct TextureValue {
   bool is_float = false;
   double number = 0;
@@ -52,12 +52,12 @@ struct TextureValue {
   std::optional<std::uint32_t> texture;  // index into Scene::textures
   std::string refusal;
 };
-/// Textures by their names; one of floats and one of spectra may share a name.
+/// Textures by name. A texture of floats and one of spectra may share a name.
 class TextureTable {
  public:
-  /// False, and nothing is added, where there is one of that name and kind.
+  /// Returns false and adds nothing if one of that name and kind exists.
   bool add(const std::string& name, TextureValue value) { return of(value.is_float).emplace(name, std::move(value)).second; }
-  /// That of the kind, else that of the other kind, else null.
+  /// Returns the texture of the kind, else that of the other kind, else null.
   const TextureValue* find(const std::string& name, bool is_float) const {
     for (const bool kind : {is_float, !is_float})
       if (const auto found = of_[kind ? 1 : 0].find(name); found != of_[kind ? 1 : 0].end()) return &found->second;
@@ -69,20 +69,20 @@ class TextureTable {
   std::map<std::string, TextureValue> of_[2];
 };
 
-/// Finds a finished object by its name; otherwise gives null and says in `problem` why there is none.
+/// Finds a finished object by its name. Returns null, with the reason in `problem`, if there is none.
 using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;
 
 using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
 
-/// Adds what is wrong with a file that is named at `where`: each line has both places.
+/// Adds the errors of a file that is named at `where`; each line has both places.
 void add_errors(const InputError& problem, const SourceLocation& where, Diagnostics& diagnostics);
 
-/// Finds files that statements name: beside the file with the statement, else beside the scene's main file.
+/// Resolves a file name of a statement: beside the statement's file, else beside the scene's main file.
 std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
 
-/// One statement's parameters. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). Reading
-/// a missing parameter gives the fallback; a wrong one reports an error and gives the fallback. Names asked for are literals:
-/// they are kept as they are.
+/// The parameters of one statement. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). A
+/// missing parameter gives the fallback; a wrong one reports an error and gives the fallback. The names passed in must be
+/// literals, because they are kept by reference.
 class Parameters {
  public:
   Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
@@ -95,33 +95,33 @@ class Parameters {
   std::string text(std::string_view name, const std::string& fallback);
   glm::dvec3 point(std::string_view name, const glm::dvec3& fallback);
   glm::dvec3 vector(std::string_view name, const glm::dvec3& fallback);
-  /// All values of a parameter whose type is one of `types`; null when it is not there.
+  /// Returns all values of a parameter whose type is one of `types`; null when it is missing.
   const Parameter* values(std::string_view name, std::initializer_list<std::string_view> types);
   std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures = nullptr);
-  /// The texture that a parameter names, if it names one of the scene that is of floats or spectra as wanted.
+  /// Returns the texture that a parameter names, if the scene has it and it is of floats or spectra as requested.
   std::optional<std::uint32_t> texture(std::string_view name, bool is_float, const TextureTable& textures);
-  /// A float or a constant float texture.
+  /// Reads a float or a constant texture of floats.
   double number_or_texture(std::string_view name, double fallback, const TextureTable& textures);
-  /// Reports that a parameter is known but not rendered yet, if it is there.
+  /// Reports that a parameter is known but not supported yet, if it is present.
   void refuse(std::string_view name);
   /// Marks a parameter as known and without effect here.
   void ignore(std::string_view name);
-  /// Everything not asked for is an error that lists the nearest name asked for.
+  /// Reports every parameter that was not asked for, with the nearest name that was.
   void finish();
-  /// The names that were asked for by now, in order; some more than once.
+  /// Returns the names that were asked for so far, in order; some occur more than once.
   std::vector<std::string> asked() const { return {asked_.begin(), asked_.end()}; }
 
-  /// `kind` as for Diagnostics::error.
+  /// `kind` is as in Diagnostics::error.
   void error(std::string_view name, const std::string& message, const std::string& kind = {});
   void error(const std::string& message) { diagnostics_->error(where_, owner_ + ": " + message); }
   const SourceLocation& where() const { return where_; }
   SourceLocation where(std::string_view name) const;
   const std::string& owner() const { return owner_; }
   const std::string& main_file() const { return *main_file_; }
-  /// The colour space at the statement.
+  /// Returns the colour space at the statement.
   ColorSpace space() const { return space_; }
   Diagnostics& diagnostics() { return *diagnostics_; }
-  /// Errors from now on go there.
+  /// Sends further errors to `diagnostics`.
   void report_to(Diagnostics& diagnostics) { diagnostics_ = &diagnostics; }
 
  private:

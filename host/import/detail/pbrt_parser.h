@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads pbrt-v4 statements in order, keeps the graphics state, and builds the scene. One method a directive.
+// Reads pbrt-v4 statements in order, keeps the graphics state, and builds the scene. Each directive has one method.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@
 
 namespace caplet::pbrt {
 
-/// Calls `visit` with every index of a material that a shape has.
+/// Calls `visit` with every material index of a shape.
 void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit);
 
 class Parser {
@@ -36,7 +36,7 @@ class Parser {
   Parser(std::string main_file, const ImageReader& images)
       : main_file_(std::move(main_file)), images_(images), light_files_(images) {}
 
-  /// The scene of the main file's text. Throws InputError with everything that is wrong.
+  /// Returns the scene of the main file's text. Throws InputError with all errors.
   Imported parse(std::string text);
 
  private:
@@ -46,9 +46,9 @@ class Parser {
   };
   struct State {
     glm::dmat4 ctm{1};
-    std::optional<Flat> flat;           // the first transform in it that has no inverse, and is not in ctm
-    std::optional<Flat> skewed;         // the first that is not affine, and is in ctm: for directions alone
-    std::optional<glm::dmat4> inverse;  // of ctm, where the file states that: it is not to be computed from ctm
+    std::optional<Flat> flat;           // the first singular transform, which was not multiplied into ctm
+    std::optional<Flat> skewed;         // the first transform that is not affine; ctm contains it, for directions only
+    std::optional<glm::dmat4> inverse;  // of ctm, if the file states it, so that it need not be computed
     bool reverse_orientation = false;
     ColorSpace space = ColorSpace::srgb;
     std::uint32_t material = 0;  // index into uses_
@@ -64,7 +64,7 @@ class Parser {
   struct MaterialStatement {
     std::string type, name;
     Parameters parameters;
-    std::string refusal = {};  // of a type that is not rendered yet: an error only where a shape uses it
+    std::string refusal = {};  // why a type is not supported yet: an error only where a shape uses it
     SourceLocation where = {};
   };
   /// What shapes refer to until all materials are known: the default, a Material statement, or a name.
@@ -72,19 +72,19 @@ class Parser {
     std::optional<std::size_t> statement;
     std::string name;
     SourceLocation where;
-    std::optional<std::uint32_t> made = {};  // one of another file, in the scene already
+    std::optional<std::uint32_t> made = {};  // a material of another file, already in the scene
   };
   class MaterialMaking;
-  /// Of a mix with an interface: the chance of the other material, that is an alpha.
+  /// For a mix with an interface: the probability of the other material, which becomes an alpha.
   struct PartlyThere {
     TextureOperand amount;
     bool inverted;    // 1 - amount
-    bool subsurface;  // the other material has a medium within
+    bool subsurface;  // the other material contains a medium
   };
   struct MediumStatement {
     Medium medium;
     bool sound = false;
-    std::optional<std::uint32_t> index = {};  // in the scene, once something has it
+    std::optional<std::uint32_t> index = {};  // in the scene, once it is used
   };
   struct MediumUse {
     std::string name;
@@ -163,14 +163,14 @@ class Parser {
   void translate();
   void world_begin();
 
-  // Help for directives
+  // Helpers of directives
   void shapes_of_file(const std::string& type, Parameters& given);
   void put_as_stated(Shape& shape, const SourceLocation& where, bool is_instanced) const;
   TextureContext texture_context();
   std::shared_ptr<const TextureImage> texture_image(Parameters& parameters, const char* name, const ImageEncoding& encoding,
                                                     std::string& problem);
   void multiply(const glm::dmat4& matrix);
-  /// Reports the transform where it has no inverse or is not affine, before something is put there.
+  /// Reports a singular or non-affine transform before something is placed with it.
   void check_place();
   glm::dmat4 place_of_light(const std::string& type);
   void set_transform(const glm::dmat4& ctm);
@@ -183,11 +183,11 @@ class Parser {
   std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
   const Object* finished_object(const std::string& name, std::string& problem) const;
 
-  /// Logged at the end: the first of its kind, with the number of the others.
+  /// Warnings are logged at the end: the first of each kind, with the number of the others.
   void warn_of_kind(const SourceLocation& where, const std::string& message, const std::string& kind);
 
-  // At the end
-  /// "; the nearest known name is ..." for an error that is shown: one among many does without, as it takes time by their number.
+  // End of the scene
+  /// Returns "; the nearest known name is ..." for errors that are shown; the search is skipped for the rest, as it is slow.
   template <class Map>
   std::string nearest(const std::string& name, const Map& map) const {
     if (map.empty() || diagnostics_.is_full()) return {};
@@ -221,15 +221,15 @@ class Parser {
   std::string directive_;
   SourceLocation where_;
   std::vector<OpenFile> open_files_;
-  std::unordered_set<std::string> files_read_;  // canonical
+  std::unordered_set<std::string> files_read_;  // canonical paths
   std::size_t included_files_ = 0, included_again_ = 0;
   State state_;
   std::vector<Block> blocks_;
-  std::size_t block_floor_ = 0;  // blocks below were opened outside the imported file
+  std::size_t block_floor_ = 0;  // blocks below this were opened outside the imported file
   bool in_world_ = false, has_camera_ = false, warned_transform_begin_ = false;
   std::optional<std::uint32_t> option_seed_, sampler_seed_;
   std::map<std::string, glm::dmat4> coordinate_systems_;
-  std::optional<std::size_t> object_;  // being defined
+  std::optional<std::size_t> object_;  // the object that is being defined
   SourceLocation object_where_;
   std::map<std::string, std::uint32_t> object_names_;
   std::vector<InstanceUse> instances_;
@@ -239,12 +239,12 @@ class Parser {
   std::map<std::string, std::uint32_t> uses_by_name_;
   std::map<std::string, MediumStatement> media_;
   std::vector<MediumUse> medium_uses_;
-  std::map<std::uint32_t, Medium> media_within_;     // of materials of the scene
-  std::map<std::size_t, PartlyThere> partly_there_;  // of statements
+  std::map<std::uint32_t, Medium> media_within_;     // by material of the scene
+  std::map<std::size_t, PartlyThere> partly_there_;  // by statement
   TextureTable textures_;
   std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images_;
   SharedParameters all_attributes_;
-  std::set<std::string> said_two_sided_;  // places of shapes whose statements say that they are not one-sided
+  std::set<std::string> said_two_sided_;  // places of shapes whose statements state that they are not one-sided
 };
 
 }  // namespace caplet::pbrt

@@ -18,8 +18,8 @@ struct ShapeContext {
   const ObjectLookup& objects;          // for csg
 };
 
-/// The geometry, name and materials (those of the statement, else `material`) of a Shape statement of an accepted type. Errors
-/// are reported. The rest of the state is the caller's.
+/// Makes the geometry, name and materials (the statement's, else `material`) of a Shape statement of an accepted type. Errors are
+/// reported. The caller adds the rest of the state.
 Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t material, const ShapeContext& context);
 
 }  // namespace caplet::pbrt

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Spectrum files (.spd): wavelength (nm) and value, alternating, `#` comments.
+// Spectrum files (.spd): wavelengths (nm) and values alternate; `#` starts a comment.
 #pragma once
 
 #include <filesystem>

@@ -7,8 +7,8 @@
 
 namespace caplet::pbrt {
 
-/// What is behind the boundary of pbrt's "subsurface" (docs/media.md): all of its parameters but those of the boundary, whose
-/// index is `eta`. Coefficients that are textures count by their means over the texture, and a warning says so.
+/// Makes the medium behind the boundary of pbrt's "subsurface" (docs/media.md) from all parameters but those of the boundary,
+/// whose index is `eta`. Coefficients that are textures are replaced by their means over the texture, with a warning.
 Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, const Scene& scene, const Spectrum& eta);
 
 }  // namespace caplet::pbrt

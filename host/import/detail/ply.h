@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped; polygons are triangulated as fans.
+// PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped. Polygons are triangulated.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 
 namespace caplet {
 
-/// Vertices keep their order and are neither merged nor split; faces keep order and winding. Normals or texture coordinates that
-/// are not finite at all vertices are left out, with a warning. `where` is the statement that names the file. Throws InputError
-/// when the file is missing, broken, or does not hold what its header says. `colors`: where linear colours of corners go, three a
-/// triangle, of a file that has them of vertices or else of faces.
+/// Reads a mesh. Vertices keep their order and are neither merged nor split; faces keep order and winding. Normals or texture
+/// coordinates that are not finite at all vertices are dropped with a warning. `where` is the statement that names the file.
+/// Throws InputError when the file is missing, broken, or contradicts its header. `colors` receives linear colours of corners,
+/// three per triangle, if the file has colours of vertices or else of faces.
 TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where,
                            std::vector<glm::vec3>* colors = nullptr);
-/// The same from bytes; `file` is the name for messages.
+/// Does the same from bytes; `file` is the name for messages.
 TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes, std::vector<glm::vec3>* colors = nullptr);
 
 namespace ply {
@@ -44,27 +44,27 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
-  std::size_t size = 0;  // bytes, where the body starts
+  std::size_t size = 0;  // bytes; the body starts here
   int lines = 0;
-  std::size_t vertex = 0, face = 0, indices = 0;  // of the vertex and face elements, and of the face's list of vertices
+  std::size_t vertex = 0, face = 0, indices = 0;  // indices of the vertex and face elements, and of the faces' list of vertices
 };
 
 std::size_t size_of(Type type);
 bool is_float(Type type);
-/// "vertex_indices" and its variants.
+/// Accepts "vertex_indices" and its variants.
 bool is_index_list(const Property& property);
 
-/// Reads and checks the header, the counts against the file's size. Throws InputError.
+/// Reads and checks the header, and the counts against the file's size. Throws InputError.
 Header parse_header(const std::string& file, std::string_view bytes);
 
-/// Linear colours, one a vertex or one a face; empty: none.
+/// Linear colours, one per vertex or one per face; empty without colours.
 struct Colors {
   std::vector<glm::vec3> of_vertices, of_faces;
 };
 
-/// The mesh as a little-endian PLY of the plainest form: vertices before faces, x y z nx ny nz u v as far as given, then one list
-/// of 32-bit indices a face, nothing else. Throws InputError unless every value of the body is there and readable, positions are
-/// finite and indices in range.
+/// Rewrites the mesh as a little-endian PLY of the simplest form: vertices before faces, x y z nx ny nz u v as far as given, then
+/// one list of 32-bit indices per face, nothing else. Throws InputError unless every value of the body is present and readable,
+/// positions are finite and indices are in range.
 std::string rewrite(const std::string& file, std::string_view bytes, const Header& header, Colors* colors = nullptr);
 
 }  // namespace ply

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A robot as its file has it, whatever the format: geoms, where they lie in the pose that was asked for, what they are made of,
-// and its lights and cameras. Metres, z up. Conventions: docs/formats/robots.md.
+// A robot as its file states it, in any format: geoms, their poses, their materials, lights and cameras. Lengths are in metres, z
+// is up. Conventions: docs/formats/robots.md.
 #pragma once
 
 #include <filesystem>
@@ -26,14 +26,14 @@
 
 namespace caplet {
 
-/// plane: z = 0, seen from above.
+/// A plane is z = 0, seen from above.
 enum class GeomKind { sphere, capsule, cylinder, box, mesh, plane, ellipsoid };
 
 using MeshParts = std::vector<TriangleMeshShape>;
 
-/// How a solid is fitted to a mesh: to the box of its inertia, or to its extent along that one's axes.
+/// How a solid is fitted to a mesh: to the box of its inertia, or to its extent along the inertia's axes.
 struct MeshFit {
-  /// What counts: volumes from the middle of the faces, all positive or with signs, or the surface.
+  /// How mass is measured: volumes from the centre of the faces, all positive or signed, or the surface.
   enum class Mass { legacy, exact, shell } mass = Mass::legacy;
   bool by_extent = false;
   double scale = 1;
@@ -41,22 +41,22 @@ struct MeshFit {
 
 struct RobotGeom {
   GeomKind kind = GeomKind::sphere;
-  glm::dvec3 size{0};  // half lengths; radius and half length; of a plane half lengths, 0: endless
+  glm::dvec3 size{0};  // half lengths; radius and half length; of a plane half lengths, 0: infinite
   glm::dmat4 world{1};
-  std::optional<glm::dvec4> rgba;       // as shown on a screen: sRGB; none: the material's, or grey
+  std::optional<glm::dvec4> rgba;       // sRGB, as shown on a screen; none: the material's, or grey
   std::optional<std::size_t> material;  // index into Robot::materials
   std::string name;
   int group = 0;
-  bool collides = false;  // URDF: collision geometry, else visual. MJCF: may touch others
+  bool collides = false;  // URDF: collision geometry, else visual. MJCF: may collide
   std::filesystem::path mesh;
-  bool needs_mesh = false;                 // a mesh that cannot be had is an error
+  bool needs_mesh = false;                 // a missing mesh is an error
   std::shared_ptr<const MeshParts> parts;  // replaces `mesh`
   glm::dmat4 geom_from_mesh{1};
-  std::optional<MeshFit> fit;  // of a solid: it takes size and place from the mesh
+  std::optional<MeshFit> fit;  // of a solid: the mesh gives its size and place
   SourceLocation where;
 };
 
-/// An image over a geom: by the directions from its middle, or by its x and y (by the texture coordinates of a mesh that has
+/// A texture of a geom, mapped by the direction from its centre, or by its x and y (or the texture coordinates of a mesh that has
 /// some).
 struct RobotTexture {
   std::shared_ptr<const TextureImage> image;
@@ -83,8 +83,8 @@ struct RobotLight {
 
 struct RobotCamera {
   std::string name;
-  glm::dmat4 world{1};  // it looks along -z, y is up
-  double fovy = 45;     // degrees; of an orthographic one the height of what it sees
+  glm::dmat4 world{1};  // it looks along -z, and y is up
+  double fovy = 45;     // degrees; orthographic: the height of the view
   bool orthographic = false;
 };
 
@@ -97,33 +97,33 @@ struct Robot {
   std::shared_ptr<const EnvironmentImage> sky;
 };
 
-/// What --pose says: joint=value pairs, and perhaps the name of a keyframe.
+/// The contents of --pose: joint=value pairs, and optionally the name of a keyframe.
 struct Pose {
   explicit Pose(const ImportOptions& options);
   std::optional<std::string> keyframe;
-  std::map<std::string, std::vector<double>> joints;  // metres and radians; of ball joints w x y z, of free ones x y z w x y z
+  std::map<std::string, std::vector<double>> joints;  // metres and radians; ball joints: w x y z; free joints: x y z w x y z
 };
 
-/// Meshes by file, each read once.
+/// Caches meshes by file.
 class MeshFiles {
  public:
-  /// The meshes of an STL, OBJ, PLY, OFF, MSH or DAE file, as they are there. Throws InputError.
+  /// Returns the meshes of an STL, OBJ, PLY, OFF, MSH or DAE file in the file's coordinates. Throws InputError.
   std::shared_ptr<const MeshParts> read(const std::filesystem::path& path, const SourceLocation& where);
 
  private:
   std::map<std::string, std::shared_ptr<const MeshParts>> meshes_;
 };
-/// Whether MeshFiles reads files with this ending.
+/// Returns whether MeshFiles reads files with this ending.
 bool is_mesh_file(const std::filesystem::path& path);
 
 /// Throws InputError with the file's places.
 Robot read_urdf(const std::filesystem::path& path, const Pose& pose);
 Robot read_mjcf(const std::filesystem::path& path, const Pose& pose, const ImageReader& images);
 
-/// Gives a geom that is fitted its size and place; false where the mesh holds nothing.
+/// Sets the size and place of a geom that is fitted to a mesh. Returns false where the mesh is empty.
 bool fit(RobotGeom& geom, const MeshParts& parts);
 
-/// ".stl" of a.STL.
+/// Returns ".stl" for a.STL.
 std::string lower_case_ending(const std::filesystem::path& path);
 
 }  // namespace caplet

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the colours of a neuron tell: types, the file, branch orders, ways from the soma, or values of another file.
-// Conventions: docs/formats/swc.md.
+// Colours of a neuron by type, file, branch order, path length from the soma, or values of another file. Conventions:
+// docs/formats/swc.md.
 #pragma once
 
 #include <cstdint>
@@ -18,23 +18,23 @@
 
 namespace caplet {
 
-/// How many forks lie between each sample and the soma or root: samples with two children or more that are neither soma nor root.
+/// Counts the forks between each sample and the soma or root: samples with two or more children, other than soma and root.
 std::vector<double> branch_orders(const std::vector<SwcSample>& samples);
 
-/// The way along the samples to each from its root, or from the last sample of the soma before it; in the file's unit.
+/// Returns the path length to each sample from its root, or from the last soma sample on the path; in the file's unit.
 std::vector<double> path_depths(const std::vector<SwcSample>& samples);
 
-/// What a file of values says of each sample: one number a sample in their order, an id and a number a line, one number a file,
-/// or a file's name without its ending and a number a line; blanks, tabs or a comma between. `#` begins a comment; the first,
-/// before the first value, names the values (`name`). NaN where it says nothing of a sample. `neuron`: the file of the samples,
-/// the number of which among how many files `options` says. Throws InputError.
+/// Reads one value per sample: a number per sample in their order, an id and a number per line, one number per file, or a file's
+/// name without its ending and a number per line; separated by blanks, tabs or a comma. `#` begins a comment; the first, before
+/// the first value, gives the values' name (`name`). Samples without a value are NaN. `neuron` is the file of the samples;
+/// `options` gives its number among the files. Throws InputError.
 std::vector<double> read_values(const std::filesystem::path& path, const std::vector<SwcSample>& samples,
                                 const std::filesystem::path& neuron, const ImportOptions& options, std::string& name);
 
-/// The materials of samples, made when first asked for; `types` are the samples' as drawn.
+/// Makes the materials of samples at their first use; `types` are the samples' types as drawn.
 class SwcColors {
  public:
-  /// Throws InputError naming --color or --range.
+  /// Throws InputError that names --color or --range.
   SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const std::filesystem::path& path, const ImportOptions& options);
   std::uint32_t of(const SwcSample& sample);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials whose colours tell numbers, made when first asked for.
+// Materials that show values by colour. Each is made at its first use.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace caplet {
 
-/// `steps` diffuse materials of the colour map at most, from `low` to `high`, named "WHAT VALUE", and a grey one of what has no
-/// value.
+/// Makes at most `steps` diffuse materials of the colour map, from `low` to `high`, named "WHAT VALUE", and a grey one for
+/// missing values.
 class ValueColors {
  public:
   ValueColors() = default;
   ValueColors(Scene& scene, std::string what, double low, double high, int steps);
-  /// The material of a value, the nearest step's; beyond the ends that of the end, of NaN the grey one. `line`: of the file,
-  /// where a new material is said to be from.
+  /// Returns the material of the nearest step; values beyond the range take that of its end, NaN the grey one. `line` is the line
+  /// of the file that a new material is attributed to.
   std::uint32_t of(double value, int line = 0);
 
  private:
@@ -29,11 +29,11 @@ class ValueColors {
   Scene* scene_ = nullptr;
   std::string what_;
   double low_ = 0, high_ = 0;
-  std::vector<std::int64_t> index_;  // of each step: a material, or -1
+  std::vector<std::int64_t> index_;  // for each step: a material, or -1
   std::int64_t without_value_ = -1;
 };
 
-/// The range of the finite ones among values; of none nothing is there.
+/// Finds the range of the finite values; `is_there` stays false without any.
 template <class Numbers>
 ValueRange range_of(const Numbers& values) {
   ValueRange out;

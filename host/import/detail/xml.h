@@ -18,9 +18,9 @@ namespace caplet {
 /// An XML file in memory, and the places of its elements.
 class XmlFile {
  public:
-  /// Throws InputError with line and column for what is no XML. NUL bytes at the end are left out.
+  /// Throws InputError with line and column for invalid XML. NUL bytes at the end are ignored.
   explicit XmlFile(const std::filesystem::path& path, const SourceLocation& named_at = {});
-  /// Text from elsewhere, which messages call `path`.
+  /// Parses text from elsewhere, which messages call `path`.
   XmlFile(const std::filesystem::path& path, std::string text);
   pugi::xml_node root() const { return document_.document_element(); }
   SourceLocation place(pugi::xml_node node) const { return place(node.offset_debug()); }
@@ -34,7 +34,7 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
-/// Calls work with each word, blanks between them, without a leading '+'.
+/// Calls work with each blank-separated word, without a leading '+'.
 template <class Work>
 void each_word(std::string_view text, const Work& work) {
   constexpr std::string_view kBlanks = " \t\r\n";
@@ -48,7 +48,7 @@ void each_word(std::string_view text, const Work& work) {
   }
 }
 
-/// Finite numbers with blanks between them, at least `least` and at most `most`. Throws InputError.
+/// Reads blank-separated finite numbers, at least `least` and at most `most`. Throws InputError.
 std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
                                const std::string& what);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Zip archives: 3MF packages, TRX.
+// Zip archives, for 3MF packages and TRX.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace caplet {
 
-/// The files of an archive, read whole, one at a time. All of it throws InputError, for what is no archive, is broken, encrypted,
-/// or packed in other ways than deflate, and when what was read is more than most_unpacked of the archive.
+/// Reads whole files of an archive, one at a time. All functions throw InputError for a file that is no archive, is broken,
+/// encrypted or packed other than by deflate, and when more than most_unpacked of the archive was read.
 class ZipFile {
  public:
   explicit ZipFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<std::string>& names() const { return names_; }
-  /// The archive's own spelling of a name, whose ASCII letters may be of either case.
+  /// Finds the archive's own spelling of a name; the case of ASCII letters is ignored.
   std::optional<std::string> find(std::string_view name) const;
-  /// The bytes of one of names().
+  /// Returns the bytes of one of names().
   std::string read(const std::string& name);
 
  private:
@@ -33,7 +33,7 @@ class ZipFile {
   std::filesystem::path path_;
   std::shared_ptr<void> file_;
   std::vector<std::string> names_;
-  std::uintmax_t left_ = 0;  // of what may be unpacked
+  std::uintmax_t left_ = 0;  // the bytes that may still be unpacked
 };
 
 }  // namespace caplet

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The graph of an Embree scene: groups, transforms, and elements named before, which are placed as shapes or, where they occur
-// more than once, as instances.
+// The graph of an Embree scene: groups, transforms and references to named elements. Elements become shapes, or instances where
+// they occur more than once.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,22 +24,22 @@ namespace embree {
 
 namespace {
 
-constexpr int kDeepest = 500, kHighest = 5000;  // elements within each other, and by references
+constexpr int kDeepest = 500, kHighest = 5000;  // nesting of elements, and with references
 constexpr std::size_t kMostXmlFiles = 20;
 constexpr std::size_t kMostVisited = 4'000'000, kMostPlaced = 1'000'000;
 
 struct Node {
-  std::vector<glm::dmat4> places;  // of the children; none: where the node is
+  std::vector<glm::dmat4> places;  // of the children; none: at the node itself
   std::vector<std::shared_ptr<const Node>> children;
   std::vector<Shape> shapes;
   std::optional<LightElement> light;
   std::optional<View> view;
   SourceLocation where;
-  int height = 0;  // of what lies within it
+  int height = 0;  // the nesting depth of its content
 };
 using NodePtr = std::shared_ptr<const Node>;
 
-/// Null adds nothing.
+/// A null child is ignored.
 void add_child(Node& to, NodePtr child) {
   if (!child) return;
   to.height = std::max(to.height, child->height + 1);
@@ -121,7 +121,7 @@ class EmbreeReader {
       if (child.type() == pugi::node_element) add_child(to, element(from, child, depth + 1));
   }
 
-  /// Null: nothing is drawn.
+  /// Returns null where nothing is drawn.
   NodePtr element(SceneFile& from, pugi::xml_node node, int depth) {
     if (depth > kDeepest) from.fail(node, fmt::format("lies within {} others", kDeepest));
     const std::string_view name = node.name();
@@ -185,7 +185,7 @@ class EmbreeReader {
     return out;
   }
 
-  /// One place, or as many as MultiTransform lists; of those of several moments the first.
+  /// Reads one transform, or all those of a MultiTransform. Of the transforms at several times the first is used.
   void transform(SceneFile& from, pugi::xml_node node, Node& to, int depth) {
     bool is_first = true, is_nowhere = false;
     for (const pugi::xml_node child : node.children()) {
@@ -201,7 +201,7 @@ class EmbreeReader {
           to.places.push_back(affine_space(from, child));
           continue;
         }
-        if (child.attribute("ofs")) {  // columns: three of the turn, and the place
+        if (child.attribute("ofs")) {  // three columns of the linear part, then the translation
           const std::vector<float> m = from.floats(child, 12);
           for (std::size_t i = 0; i < m.size(); i += 12) {
             glm::dmat4& one = to.places.emplace_back(1);
@@ -249,7 +249,7 @@ class EmbreeReader {
     return out;
   }
 
-  /// Another file: of Embree's, or a mesh.
+  /// Reads another file: an Embree scene or a mesh.
   NodePtr other(SceneFile& from, pugi::xml_node node, int depth) {
     const std::string src = node.attribute("src").value();
     const SourceLocation where = from.place(node);
@@ -325,7 +325,7 @@ class EmbreeReader {
   Scene scene_;
   MeshImages images_;
   Notes notes_;
-  std::map<fs::path, NodePtr> files_;  // null: being read
+  std::map<fs::path, NodePtr> files_;  // null while a file is being read
   std::map<std::string, NodePtr> nodes_;
   std::map<std::string, Look> looks_;
   std::optional<std::uint32_t> plain_;

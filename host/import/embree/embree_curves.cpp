@@ -24,7 +24,7 @@ enum class Basis { linear, cone, bezier, bspline, hermite, catmull_rom };
 struct Curves {
   Basis basis = Basis::linear;
   bool is_flat = false, is_oriented = false;
-  bool in_pairs = false;  // indices with the number of the hair
+  bool in_pairs = false;  // each index is followed by the number of its hair
 };
 
 struct Element {
@@ -64,7 +64,7 @@ Curves curves_of(const SceneFile& file, pugi::xml_node node) {
 
 std::size_t vertices_of(Basis basis) { return basis == Basis::linear || basis == Basis::cone || basis == Basis::hermite ? 2 : 4; }
 
-/// The list of the first moment: of animated ones the first.
+/// Returns the list at the first time step of an animated element.
 pugi::xml_node first_list(pugi::xml_node node, const std::string& name, const SceneFile& file, Notes& notes) {
   const pugi::xml_node animated = node.child(("animated_" + name).c_str());
   if (!animated) return node.child(name.c_str());
@@ -143,7 +143,7 @@ class CurveSet {
     return p;
   }
 
-  /// u: at both ends, where it is part of a curve.
+  /// Adds a capsule. u: at both ends, where it is part of a curve.
   void segment(const dvec4& a, const dvec4& b, const std::optional<glm::vec2>& u) {
     if (!(a.w > 0) && !(b.w > 0)) {
       if (a.w < 0 || b.w < 0) file_.fail(node_, "a radius is negative");
@@ -158,7 +158,7 @@ class CurveSet {
     if (u) capsules_.u.push_back(*u);
   }
 
-  /// Bezier control points.
+  /// Returns the Bezier control points of curve i.
   CubicTube tube(std::size_t i) const {
     if (basis_ == Basis::bezier) return {point(i), point(i + 1), point(i + 2), point(i + 3)};
     if (basis_ == Basis::hermite) {
@@ -167,13 +167,13 @@ class CurveSet {
     }
     const dvec4 p1 = point(i + 1), p2 = point(i + 2);
     if (basis_ == Basis::catmull_rom) return {p1, p1 + (p2 - point(i)) / 6.0, p2 - (point(i + 3) - p1) / 6.0, p2};
-    // At an end, where a point is NaN, the curve goes on straight beyond the next.
+    // At an end, whose point is NaN, the curve continues straight beyond the next point.
     const auto is_end = [&](std::size_t k) { return std::isnan(points_[k].x) || std::isnan(points_[k].w); };
     const dvec4 p0 = is_end(i) ? 2.0 * p1 - p2 : point(i), p3 = is_end(i + 3) ? 2.0 * p2 - p1 : point(i + 3);
     return {(p0 + 4.0 * p1 + p2) / 6.0, (2.0 * p1 + p2) / 3.0, (p1 + 2.0 * p2) / 3.0, (p1 + 4.0 * p2 + p3) / 6.0};
   }
 
-  /// The curves so far that each begin at the point where the one before ends are one strand: u runs over all of them.
+  /// Ends a strand: consecutive curves that are joined end to end. u runs over all of them.
   void end_strand() {
     for (std::size_t i = strand_begin_; i < capsules_.u.size(); ++i)
       capsules_.u[i] = glm::vec2(glm::dvec2(capsules_.u[i]) / static_cast<double>(strand_curves_));
@@ -203,7 +203,7 @@ class CurveSet {
               chords.u[i]);
   }
 
-  /// Bits of flags: a neighbour at the first, and at the second end, where there is no cap then.
+  /// Adds a cone. Bits of flags mark a neighbour at the first and at the second end, which then has no cap.
   void cone(std::size_t first, std::uint32_t flags) {
     constexpr std::uint32_t left = 1, right = 2;
     const dvec4 a = point(first), b = point(first + 1);
@@ -242,12 +242,12 @@ class CurveSet {
   Basis basis_ = Basis::linear;
   std::vector<dvec4> points_, tangents_;
   CapsulesShape capsules_;
-  std::size_t strand_begin_ = 0, strand_curves_ = 0;  // its first capsule, and how many curves it has so far
-  std::size_t strand_next_ = 0;                       // the point at which its next curve would begin
+  std::size_t strand_begin_ = 0, strand_curves_ = 0;  // its first capsule, and the number of its curves so far
+  std::size_t strand_next_ = 0;                       // the first point of its next curve
   std::vector<Geometry> cones_;
 };
 
-/// Two triangles a quadrilateral, as Embree cuts them; a grid is quadrilaterals.
+/// Returns quadrilaterals, each of which Embree splits into two triangles; a grid consists of quadrilaterals.
 std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_node node, std::size_t vertices) {
   std::vector<std::array<std::uint32_t, 4>> out;
   if (std::string_view(node.name()) == "QuadMesh") {
@@ -256,7 +256,7 @@ std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_no
       out.push_back({indices[i], indices[i + 1], indices[i + 2], indices[i + 3]});
     return out;
   }
-  // First vertex, vertices from row to row, columns, rows.
+  // Each row holds the first vertex, the stride between rows, columns and rows.
   const std::vector<std::uint32_t> grids = file.indices(node.child("grids"), 4);
   for (std::size_t i = 0; i < grids.size(); i += 4) {
     const std::uint64_t first = grids[i], stride = grids[i + 1], columns = grids[i + 2], lines = grids[i + 3];
@@ -287,7 +287,7 @@ std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const Look& look, 
   } else {
     for (const std::array<std::uint32_t, 4>& q : quads_of(file, node, count)) {
       out.triangles.push_back({q[0], q[1], q[3]});
-      if (q[2] != q[3]) out.triangles.push_back({q[2], q[3], q[1]});  // such a one is a triangle
+      if (q[2] != q[3]) out.triangles.push_back({q[2], q[3], q[1]});  // else it is a triangle
     }
   }
   for (const auto& triangle : out.triangles)

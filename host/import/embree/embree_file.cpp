@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lists of numbers in Embree's XML and its companion.
+// Lists of numbers in Embree's XML and its companion file.
 #include <fmt/format.h>
 
 #include <bit>
@@ -87,7 +87,7 @@ std::vector<float> SceneFile::floats(pugi::xml_node node, std::size_t width, boo
   each_word(node, [&](std::string_view word) {
     double value = 0;
     if (!parse_number(word, value)) {
-      // What is too small for a double is 0.
+      // A number that underflows a double is 0.
       float small = 0;
       if (parse_float(word, small) != NumberError::none)
         fail(node, fmt::format("<{}>: {} is not a number", node.name(), quoted(word)));

@@ -24,7 +24,7 @@ namespace {
 
 glm::dvec3 vector_of(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-/// The parameters of a material by their names.
+/// Reads the parameters of a material by name.
 class Parameters {
  public:
   Parameters(SceneFile& file, pugi::xml_node node) {
@@ -75,8 +75,8 @@ Look added(Scene& scene, const Material& material) {
 
 double index_of(double inside, double outside) { return std::clamp(outside > 0 ? inside / outside : inside, 0.2, 5.0); }
 
-/// GGX's alpha as wide as Embree's distribution of microfacets, a power cosine of the exponent 1 / roughness: alpha^2 = 2 / (n +
-/// 2) (Walter et al. 2007, section 5.2).
+/// Returns GGX's alpha of the same width as Embree's microfacet distribution, a power cosine with the exponent n = 1 / roughness:
+/// alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.2).
 double alpha_of(double roughness) {
   const double inverse_exponent = std::clamp(roughness, 0.0, 1.0);
   return std::sqrt(2 * inverse_exponent / (1 + 2 * inverse_exponent));
@@ -116,7 +116,7 @@ Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name
     mirror.reflectance = RgbSpectrum{given.reflectance("reflectance", 1)};
     out.model = mirror;
   } else if (code == "Metal") {
-    // The reflectance at right angles of eta and k, times the file's.
+    // Multiplies the reflectance of eta and k at normal incidence by the file's.
     const glm::dvec3 eta = given.color("eta", 1.4), k = given.color("k", 0);
     const glm::dvec3 below = (eta - 1.0) * (eta - 1.0) + k * k, above = (eta + 1.0) * (eta + 1.0) + k * k;
     ConductorMaterial metal;
@@ -244,7 +244,7 @@ void add_light(const LightElement& light, const glm::dmat4& world, Scene& scene)
     out.model = model;
   } else {
     out.model = DistantLight{color, glm::normalize(along)};
-    // A disk of the sky sends pi sin^2 of its half angle.
+    // The irradiance of a disk in the sky is its radiance times pi sin^2 of its half angle.
     if (light.name == "DistantLight") {
       const double sine = std::sin(glm::radians(std::clamp(light.most_angle, 0.0, 90.0)));
       out.scale = std::numbers::pi * sine * sine;
@@ -289,7 +289,7 @@ std::vector<Word> words_of_file(std::string_view text, const std::string& file) 
   return out;
 }
 
-/// "-vp" and "--vp", not "-1".
+/// Accepts "-vp" and "--vp", but not "-1".
 std::string_view option_of(std::string_view word) {
   const std::size_t begin = word.find_first_not_of('-');
   if (begin == 0 || begin == std::string_view::npos || std::isalpha(static_cast<unsigned char>(word[begin])) == 0) return {};
@@ -304,7 +304,7 @@ ViewerOptions read_ecs(const std::filesystem::path& path, Notes& notes) {
   ViewerOptions out;
   View view;
   bool has_view = false;
-  Unproven in_file;  // -i comes first, or other options that are known
+  Unproven in_file;  // it is a scene file once -i or another known option comes first
   std::size_t i = 0;
   const auto next = [&](const Word& option) -> const Word& {
     if (i >= words.size()) throw InputError(option.where, quoted(option.text) + " ends early");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Fibres as capsules, one from each point to the next; colours by direction, by fibre, or the file's.
+// Draws fibres as capsules from each point to the next, coloured by direction, by fibre, or as in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ namespace caplet {
 namespace {
 
 enum class FibreColor { direction, fibre, file, scalar };
-// Steps of a colour's component: the first with which there are at most so many materials. Of the last there never are more.
+// Levels per colour component: the first that gives at most kMostColors materials is used. The last always does.
 constexpr int kSteps[] = {255, 85, 51, 17, 15};
 constexpr std::size_t kMostColors = 16 * 16 * 16;
-constexpr float kThinPart = 1.0F / 700;  // of the extent: the radius of what has none, unless a length is usual
+constexpr float kThinPart = 1.0F / 700;  // of the extent: the default radius where the format has no usual one
 constexpr double kMelanin = 0.5;         // light brown
 constexpr float kStreamline = 0.2F;      // millimetres
 
@@ -43,7 +43,7 @@ float radius_asked(const ImportOptions& options, float usual) {
   return value;
 }
 
-/// Whether colours tell scalars, and which.
+/// Returns the scalars that colours show, if the options ask for them.
 std::optional<FibreScalars> scalars_asked(const ImportOptions& options) {
   const std::string by = options.text("color").value_or("");
   if (by != "scalar" && !by.starts_with("scalar:")) {
@@ -58,7 +58,7 @@ std::optional<FibreScalars> scalars_asked(const ImportOptions& options) {
   return out;
 }
 
-/// Materials by the scalars; their range goes to where the options say.
+/// Makes materials by the scalars, whose range is added to that of the options.
 ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const ImportOptions& options) {
   if (scalars.name.empty()) {
     constexpr std::size_t most = 20;
@@ -81,13 +81,13 @@ ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const Impor
   return {scene, scalars.name, ends.first, ends.second, map_steps};
 }
 
-/// Of a segment: the mean of its ends, of which one may have none.
+/// Returns the mean of a segment's ends, one of which may have no value.
 double mean_of(float a, float b) {
   if (std::isnan(a)) return static_cast<double>(b);
   return std::isnan(b) ? static_cast<double>(a) : 0.5 * (static_cast<double>(a) + static_cast<double>(b));
 }
 
-/// The materials of the capsules' colours, one after the other.
+/// The materials of the capsules, in their order, by colour.
 class Colors {
  public:
   Colors(Scene& scene, FibreColor by) : scene_(scene), by_(by) {}
@@ -130,7 +130,7 @@ class Colors {
   void add_material(const glm::dvec3& shown) {
     const std::string name =
         fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == FibreColor::direction ? "direction" : "color", shown.x, shown.y, shown.z);
-    // Full colours reflect nothing of two thirds of the light: 0.85 and 0.05.
+    // Reflectance stays between 0.05 and 0.85, so that even pure colours reflect some light of every channel.
     const glm::dvec3 reflectance = by_ == FibreColor::direction ? 0.05 + 0.8 * shown : shown;
     scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
   }
@@ -140,7 +140,7 @@ class Colors {
   std::vector<std::uint32_t> keys_;  // a colour in steps of 1/255
 };
 
-/// How far along a fibre its points are, from 0 to 1: by length, or by their number where it has none.
+/// Returns how far along its fibre each point is, from 0 to 1: by length, or by number where the length is 0.
 std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
   std::vector<double> way(count, 0);
   for (std::size_t i = 1; i < count; ++i) way[i] = way[i - 1] + glm::length(glm::dvec3(points[i]) - glm::dvec3(points[i - 1]));
@@ -151,11 +151,11 @@ std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
 }
 
 struct Usual {
-  float radius = 0;  // 0: by the extent
+  float radius = 0;  // 0: derived from the extent
   FibreColor color = FibreColor::direction;
   const char* up = "y";
   bool hair = false;
-  const char* unit = "";  // of the file's lengths
+  const char* unit = "";  // of lengths in the file
 };
 
 Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual,
@@ -184,7 +184,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   };
   if (as_hair) {
     HairMaterial hair;
-    hair.sigma_a = RgbSpectrum{kMelanin * glm::dvec3(0.419, 0.697, 1.37)};  // of eumelanin: d'Eon et al. 2011
+    hair.sigma_a = RgbSpectrum{kMelanin * glm::dvec3(0.419, 0.697, 1.37)};  // absorption of eumelanin: d'Eon et al. 2011
     scene.materials.push_back({hair, "hair", {scene.source, 0, 0}});
   }
   Colors colors(scene, by);
@@ -197,7 +197,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
     const std::size_t end = fibres.ends[f];
     const std::vector<float> u = shares_along(fibres.points.data() + begin, end - begin);
     for (std::size_t i = begin; i < end; ++i) {
-      // A fibre of one point is a ball.
+      // A fibre of one point becomes a ball.
       const std::size_t next = i + 1 < end ? i + 1 : i;
       if (next == i && end - begin > 1) break;
       const glm::vec3 p0 = fibres.points[i], p1 = fibres.points[next];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Layouts: cyHair's .hair, TressFX's .tfx, TrackVis' .trk, MRtrix' .tck.
+// Reads cyHair's .hair, TressFX's .tfx, TrackVis' .trk and MRtrix' .tck.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace caplet {
 
 namespace {
 
-/// Numbers of a file, of either byte order.
+/// Reads numbers of either byte order.
 class FileBytes {
  public:
   FileBytes(std::string_view bytes, const std::string& path) : bytes_(bytes), path_(path) {}
@@ -41,7 +41,7 @@ class FileBytes {
     return value;
   }
   glm::vec3 point(std::size_t offset) const { return {coordinate(offset), coordinate(offset + 4), coordinate(offset + 8)}; }
-  /// That `count` records of `size` bytes are there.
+  /// Checks that the file contains `count` records of `size` bytes.
   void need(std::size_t offset, std::uint64_t count, std::uint64_t size) const {
     if (count > left(offset) / size)
       fail(offset, fmt::format("{} records of {} bytes are announced; {} bytes are left", count, size, left(offset)));
@@ -118,8 +118,8 @@ Fibres read_tressfx(std::string_view text, const std::string& path) {
 
 namespace {
 
-/// TrackVis' points are in millimetres from the corner of the first voxel, in the order of voxels that voxel_order says; the
-/// matrix takes indices of voxels, from their middles, in its own order, to RAS+.
+/// TrackVis measures points in millimetres from the corner of the first voxel, along the axes of voxel_order. The matrix maps
+/// voxel indices, which count from voxel centres, along its own axes, to RAS+.
 glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   glm::dmat4 ras_from_voxel(1);
   for (int row = 0; row < 4; ++row)
@@ -131,12 +131,12 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
     size[k] = static_cast<double>(bytes.at<float>(12 + static_cast<std::size_t>(4 * k)));
     dimension[k] = bytes.at<std::int16_t>(6 + static_cast<std::size_t>(2 * k));
   }
-  if (ras_from_voxel[3][3] == 0) return glm::dmat4(1);  // the file has none
+  if (ras_from_voxel[3][3] == 0) return glm::dmat4(1);  // the file has no matrix
   for (std::size_t i = 0; i < 16; ++i)
     if (!std::isfinite(bytes.at<float>(440 + 4 * i))) bytes.fail(440 + 4 * i, "a number of the matrix is not finite");
   for (int k = 0; k < 3; ++k)
     if (!(size[k] > 0)) bytes.fail(12, "a voxel's size is not positive");
-  // Which world axis each voxel axis runs along, and whether against it.
+  // This finds the world axis that each voxel axis runs along, and whether it runs against it.
   std::array<int, 3> axis{};
   std::array<bool, 3> against{};
   std::array<bool, 3> taken{};
@@ -157,7 +157,7 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
     against.at(static_cast<std::size_t>(best_column)) = ras_from_voxel[best_column][best_row] < 0;
     taken.at(static_cast<std::size_t>(best_row)) = true;
   }
-  // Points' axes, by the letters of voxel_order.
+  // The letters of voxel_order give the axes of points.
   std::string_view letters = text.substr(948, 3);
   const std::string_view names = "RASLPI";
   glm::dmat4 voxel_from_point(0);
@@ -175,8 +175,8 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   return ras_from_voxel * voxel_from_point;
 }
 
-/// One of TrackVis' ten names of 20 bytes, as nibabel writes them: a NUL after the name, and a number where there are several
-/// columns.
+/// One of TrackVis' ten names of 20 bytes, as nibabel writes them: the name, a NUL, and the number of columns where there are
+/// several.
 struct TrkArray {
   std::string name;
   std::size_t columns = 0;  // 0: no name
@@ -195,8 +195,8 @@ TrkArray trk_array(std::string_view field) {
   return out;
 }
 
-/// Which of the `count` columns whose names stand at `at` is wanted; -1: none. What has no name is called `otherwise` and a
-/// number.
+/// Returns which of the `count` columns whose names stand at `at` is requested, or -1. Columns without a name are called
+/// `otherwise` and a number.
 int trk_column(std::string_view text, std::size_t at, int count, const char* otherwise, bool of_points, FibreScalars& scalars) {
   int begin = 0, found = -1;
   for (std::size_t i = 0; i < 10 && begin < count; ++i) {

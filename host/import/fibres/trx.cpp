@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// TRX tractograms: a zip archive of header.json and of arrays whose names say what they hold ("positions.3.float16").
+// TRX tractograms: zip archives of header.json and of arrays whose names state their content ("positions.3.float16").
 #include <fmt/format.h>
 
 #include <array>
@@ -20,7 +20,7 @@ namespace caplet {
 
 namespace {
 
-/// IEEE 754's binary16 as a float, which has all of its values.
+/// Converts IEEE 754's binary16 to a float, which is exact.
 float from_half(std::uint16_t half) {
   constexpr std::uint32_t exponent_mask = 0x7c00, mantissa_mask = 0x03ff;
   const std::uint32_t sign = (half & 0x8000U) << 16U;
@@ -57,7 +57,7 @@ class TrxReader {
   std::uint64_t header_count(const std::string& file, const char* name) {
     if (!parsed_) {
       const std::string text = zip_.read(file);
-      // Deep nesting would run out of stack when it is freed.
+      // Deep nesting would overflow the stack when it is freed.
       const auto callback = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) { return depth < 16; };
       try {
         header_ = nlohmann::json::parse(text, callback);
@@ -73,7 +73,7 @@ class TrxReader {
     return header_[name].get<std::uint64_t>();
   }
 
-  /// The file "WHAT.TYPE" or "WHAT.COLUMNS.TYPE", and its type.
+  /// Returns the file "WHAT.TYPE" or "WHAT.COLUMNS.TYPE", and its type.
   std::pair<std::string, std::string> array(const std::string& what, const std::string& columns) const {
     for (const std::string& name : zip_.names()) {
       if (!name.starts_with(what + ".")) continue;
@@ -116,7 +116,7 @@ class TrxReader {
       }
   }
 
-  /// Where each streamline begins; newer files have the end of the last one as well.
+  /// Reads where each streamline begins; newer files also have the end of the last one.
   void offsets(std::uint64_t points, std::uint64_t tracks, Fibres& out) {
     const auto [name, type] = array("offsets", "");
     const std::size_t size = type == "uint32" || type == "int32" ? 4 : type == "uint64" || type == "int64" ? 8 : 0;
@@ -141,7 +141,7 @@ class TrxReader {
       fail(fmt::format("{}: the last streamline ends at point {} of {}", name, out.ends.back(), points));
   }
 
-  /// Takes what is wanted of the arrays "FOLDER/NAME.TYPE" and "FOLDER/NAME.COLUMNS.TYPE", of `count` rows each.
+  /// Takes requested scalars from the arrays "FOLDER/NAME.TYPE" and "FOLDER/NAME.COLUMNS.TYPE", of `count` rows each.
   void data(const std::string& folder, std::uint64_t count, bool of_points, FibreScalars& scalars) {
     for (const std::string& file : zip_.names()) {
       if (!file.starts_with(folder) || file.ends_with('/')) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Legacy VTK files of POLYDATA with LINES, as text or big-endian.
+// Legacy VTK files of POLYDATA with LINES, in ascii or big-endian binary.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,11 +122,11 @@ class VtkReader {
     }
   }
 
-  /// The next section, without taking it.
+  /// Returns whether the next section has this name, without taking it.
   bool next_is(std::string_view name) {
     return skip() && text_.starts_with(name) && (text_.size() == name.size() || is_space(text_[name.size()]));
   }
-  /// What follows the word, up to an empty line.
+  /// Skips what follows the word, up to an empty line.
   void metadata() {
     if (!text_.empty()) line();
     while (!text_.empty() && !trimmed(line()).empty()) {
@@ -155,7 +155,7 @@ class VtkReader {
       work(indices);
     }
   }
-  /// Of versions from 5: where each cell begins among the points' indices, and where the last one ends.
+  /// From version 5 on, offsets give the beginning of each cell in the list of indices, and the end of the last one.
   template <class Work>
   void cells_by_offsets(std::int64_t count, std::int64_t size, const Work& work) {
     word();
@@ -179,7 +179,7 @@ class VtkReader {
     return out;
   }
 
-  // --- Numbers of points and cells ---
+  // --- Scalars of points and cells ---
 
   struct Type {
     std::string_view name;
@@ -211,7 +211,7 @@ class VtkReader {
     fail(quoted(name) + " is no type of numbers that is read");
   }
 
-  /// Names are written with %20 for a blank, and so on.
+  /// Decodes names, which are written with %20 for a blank.
   static std::string plain(std::string_view name) {
     std::string out;
     for (std::size_t i = 0; i < name.size(); ++i) {
@@ -224,7 +224,7 @@ class VtkReader {
     return out;
   }
 
-  /// `count` rows of `components` numbers, of which one goes to the values; -1: none does.
+  /// Reads `count` rows of `components` numbers and keeps component `taken`; -1: none.
   void numbers(std::int64_t count, std::int64_t components, std::string_view type_name, int taken) {
     const Type type = type_of(type_name);
     begin_data();
@@ -259,7 +259,7 @@ class VtkReader {
                : scalars_->take(plain(name), static_cast<std::size_t>(std::min<std::int64_t>(components, 10000)), of_points);
   }
 
-  /// "NAME COUNT", and as many arrays, of which one may be taken where it is of points or cells.
+  /// Reads "NAME COUNT" and that many arrays. One may be taken if they are of points or cells.
   void field(const bool* of_points) {
     word();
     const std::int64_t arrays = whole();
@@ -280,7 +280,7 @@ class VtkReader {
     }
   }
 
-  /// Those of points or of cells, to the end of them; whether what was wanted is among them.
+  /// Reads the attributes of points or of cells to their end, or to the requested one; returns whether it was found.
   bool attributes(bool of_points) {
     rows_ = whole();
     const std::size_t there = of_points ? points_.size() : before_lines_ + out_.ends.size() + after_lines_;
@@ -330,7 +330,7 @@ class VtkReader {
     return false;
   }
 
-  /// The values of the file's points become those of the fibres' points, and those of cells those of its lines.
+  /// Reorders values of points to the fibres' points, and keeps those values of cells that belong to lines.
   void place_values() {
     if (scalars_->name.empty()) return;
     std::vector<float> out;
@@ -360,13 +360,13 @@ class VtkReader {
 
   std::string_view text_;
   const std::string& path_;
-  int passed_ = 0, at_ = 0;  // lines that have ended, and the line of what was read last
+  int passed_ = 0, at_ = 0;  // lines that have ended, and the line of the last token
   bool binary_ = false;
   std::vector<glm::vec3> points_;
   FibreScalars* scalars_;
-  std::vector<std::int64_t> indices_;               // of the fibres' points among the file's
-  std::size_t before_lines_ = 0, after_lines_ = 0;  // cells; those of VERTICES come first
-  std::int64_t rows_ = 0;                           // of the numbers that are read
+  std::vector<std::int64_t> indices_;               // of the fibres' points in the file's list
+  std::size_t before_lines_ = 0, after_lines_ = 0;  // cells; VERTICES come first
+  std::int64_t rows_ = 0;                           // rows of the current section
   Fibres out_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// VTK's XML files of PolyData, whose lines are fibres: numbers as text, base64 or appended bytes, plain or packed by zlib.
+// VTK XML files of PolyData, whose lines are fibres: numbers as text, base64 or appended bytes, plain or compressed by zlib.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::string_view kAppended = "<AppendedData";
 
-/// Where the appended bytes begin, after the '>' of their element; npos: there are none.
+/// Returns where the appended bytes begin, after the '>' of their element; npos: there are none.
 std::size_t end_of_xml(std::string_view bytes) {
   const std::size_t begin = bytes.find(kAppended);
   return begin == std::string_view::npos ? begin : bytes.find('>', begin);
 }
-/// The file without its appended bytes, which may be no text.
+/// Returns the file without its appended bytes, which may not be text.
 std::string xml_of(std::string_view bytes) {
   const std::size_t end = end_of_xml(bytes);
   if (end == std::string_view::npos) return std::string(bytes);
@@ -93,7 +93,7 @@ class VtpReader {
 
   // --- Arrays ---
 
-  /// A number of a header.
+  /// Returns a number of a header.
   std::uint64_t header_number(std::string_view bytes, std::size_t index) const {
     char at[8];
     std::memcpy(at, bytes.data() + index * header_, header_);
@@ -109,7 +109,7 @@ class VtpReader {
     return value;
   }
 
-  /// The bytes of an array that is not text, as the file's machine had them.
+  /// Returns the bytes of an array that is not text, in the byte order of the file.
   std::string bytes_of(pugi::xml_node array) const {
     const bool is_appended = std::string_view(array.attribute("format").value()) == "appended";
     const bool is_raw = is_appended && is_raw_;
@@ -119,7 +119,7 @@ class VtpReader {
       if (offset > appended_.size()) fail(array, fmt::format("begins at byte {} of {}", offset, appended_.size()));
       from = appended_.substr(offset);
     }
-    // `begin`: letters of base64, or bytes, that lie before.
+    // `begin`: the offset, in letters of base64 or in bytes.
     const auto take = [&](std::size_t begin, std::uint64_t size) {
       const std::string_view rest = from.substr(std::min(begin, from.size()));
       if (size > rest.size()) fail(array, fmt::format("{} bytes are announced, and {} are there", size, rest.size()));
@@ -144,14 +144,14 @@ class VtpReader {
       if (size > from.size() - packed) fail(array, fmt::format("block {} of {} bytes is longer than the file", i + 1, size));
       packed += size;
     }
-    // The header is base64 of its own.
+    // The header is encoded as a base64 text of its own.
     const std::string data = take(is_raw ? header_size : (header_size + 2) / 3 * 4, packed);
     std::string out;
     const char* at = data.data();
     for (std::uint64_t i = 0; i < blocks; ++i) {
       const std::uint64_t size = header_number(header, 3 + i), last = header_number(header, 2);
       const std::uint64_t plain = i + 1 == blocks && last != 0 ? last : header_number(header, 1);
-      // Deflate packs 1032 to 1 at best.
+      // Deflate compresses at best 1032 to 1.
       if (plain > 1032 * size + 64) fail(array, fmt::format("{} bytes cannot be packed into {}", plain, size));
       const std::size_t begin = out.size();
       out.resize(begin + plain);
@@ -232,7 +232,7 @@ class VtpReader {
     if (scalars_) read_scalars(piece, points, count_in(piece, "NumberOfVerts", 0), lines);
   }
 
-  /// The numbers that are wanted, of the first piece by FibreScalars, of others by the same name.
+  /// Reads the requested scalars: in the first piece by FibreScalars, in others by the same name.
   void read_scalars(pugi::xml_node piece, std::uint64_t points, std::uint64_t before, std::uint64_t lines) {
     const bool is_first = !looked_;
     looked_ = true;
@@ -273,8 +273,8 @@ class VtpReader {
   FibreScalars* scalars_;
   bool is_swapped_ = false, is_packed_ = false, is_raw_ = false, looked_ = false;
   std::size_t header_ = 4;            // bytes of its numbers
-  std::vector<std::size_t> indices_;  // of the fibres' points among the piece's
-  std::string array_;                 // whose numbers are taken
+  std::vector<std::size_t> indices_;  // of the fibres' points in the piece's list
+  std::string array_;                 // the array that is taken
   int component_ = -1;
   Fibres out_;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Beam lattices (3MF Beam Lattice Extension 1.2): a beam is the frustum between two disks across its axis, closed at each end by
-// a ball, by half a ball or by nothing; balls stand at vertices.
+// Beam lattices (3MF Beam Lattice Extension 1.2). A beam is the frustum between two disks across its axis, closed at each end by
+// a ball, by a half ball or not at all. Balls stand at vertices.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -88,7 +88,7 @@ class Lattice {
         ++flat_;
       return;
     }
-    // One radius: half a ball is what shows of a ball, and both ends together are a capsule.
+    // With equal radii, a half ball shows as much as a ball, and both ends together make a capsule.
     if (radius[0] == radius[1] && is_round) return capsule(ends[0], ends[1], radius[0], color);
     const glm::dvec3 p0(ends[0]), p1(ends[1]);
     if (radius[0] == radius[1]) {
@@ -135,7 +135,7 @@ class Lattice {
     capsules.materials.push_back(colors_.material(color));
   }
 
-  /// Beyond the disk at `end`, seen from `other`.
+  /// Adds a half ball beyond the disk at `end`, on the side away from `other`.
   void add_half_ball(const glm::vec3& end, const glm::vec3& other, float radius, const std::optional<glm::dvec4>& color) {
     const glm::dvec3 z = glm::normalize(glm::dvec3(end) - glm::dvec3(other));
     const glm::dvec3 across = std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -166,7 +166,7 @@ class Lattice {
   Colors& colors_;
   std::vector<Shape>& shapes_;
   Closing usual_closing_ = Closing::sphere;
-  std::map<double, CapsulesShape> bulk_;  // by alpha, which is a shape's
+  std::map<double, CapsulesShape> bulk_;  // by alpha, which a shape has as a whole
   std::set<std::size_t> used_;            // vertices at which beams end and no ball stands yet
   std::size_t flat_ = 0;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// 3MF packages (Core Specification 1.3): objects of triangles and of other objects, placed by the build; colours of base
-// materials and of colour groups (Materials Extension); other parts by the Production Extension's path.
+// 3MF packages (Core Specification 1.3): objects of triangles and components, placed by build items; colours of base materials
+// and colour groups (Materials Extension); other parts by path (Production Extension).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,7 +127,7 @@ using model_3mf::Colors;
 using model_3mf::is;
 using model_3mf::Part;
 
-constexpr std::size_t kDeepestObject = 64;      // objects within objects
+constexpr std::size_t kDeepestObject = 64;      // nesting of objects
 constexpr std::size_t kMostPlaces = 2'000'000;  // shared objects count each time
 constexpr std::string_view kModel = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
 
@@ -153,7 +153,7 @@ class PackageReader {
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError({zip_.path().string(), 0, 0}, message); }
 
-  /// XML of so many nodes takes more memory than its text: 64 bytes an element, 40 an attribute.
+  /// Parsed XML takes more memory than its text: 64 bytes per element, 40 per attribute.
   std::string text_of(const std::string& name) {
     std::string text = zip_.read(name);
     const auto nodes = static_cast<std::uintmax_t>(std::ranges::count(text, '<')),
@@ -163,7 +163,7 @@ class PackageReader {
     return text;
   }
 
-  /// The package's relationship names the model.
+  /// Returns the model's name, which the package's relationship gives.
   std::string model_name() {
     const auto relations = zip_.find("_rels/.rels");
     if (!relations) fail("is no 3MF package: the archive has no _rels/.rels");
@@ -244,7 +244,7 @@ class PackageReader {
     }
   }
 
-  /// `node`: an item or a component, which names an object.
+  /// Visits `node`, an item or a component, which names an object.
   void visit(const Part& from, pugi::xml_node node, const glm::dmat4& parent, std::size_t depth) {
     if (depth > kDeepestObject)
       from.fail(node, fmt::format("lies within more than {} other objects: are there cycles?", kDeepestObject));
@@ -304,7 +304,7 @@ class PackageReader {
                      const std::string& name, std::vector<Shape>& shapes) {
     struct Group {
       TriangleMeshShape mesh;
-      std::map<std::uint32_t, std::uint32_t> vertices;  // from the object's
+      std::map<std::uint32_t, std::uint32_t> vertices;  // by the object's indices
     };
     std::map<std::pair<std::uint32_t, double>, Group> groups;  // by material and alpha
     const std::optional<std::uint32_t> usual_id = part.whole_if(object, "pid"), usual_index = part.whole_if(object, "pindex");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Colours of corners as a texture. Every triangle has four texels of an image: with a, b and c at three of them and b + c - a at
-// the fourth, looking up bilinearly between their middles is the linear interpolation of the corners, exactly. Triangles near
-// each other have texels near each other (along a Morton curve), so that levels for small triangles mix neighbours.
+// Stores colours of corners in a texture. Every triangle has four texels: with a, b and c in three of them and b + c - a in the
+// fourth, bilinear interpolation between their centres is the linear interpolation of the corners, exactly. Near triangles have
+// near texels (along a Morton curve), so that the coarse levels used for small triangles mix neighbours.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace caplet {
 
 namespace {
 
-/// The bits of three numbers of 21 bits, one after the other.
+/// Interleaves the bits of three numbers of 21 bits.
 std::uint64_t interleaved(const glm::dvec3& part) {
   std::uint64_t out = 0;
   for (int k = 0; k < 3; ++k) {
@@ -58,7 +58,7 @@ Block block_of(std::uint32_t number) {
   return out;
 }
 
-/// The colour that a texture replaces, and the field's name; none: of other materials.
+/// Returns the colour that a texture replaces, and the field's name; null for other materials.
 std::pair<Spectrum*, const char*> color_of(Material& material) {
   if (auto* diffuse = std::get_if<DiffuseMaterial>(&material.model)) return {&diffuse->reflectance, "reflectance"};
   if (auto* principled = std::get_if<PrincipledMaterial>(&material.model)) return {&principled->base_color, "base_color"};
@@ -114,7 +114,7 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
       const std::uint32_t from = mesh.triangles[triangle][k], to = 3 * triangle + k;
       out.positions[to] = mesh.positions[from];
       if (!mesh.normals.empty()) out.normals[to] = mesh.normals[from];
-      // The image's rows go down, and its coordinates up.
+      // Rows of the image run down, its coordinates up.
       out.uvs[to] = {(static_cast<float>(x) + (k == 1 ? 1.5F : 0.5F)) / static_cast<float>(width),
                      1 - (static_cast<float>(y) + (k == 2 ? 1.5F : 0.5F)) / static_cast<float>(height)};
       out.triangles[triangle][k] = to;

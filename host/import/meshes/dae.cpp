@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// COLLADA 1.4 and 1.5: the geometry of the visual scene, each where its nodes place it, and its materials' colours and images.
+// COLLADA 1.4 and 1.5: the geometry of the visual scene, placed by its nodes, and the colours and images of its materials.
 // Conventions: docs/formats/meshes.md.
 #include <fmt/format.h>
 
@@ -26,10 +26,10 @@ namespace caplet {
 
 namespace {
 
-constexpr int kDeepestNode = 500;                    // nodes within nodes
-constexpr std::size_t kMostPlacedNodes = 1'000'000;  // that are placed, those of instances each time
+constexpr int kDeepestNode = 500;                    // nesting of nodes
+constexpr std::size_t kMostPlacedNodes = 1'000'000;  // placed nodes; those of instances count each time
 constexpr std::size_t kMostVertices = 50'000'000;    // likewise
-constexpr std::uint64_t kMostInputs = 64;            // numbers that a corner has
+constexpr std::uint64_t kMostInputs = 64;            // indices per corner
 
 struct DaeCorner {
   std::uint32_t position = 0, normal = 0, uv = 0;
@@ -41,18 +41,18 @@ struct DaeCornerHash {
   }
 };
 
-/// Some faces of a geometry that have one material.
+/// The faces of a geometry that share a material.
 struct DaePart {
   TriangleMeshShape mesh;
   std::string symbol;
   SourceLocation where;
 };
 
-/// A part where the scene has it, in the file's unit.
+/// A part as the scene places it, in the file's unit.
 struct PlacedPart {
   const DaePart* part = nullptr;
   glm::dmat4 scene_from_part{1};
-  std::string name, material;  // the node's; the id
+  std::string name, material;  // the node's name; the material's id
 };
 
 class DaeReader {
@@ -86,7 +86,7 @@ class DaeReader {
     return std::move(placed_);
   }
 
-  /// Metres of the file's unit.
+  /// Returns the file's unit in metres.
   double unit() const {
     const pugi::xml_attribute meter = file_.root().child("asset").child("unit").attribute("meter");
     if (!meter) return 1;
@@ -99,7 +99,7 @@ class DaeReader {
     return text == "Z_UP" ? "z" : text == "X_UP" ? "x" : "y";
   }
 
-  /// What a material looks like; none where there is no such material.
+  /// Returns the values of a material; none if it does not exist.
   std::optional<MtlValues> look(const std::string& id, SourceLocation& where) const {
     const auto found = ids_.find(id);
     if (found == ids_.end() || std::string_view(found->second.name()) != "material") return std::nullopt;
@@ -132,11 +132,11 @@ class DaeReader {
     if (left_out_++ == 0) first_left_out_ = file_.place(node);
   }
 
-  /// What "#id" in an attribute names.
+  /// Returns the element that "#id" in an attribute names.
   pugi::xml_node target(pugi::xml_node from, const char* kind, const char* attribute = "url") const {
     const std::string text = from.attribute(attribute).value();
     if (!text.starts_with('#')) fail(from, fmt::format("{}=\"{}\": only what is in the file itself is read", attribute, text));
-    // Some programs give the arrays of each geometry the same ids.
+    // Some programs give the arrays of every geometry the same ids, so nearby elements come first.
     for (pugi::xml_node around = from.parent(); around; around = around.parent())
       if (std::string_view(around.name()) == "mesh" || std::string_view(around.name()) == "source")
         if (const pugi::xml_node near = around.find_child_by_attribute(kind, "id", text.c_str() + 1)) return near;
@@ -173,14 +173,14 @@ class DaeReader {
 
   // --- Geometry ---
 
-  /// Rows of numbers of an array.
+  /// An array of numbers in rows.
   struct Source {
     std::vector<float> numbers;
     std::uint64_t offset = 0, stride = 0;
     pugi::xml_node accessor;
     float at(std::uint32_t row, std::uint64_t column) const { return numbers[offset + row * stride + column]; }
   };
-  /// What a corner's number at a place counts.
+  /// The index at position `at` of a corner refers to `source`.
   struct Input {
     const Source* source = nullptr;
     std::uint64_t at = 0, count = 0;
@@ -238,7 +238,7 @@ class DaeReader {
       out.uv = input(from, at, 2);
   }
 
-  /// The faces of <triangles>, <polylist> and so on.
+  /// Reads the faces of <triangles>, <polylist> and so on.
   DaePart part_of(pugi::xml_node primitive) {
     DaePart out;
     out.symbol = primitive.attribute("material").value();
@@ -330,7 +330,7 @@ class DaeReader {
 
   // --- Nodes ---
 
-  /// The first rows of a matrix, of numbers row by row.
+  /// Fills the first rows of a matrix from numbers in row order.
   static void fill_rows(const std::vector<double>& v, int rows, glm::dmat4& m) {
     std::size_t at = 0;
     for (int row = 0; row < rows; ++row)
@@ -386,7 +386,7 @@ class DaeReader {
       } else if (kind == "instance_geometry") {
         place_geometry(target(child, "geometry"), child, here, name);
       } else if (kind == "instance_controller") {
-        // As it is bound: bones are not moved.
+        // The mesh is drawn in its bind pose: bones are not moved.
         const pugi::xml_node skin = target(child, "controller").child("skin");
         if (!skin) {
           leave_out(child);
@@ -429,14 +429,14 @@ class DaeReader {
     const pugi::xml_node value = node.child("float");
     return value ? numbers_of(value.child_value(), 1, 1, file_.place(value), node.name())[0] : usual;
   }
-  /// By the ways of <transparent>. What would not be seen at all is opaque: so write it those to whom 0 is none of transparency.
+  /// Applies the modes of <transparent>. Full transparency becomes opaque, because some programs write 0 for none.
   double opacity_of(pugi::xml_node shading) const {
     const pugi::xml_node transparent = shading.child("transparent");
     const double amount = value_of(shading.child("transparency"), 1);
     const std::optional<glm::dvec4> color = color_of(transparent);
     if (!color) return shading.child("transparency") && amount > 0 && amount < 1 && !transparent ? amount : 1;
     const std::string_view way = transparent.attribute("opaque").value();
-    const double luminance = 0.212671 * color->r + 0.715160 * color->g + 0.072169 * color->b;  // as the specification has them
+    const double luminance = 0.212671 * color->r + 0.715160 * color->g + 0.072169 * color->b;  // weights of the specification
     const double out = way == "RGB_ZERO"  ? 1 - luminance * amount
                        : way == "A_ZERO"  ? 1 - color->a * amount
                        : way == "RGB_ONE" ? luminance * amount
@@ -444,7 +444,7 @@ class DaeReader {
     return out > 0 ? std::min(out, 1.0) : 1;
   }
 
-  /// The file of a texture's image; empty: there is none.
+  /// Returns the file of a texture's image; empty if there is none.
   std::string image_of(pugi::xml_node profile, pugi::xml_node effect, pugi::xml_node node) const {
     std::string name = node.child("texture").attribute("texture").value();
     if (name.empty()) return {};
@@ -454,7 +454,7 @@ class DaeReader {
           if (sid == found.attribute("sid").value()) return found;
       return pugi::xml_node();
     };
-    // A sampler of a surface of an image, a sampler of an image (1.5), or the image.
+    // The name refers to a sampler of a surface of an image, to a sampler of an image (1.5), or to the image.
     if (const pugi::xml_node sampler = parameter(name).child("sampler2D")) {
       if (const pugi::xml_node image = sampler.child("instance_image")) {
         name = std::string_view(image.attribute("url").value()).substr(*image.attribute("url").value() == '#' ? 1 : 0);
@@ -476,7 +476,7 @@ class DaeReader {
   static std::string quoted_name(pugi::xml_node node) {
     return fmt::format("'{}'", std::string_view(node.child("texture").attribute("texture").value()).substr(0, 80));
   }
-  /// "%20" as a blank, and so on.
+  /// Decodes "%20" to a blank, and so on.
   static std::string unescaped(std::string_view uri) {
     std::string out;
     for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -508,7 +508,7 @@ std::vector<TriangleMeshShape> read_dae_meshes(const std::filesystem::path& path
   for (const PlacedPart& placed : parts) {
     const glm::dmat4 to = unit * placed.scene_from_part;
     const glm::dmat3 turn(to);
-    // Of a normal: the cofactors, which are the inverse's transpose but for a factor, and are there for flat ones too.
+    // Normals transform by the cofactors: the inverse transpose up to a factor, and defined for singular matrices too.
     const glm::dmat3 normals(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]), glm::cross(turn[0], turn[1]));
     TriangleMeshShape mesh = placed.part->mesh;
     for (glm::vec3& p : mesh.positions) {

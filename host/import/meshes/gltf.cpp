@@ -21,9 +21,9 @@ namespace caplet {
 
 namespace {
 
-constexpr std::size_t kDeepestChild = 256;      // nodes within nodes
-constexpr std::size_t kMostNodes = 10'000'000;  // placed: shared children count each time
-constexpr double kLumensPerWatt = 683;          // as Blender's exporter
+constexpr std::size_t kDeepestChild = 256;      // nesting of nodes
+constexpr std::size_t kMostNodes = 10'000'000;  // placed nodes; shared children count each time
+constexpr double kLumensPerWatt = 683;          // as in Blender's exporter
 constexpr double kHighestPicture = 65535;       // pixels, of an orthographic camera's window
 
 using Json = nlohmann::json;
@@ -92,7 +92,7 @@ class GltfReader {
       if (!(fov > 0 && fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");
       out.projection = PerspectiveProjection{fov};
     }
-    // It looks along -z; ours along +z.
+    // glTF's camera looks along -z, ours along +z.
     glm::dmat4 rigid(1);
     for (int k = 0; k < 3; ++k) rigid[k] = glm::dvec4(glm::normalize(glm::dvec3(world[k])), 0);
     rigid[3] = world[3];
@@ -177,7 +177,7 @@ class GltfReader {
     return out;
   }
 
-  /// COLOR_0 times the material's colour.
+  /// Multiplies COLOR_0 by the material's colour.
   void color(Shape& shape, const Json& primitive) {
     const auto accessor =
         file_.index(file_.object(primitive, "attributes"), "COLOR_0", file_.list("accessors").size(), "accessor");
@@ -209,7 +209,7 @@ class GltfReader {
     if (const auto normals = file_.index(attributes, "NORMAL", accessors, "accessor"))
       mesh.normals = file_.vectors<glm::vec3>(*normals);
     if (const auto uvs = file_.index(attributes, "TEXCOORD_0", accessors, "accessor")) mesh.uvs = file_.vectors<glm::vec2>(*uvs);
-    for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // from the top there
+    for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // glTF's v starts at the top
     if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
       file_.fail("a mesh has another number of normals or texture coordinates than of positions");
     std::vector<std::uint32_t> indices;

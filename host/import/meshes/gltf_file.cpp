@@ -55,7 +55,7 @@ File::File(std::filesystem::path file, std::string bytes)
       chunks.remove_prefix(chunk_header + size);
     }
   }
-  // Deep nesting would run out of stack when it is freed: what glTF needs is less than a dozen levels.
+  // Deep nesting would overflow the stack when it is freed; glTF needs less than a dozen levels.
   const auto callback = [](int depth, Json::parse_event_t, Json&) { return depth < 64; };
   const auto place = [&](std::size_t byte) {
     SourceLocation where{path.string(), 1, 1};
@@ -70,7 +70,7 @@ File::File(std::filesystem::path file, std::string bytes)
   } catch (const Json::parse_error& error) {
     throw InputError(place(std::max<std::size_t>(error.byte, 1) - 1), "is no JSON here");
   } catch (const Json::out_of_range& error) {
-    // A number beyond doubles, which the message has between quotes.
+    // The number is out of range of doubles; the message quotes it.
     const std::string_view said = error.what();
     const std::size_t begin = std::min(said.find('\''), said.size() - 1);
     const std::string_view number = said.substr(begin + 1, said.rfind('\'') - begin - 1);
@@ -274,7 +274,7 @@ File::Elements File::elements(std::size_t accessor) {
        (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) / static_cast<double>(out.stride) + 1 < count))
     fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, out.count, bytes.size()));
   out.bytes = bytes.substr(std::min(bytes.size(), static_cast<std::size_t>(offset)));
-  // Every primitive has its own vertices: any number of them can share an accessor.
+  // Every primitive has its own vertices, and any number of primitives can share an accessor.
   taken_ += sizeof(float) * out.components * out.count;
   if (taken_ > std::max<std::uintmax_t>(std::uintmax_t{1} << 30, 100 * held_))
     fail(fmt::format("accessor {}: what the meshes share comes to {} bytes, of {} in the file", accessor, taken_, held_));

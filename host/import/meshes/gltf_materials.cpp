@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Metallic-roughness materials of glTF as `principled`, with the KHR_materials extensions that it has parameters for.
+// Converts metallic-roughness materials of glTF to `principled`, with the KHR_materials extensions that it has parameters for.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace caplet::gltf {
 
 namespace {
 
-/// A file for as long as it is read: images within others have no names of their own.
+/// A file that exists only while it is read: embedded images have no file names.
 class TemporaryFile {
  public:
   TemporaryFile(std::string_view bytes, const std::string& extension) {
@@ -47,7 +47,7 @@ float value_of(const TextureImage& image, std::size_t texel, int channel) {
   return channel == 3 ? static_cast<float>(image.bytes[at]) / 255.0F : image.decoded[image.bytes[at]];
 }
 
-/// One channel of an image through `change`, as floats.
+/// Applies `change` to one channel of an image, and returns floats.
 template <class Change>
 std::shared_ptr<const TextureImage> channel_of(const TextureImage& image, int channel, const Change& change) {
   auto out = std::make_shared<TextureImage>();
@@ -60,7 +60,7 @@ std::shared_ptr<const TextureImage> channel_of(const TextureImage& image, int ch
   return out;
 }
 
-/// Its colours times a factor.
+/// Multiplies the image's colours by a factor.
 std::shared_ptr<const TextureImage> tinted(std::shared_ptr<const TextureImage> image, const glm::dvec3& factor) {
   if (factor == glm::dvec3(1) && image->channels == 3) return image;
   auto out = std::make_shared<TextureImage>();
@@ -75,7 +75,7 @@ std::shared_ptr<const TextureImage> tinted(std::shared_ptr<const TextureImage> i
   return out;
 }
 
-/// Normals whose parts along the surface are `scale` times as long, as an image's colours.
+/// Scales the tangential components of a normal map, stored as colours, by `scale`.
 std::shared_ptr<const TextureImage> bent(const TextureImage& image, double scale) {
   auto out = std::make_shared<TextureImage>();
   out->width = image.width;
@@ -149,7 +149,7 @@ std::optional<std::pair<std::size_t, Materials::Sampler>> Materials::lookup(cons
   }
   const Json& transform = file_.extension(reference, "KHR_texture_transform");
   const auto scale = file_.vector(transform, "scale", glm::dvec2(1)), offset = file_.vector(transform, "offset", glm::dvec2(0));
-  // There v counts from the top.
+  // In glTF, v counts from the top.
   sampler.mapping.uscale = scale.x;
   sampler.mapping.udelta = offset.x;
   sampler.mapping.vscale = scale.y;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials of Wavefront OBJ files, with the parameters of physically based ones (Pm, Pr) that exporters add.
+// Materials of Wavefront OBJ files, with the physically based parameters (Pm, Pr) that exporters add.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace caplet {
 
 namespace {
 
-/// The file of a map: the last words, after options such as "-s 1 1 1".
+/// Returns the file of a map: the last words, after options such as "-s 1 1 1".
 std::string map_of(const LineWords& words) {
   std::size_t i = 1;
   while (i < words.count() && words.word(i).size() > 1 && words.word(i)[0] == '-' &&
@@ -85,7 +85,7 @@ class Maker {
       PrincipledMaterial model;
       model.base_color = RgbSpectrum{kd};
       model.metallic = e.metallic.value_or(0);
-      // Blinn's exponent as GGX's alpha: 2 / alpha^2 - 2 (Walter et al. 2007); roughness is the root of alpha.
+      // Converts Blinn's exponent to GGX's alpha: it is 2 / alpha^2 - 2 (Walter et al. 2007); roughness is the root of alpha.
       model.roughness = e.roughness.value_or(std::sqrt(std::sqrt(2 / (e.ns + 2))));
       model.eta = std::clamp(e.ni, 1.01, 4.0);
       material.model = model;
@@ -115,7 +115,7 @@ class Maker {
   }
 
  private:
-  /// Models are passed on without their images, and with paths of other machines: they are drawn in their colours alone.
+  /// Models are often distributed without their images or with absolute paths. Such images are left out with a warning.
   bool is_there(const std::string& name, const SourceLocation& where) const {
     if (name.empty()) return false;
     if (caplet::is_there(folder_ / name, where)) return true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Wavefront OBJ: polygons with normals and texture coordinates, groups, materials of MTL files.
+// Wavefront OBJ: polygons with normals and texture coordinates, groups, and materials of MTL files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace caplet {
 
 namespace {
 
-/// Indices of one corner, from 0; -1: not given.
+/// The indices of one corner, from 0; -1: not given.
 struct ObjCorner {
   std::int64_t position = -1, uv = -1, normal = -1;
   bool operator==(const ObjCorner&) const = default;
@@ -36,7 +36,7 @@ struct ObjCornerHash {
 struct ObjPart {
   TriangleMeshShape mesh;
   std::unordered_map<ObjCorner, std::uint32_t, ObjCornerHash> vertices;
-  std::vector<glm::vec3> colors;  // of the mesh's vertices, as the file's numbers
+  std::vector<glm::vec3> colors;  // of the mesh's vertices, as numbers of the file
   bool all_uvs = true, all_normals = true, all_colors = true;
   std::string name, material;
   int line = 0;
@@ -55,7 +55,7 @@ class ObjReader {
     return std::move(scene_);
   }
 
-  /// The meshes alone; materials are not read.
+  /// Reads only the meshes, without materials.
   std::vector<TriangleMeshShape> read_meshes() {
     with_materials_ = false;
     parse();
@@ -77,7 +77,7 @@ class ObjReader {
     std::string joined;
     for (line_ = 1; !text.empty(); ++line_) {
       std::string_view line = take_line(text);
-      // A line that ends in a backslash goes on.
+      // A line that ends in a backslash continues on the next one.
       int more = 0;
       while (line.ends_with('\\') && !text.empty()) {
         joined.assign(line.substr(0, line.size() - 1));
@@ -123,7 +123,7 @@ class ObjReader {
     }
   }
 
-  /// Three numbers after the place are a colour; what has four is a weight alone.
+  /// Three numbers after the position are a colour; a single one is a weight.
   void vertex_statement(const LineWords& words) {
     positions_.emplace_back(words.number(1), words.number(2), words.number(3));
     if (words.count() != 7 || !with_materials_) return;
@@ -151,7 +151,7 @@ class ObjReader {
     return *(current_ = parts_[found->second].get());
   }
 
-  /// "7", "7/3", "7//2" or "7/3/2"; from 1, or from -1 backwards.
+  /// Reads "7", "7/3", "7//2" or "7/3/2". Indices count from 1, or backwards from -1.
   ObjCorner corner(const LineWords& words, std::size_t i) const {
     ObjCorner out;
     std::string_view text = words.word(i);
@@ -220,7 +220,7 @@ class ObjReader {
     for (auto& [name, material] : read_mtl(file, here, scene_, images_)) materials_.insert_or_assign(name, material);
   }
 
-  /// Texture coordinates and normals are of all corners or of none.
+  /// Texture coordinates and normals must be given for all corners or for none.
   static void complete(ObjPart& part) {
     if (!part.all_uvs) part.mesh.uvs.clear();
     if (!part.all_normals) part.mesh.normals.clear();
@@ -251,7 +251,7 @@ class ObjReader {
     if (scene_.shapes.empty()) throw InputError({scene_.source, 0, 0}, "holds no faces");
   }
 
-  /// The vertices' colours times the material's; of what has no material they alone.
+  /// Multiplies the vertices' colours by the material's; without a material they are used alone.
   void color(const ObjPart& part, Shape& shape) {
     std::vector<glm::vec3> corners;
     for (const auto& triangle : std::get<TriangleMeshShape>(shape.geometry).triangles)
@@ -270,17 +270,17 @@ class ObjReader {
 
   const std::filesystem::path& path_;
   const ImportOptions& options_;
-  Unproven* in_file_ = nullptr;  // while it is parsed
+  Unproven* in_file_ = nullptr;  // set while the file is parsed
   bool with_materials_ = true;
   Scene scene_;
   MeshImages images_;
   int line_ = 0, first_left_out_ = 0;
   std::size_t left_out_ = 0, thin_faces_ = 0;
   int first_thin_face_ = 0;
-  std::vector<std::uint32_t> corners_;  // of the face that is read
+  std::vector<std::uint32_t> corners_;  // of the current face
   std::vector<glm::vec3> places_;
   std::vector<std::string> kept_;
-  std::vector<glm::vec3> positions_, normals_, colors_;  // the last: fewer where the rest have none; -1: none
+  std::vector<glm::vec3> positions_, normals_, colors_;  // colours end at the last vertex that has one; -1: none
   float most_color_ = 0;
   std::optional<std::uint32_t> white_;
   std::vector<glm::vec2> uvs_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Polygons as triangles.
+// Triangulation of polygons.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -14,9 +14,9 @@ namespace caplet {
 
 namespace {
 
-constexpr std::size_t kMostEars = 2000;  // corners of a polygon whose ears are sought, which takes their square
+constexpr std::size_t kMostEars = 2000;  // corners of a polygon that is cut by ears; the time grows with their square
 
-/// Twice the area, positive where a, b, c go around to the left.
+/// Returns twice the area; it is positive where a, b, c are in counter-clockwise order.
 double area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -32,7 +32,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3
     return out;
   };
   if (count < 4 || count > kMostEars) return fan();
-  // Newell's normal; along its greatest axis the polygon is looked at, from where it goes around to the left.
+  // Newell's normal. The polygon is projected along its greatest axis so that it is counter-clockwise.
   glm::dvec3 normal(0);
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 a(corners[i] - corners[0]), b(corners[(i + 1) % count] - corners[0]);
@@ -68,7 +68,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3
       left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
       cut = true;
     }
-    if (!cut) return fan();  // it crosses itself
+    if (!cut) return fan();  // it intersects itself
   }
   out.push_back({left[0], left[1], left[2]});
   return out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// STL of both kinds, and OFF.
+// Reads binary and text STL, and OFF.
 #include <fmt/format.h>
 
 #include <bit>
@@ -24,12 +24,12 @@ namespace {
 
 constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of binary files
 
-/// Corners at the same place are one vertex, so that meshes that enclose a volume are known to.
+/// Merges corners at the same place into one vertex, so that closed meshes are recognised as closed.
 class Welder {
  public:
   explicit Welder(TriangleMeshShape& mesh) : mesh_(mesh) {}
   std::uint32_t operator()(const glm::vec3& p) {
-    const glm::vec3 q = p + glm::vec3(0);  // -0 is 0
+    const glm::vec3 q = p + glm::vec3(0);  // -0 becomes 0
     std::uint64_t h = 0;
     for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint32_t>(q[k])) * 0x9e3779b97f4a7c15U;
     for (auto [at, end] = index_.equal_range(h); at != end; ++at)
@@ -50,7 +50,7 @@ TriangleMeshShape binary_stl(std::string_view bytes, const std::string& file, st
   Welder vertex(mesh);
   mesh.triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const char* at = bytes.data() + kHeader + i * kFacet + sizeof(glm::vec3);  // after the normal, which the corners say
+    const char* at = bytes.data() + kHeader + i * kFacet + sizeof(glm::vec3);  // skips the normal, which follows from the corners
     std::array<glm::vec3, 3> corners;
     static_assert(sizeof corners == 36);
     std::memcpy(corners.data(), at, sizeof corners);
@@ -112,7 +112,7 @@ TriangleMeshShape parse_either_stl(std::string_view bytes, const std::string& fi
   return text_stl(bytes, file);
 }
 
-/// Words of a file across its lines.
+/// Reads words across the lines of a file.
 class OffReader {
  public:
   OffReader(std::string_view text, const std::string& file, std::vector<glm::vec3>* colors)
@@ -122,11 +122,11 @@ class OffReader {
     if (!kind.ends_with("OFF")) fail("is no OFF file");
     kind.resize(kind.size() - 3);
     if (kind.find_first_of("4n") != std::string::npos) fail("points of other than three coordinates are not read");
-    // Normals and texture coordinates are read over: those come before the colours, these after.
+    // Normals and texture coordinates are skipped: normals precede the colours, texture coordinates follow them.
     const std::size_t extra = kind.find('N') != std::string::npos ? 3U : 0U;
     const bool has_colors = colors_ && kind.find('C') != std::string::npos;
     std::vector<glm::vec3> of_vertices, of_triangles;
-    bool all_vertices = has_colors, all_faces = colors_ && !has_colors;  // all have a colour
+    bool all_vertices = has_colors, all_faces = colors_ && !has_colors;  // whether all have a colour
     const std::int64_t vertices = whole(), faces = whole();
     whole();
     if (vertices < 0 || faces < 0) fail("a count is negative");
@@ -187,7 +187,7 @@ class OffReader {
     while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
   }
   void end_line() { rest_ = {}; }
-  /// Three numbers of what is left of the line; none: it has fewer (a number alone is one of a table of colours).
+  /// Reads three numbers from the rest of the line; none if it has fewer (a single number is an index into a colour table).
   std::optional<glm::vec3> color() {
     const std::vector<std::string_view> words = words_of(rest_);
     if (words.size() < 3) return std::nullopt;
@@ -224,7 +224,7 @@ class OffReader {
   const std::string& file_;
   int line_ = 0;
   std::vector<glm::vec3>* colors_;
-  float most_ = 0;  // of the colours' numbers
+  float most_ = 0;  // the greatest number of the colours
 };
 
 Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const ImportOptions& options, const char* usual_up,

@@ -19,14 +19,14 @@ namespace {
 constexpr float kTolerance = 0.45F, kTooClose = 0.4F;
 constexpr std::size_t kMostInACell = 256;
 constexpr std::int64_t kMostCells =
-    1 << 20;  // along an axis: what lies further out shares a cell, and is compared as all others are
+    1 << 20;  // along an axis: atoms that lie further out share a cell, and are compared like all other atoms
 
 struct Cell {
   std::uint64_t key = 0;
-  std::uint32_t begin = 0, end = 0;  // atoms of `order`
+  std::uint32_t begin = 0, end = 0;  // a range of `order`
 };
 
-/// Cells of one size in the order of their keys: x, then y, then z.
+/// Cells of one size, sorted by their keys: by x, then y, then z.
 class Grid {
  public:
   Grid(const std::vector<Atom>& atoms, float size) {
@@ -61,13 +61,13 @@ class Grid {
     return most;
   }
 
-  /// Calls work(i, j) for each two atoms of a cell, and of two cells that touch, once.
+  /// Calls work(i, j) once for each pair of atoms in one cell or in two neighbouring cells.
   template <class Work>
   void pairs(const Work& work) const {
-    // Keys from which on three cells along z follow: of the columns "after" this one.
+    // Offsets of the keys of the neighbouring columns that come "after" this one; each has three neighbours along z.
     constexpr std::uint64_t y = std::uint64_t{1} << 21, x = y << 21;
     constexpr std::array<std::uint64_t, 4> columns = {y, x - y, x, x + y};
-    std::array<std::size_t, 4> from{};  // cells before this lie before the column's first: they only move on
+    std::array<std::size_t, 4> from{};  // cells before these indices precede the column's first; the indices only increase
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const Cell& cell = cells[c];
       for (std::uint32_t i = cell.begin; i < cell.end; ++i)
@@ -93,7 +93,7 @@ class Grid {
   }
 };
 
-/// Bonds of residues whose component is known; marks those residues.
+/// Adds the bonds of residues whose component is known, and marks those residues.
 void add_component_bonds(const Molecule& molecule, std::vector<bool>& known, std::vector<Bond>& out) {
   if (molecule.components.empty() || molecule.atom_names.empty()) return;
   for (std::size_t r = 0; r < molecule.residues.size(); ++r) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crystals of small molecules and minerals: the core CIF dictionary's files, whose atoms are fractions of a cell.
+// Crystals of small molecules and minerals: files of the core CIF dictionary, whose atoms are at fractions of a cell.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ namespace caplet {
 
 namespace {
 
-constexpr double kSame = 0.4;                // angstroms: copies of one atom that are nearer are one
-constexpr std::size_t kMostOperators = 192;  // of a space group: 48 of the point group, four of the centring
+constexpr double kSame = 0.4;                // angstroms: closer copies of one atom are the same
+constexpr std::size_t kMostOperators = 192;  // of a space group: 48 of the point group times four of the centring
 
-/// x, y and z of a copy are `turn` times those of the atom, and `shift`; all are fractions of the cell.
+/// Maps an atom to `turn` times its coordinates plus `shift`. Coordinates are fractions of the cell.
 struct Operator {
   glm::dmat3 turn{0};
   glm::dvec3 shift{0};
@@ -62,13 +62,13 @@ class CrystalReader {
     for (const char* tag :
          {"_cell_length_a", "_cell_length_b", "_cell_length_c", "_cell_angle_alpha", "_cell_angle_beta", "_cell_angle_gamma"}) {
       const std::string* text = block.find_value(tag);
-      // Right angles need not be said.
+      // Angles default to 90 degrees.
       cell.at(count) = !text && count > 2 ? 90 : text ? gemmi::cif::as_number(*text) : std::numeric_limits<double>::quiet_NaN();
       if (!(cell.at(count) > 0) || !(cell.at(count) < (count > 2 ? 180 : 1e6)))
         fail(fmt::format("{} is {}, and the atoms are fractions of the cell", tag, text ? caplet::quoted(*text) : "missing"));
       ++count;
     }
-    // a along x, b in the plane of x and y (International Tables for Crystallography B, 1.1).
+    // a lies along x, b in the plane of x and y (International Tables for Crystallography B, 1.1).
     const double ca = std::cos(glm::radians(cell[3])), cb = std::cos(glm::radians(cell[4]));
     const double cg = std::cos(glm::radians(cell[5])), sg = std::sin(glm::radians(cell[5]));
     const double x = (ca - cb * cg) / sg, square = 1 - cb * cb - x * x;
@@ -94,7 +94,7 @@ class CrystalReader {
       atom.element = element_in(row.has2(4) ? row.str(4) : row.str(0));
       if (atom.element == 0) atom.element = element_in(row.str(0));
       if (atom.hydrogen() && !hydrogens) continue;
-      // Which of the places of what is disordered: a small number; what is less than nothing is disorder about a symmetry.
+      // Disordered atoms have a small group number; a negative one is disorder about a symmetry element.
       std::int64_t group = 0;
       if (row.has2(7) && parse_number(std::string_view(row.str(7)), group) && group != 0) {
         if (first_group == 0) first_group = group;
@@ -116,7 +116,7 @@ class CrystalReader {
     return std::abs(value) <= static_cast<double>(largest_number) ? static_cast<float>(value) : 0;
   }
 
-  /// "Si4+", "C12", "FE": by one letter where two are no element.
+  /// Reads "Si4+", "C12", "FE". If the first two letters are no element, the first one is used.
   static std::uint8_t element_in(const std::string& symbol) {
     std::size_t letters = 0;
     while (letters < symbol.size() && std::isalpha(static_cast<unsigned char>(symbol[letters]))) ++letters;
@@ -139,7 +139,7 @@ class CrystalReader {
 
   // --- All of the cell ---
 
-  /// "x+1/2, -y, z-x".
+  /// Parses "x+1/2, -y, z-x".
   Operator parse_operator(const std::string& text) const {
     Operator out;
     int row = 0;
@@ -202,7 +202,7 @@ class CrystalReader {
     fail("has neither operators nor the name of a space group: its cell cannot be filled");
   }
 
-  /// What is bound to each other in the file's list, each a list of atoms.
+  /// Returns connected components of the bonds, each as a list of atoms.
   std::vector<std::vector<std::uint32_t>> fragments() const {
     std::vector<std::uint32_t> root(out_.atoms.size());
     std::iota(root.begin(), root.end(), 0U);
@@ -224,7 +224,7 @@ class CrystalReader {
     return out;
   }
 
-  /// The operators' copies of all atoms, each once. What is bound to each other is moved as a whole, its middle into the cell.
+  /// Adds the operators' copies of all atoms without duplicates. A bonded group moves as a whole, with its centre in the cell.
   void fill_cell(const std::vector<Operator>& operators) {
     const std::vector<std::vector<std::uint32_t>> parts = fragments();
     const std::vector<Atom> atoms = std::move(out_.atoms);
@@ -242,7 +242,7 @@ class CrystalReader {
           placed.push_back(op.turn * fractions[atom] + op.shift);
           middle += placed.back() / static_cast<double>(part.size());
         }
-        const glm::dvec3 shift = -glm::floor(middle + 1e-6);  // a middle on the cell's face, rounded, is of this side
+        const glm::dvec3 shift = -glm::floor(middle + 1e-6);  // a centre on the cell's face stays on this side despite rounding
         for (std::size_t i = 0; i < part.size(); ++i) {
           const glm::dvec3 p = placed[i] + shift;
           const bool known = std::any_of(copies[i].begin(), copies[i].end(), [&](const glm::dvec3& other) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What of a molecule is drawn, and how: spheres are capsules of no length, bonds capsules halved by the atoms' colours, traces
-// tapered capsules along a Catmull-Rom curve.
+// Draws molecules: spheres are capsules of length 0, bonds are capsules split in two where the colours of their atoms differ, and
+// traces are tapered capsules along a Catmull-Rom curve.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,12 +32,12 @@ namespace {
 enum class Style { ball_and_stick, spheres, sticks, trace };
 enum class MoleculeColor { element, chain, residue, bfactor };
 
-constexpr std::size_t kMostInDetail = 2000;  // atoms that are drawn as balls and sticks unless a style is asked for
+constexpr std::size_t kMostInDetail = 2000;  // atoms; larger molecules are drawn as spheres by default
 constexpr float kBall = 0.25F;               // of the van der Waals radius
 constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
-constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;                          // of least and most b factor
-constexpr int kTraceSteps = 6;                                                   // capsules from one residue to the next
-constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // what is further apart has something missing between
+constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;                          // radii at the least and greatest b factor
+constexpr int kTraceSteps = 6;                                                   // capsules between two residues
+constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // a larger distance means that residues are missing
 
 class Painter {
  public:
@@ -52,7 +52,7 @@ class Painter {
     }
   }
 
-  /// Of the range of b factors, 0 to 1.
+  /// Returns the atom's position in the range of b factors, 0 to 1.
   float part(const Atom& atom) const { return high_ > low_ ? (atom.b_factor - low_) / (high_ - low_) : 0.5F; }
 
   std::uint32_t material(const Atom& atom) {
@@ -70,7 +70,7 @@ class Painter {
     return 0;
   }
 
-  /// Of the b factors' colours; none of colours that tell no number.
+  /// Returns the legend of b factors; none for other colours.
   std::optional<Legend> legend() const {
     if (by_ != MoleculeColor::bfactor) return std::nullopt;
     return viridis_legend("B factor", "\u00c5\u00b2", low_, high_);
@@ -96,7 +96,7 @@ class Painter {
   std::map<std::string, std::uint32_t> index_;
 };
 
-/// The capsules of a chain, of one kind: one shape.
+/// The capsules of one kind in a chain; they become one shape.
 struct DrawnPart {
   CapsulesShape capsules;
   bool tapered = false;
@@ -108,7 +108,7 @@ struct DrawnPart {
     capsules.materials.push_back(material);
     tapered |= r0 != r1;
   }
-  /// Of a tube: u at both ends.
+  /// Adds a capsule of a tube, with u at both ends.
   void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material, const glm::vec2& u) {
     add(p0, p1, r0, r1, material);
     capsules.u.push_back(u);
@@ -120,7 +120,7 @@ class MoleculeDrawing {
   MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style, Painter& painter)
       : molecule_(molecule), bonds_(bonds), style_(style), painter_(painter) {}
 
-  /// The shapes of the residues that `kept` says.
+  /// Makes the shapes of the residues that `kept` marks.
   std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept) {
     parts_.clear();
     for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
@@ -148,7 +148,7 @@ class MoleculeDrawing {
   }
 
  private:
-  /// In the style trace, what has no trace is drawn as sticks.
+  /// The style trace draws residues without a trace as sticks.
   bool in_detail(const Atom& atom) const {
     if (style_ != Style::trace) return true;
     const Residue& residue = molecule_.residues[atom.residue];
@@ -220,7 +220,7 @@ class MoleculeDrawing {
     const auto at = [&run](std::ptrdiff_t i) {
       return run[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(run) - 1))]->position;
     };
-    // The same from residue to residue.
+    // u increases evenly from residue to residue.
     const auto u_at = [&run](std::ptrdiff_t i, int step) {
       return (static_cast<float>(i) + static_cast<float>(step) / kTraceSteps) / static_cast<float>(std::ssize(run) - 1);
     };
@@ -232,7 +232,7 @@ class MoleculeDrawing {
       float radius_before = r1;
       for (int step = 1; step <= kTraceSteps; ++step) {
         const float t = static_cast<float>(step) / kTraceSteps;
-        // Catmull and Rom 1974.
+        // The curve is that of Catmull and Rom 1974.
         const glm::vec3 on_curve = 0.5F * (2.0F * p1 + (p2 - p0) * t + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (t * t) +
                                            (3.0F * p1 - p0 - 3.0F * p2 + p3) * (t * t * t));
         const glm::vec3 p = step == kTraceSteps ? p2 : on_curve;
@@ -278,7 +278,7 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
   if (scene.instances.empty()) throw InputError({"--assembly"}, "'" + name + "' holds none of the atoms");
 }
 
-/// Puts the atoms where frame `number` of the array has them; the bonds are those of the file's own places.
+/// Moves the atoms to frame `number` of the array; bonds are those of the file's own positions.
 void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t number) {
   begin_reading(path);
   NpyReader reader(path, {3}, 3);
@@ -307,7 +307,7 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   scene.source = path.string();
   const std::optional<std::string> positions = options.text("positions");
   ImportOptions of_file = options;
-  if (positions) of_file.set("model", "1");  // the frame is one of the array
+  if (positions) of_file.set("model", "1");  // the option then selects a frame of the array
   Molecule molecule = reader(read_text(path, {}), scene.source, of_file);
   const OptionFiles may_be_read(options);
   if (const std::optional<std::string> file = options.text("components"))

@@ -12,7 +12,7 @@ namespace caplet {
 
 namespace {
 
-/// Of hydrogen to meitnerium, sRGB: jmol.sourceforge.net/jscolors.
+/// Colours from hydrogen to meitnerium, sRGB: jmol.sourceforge.net/jscolors.
 constexpr std::array<std::uint32_t, 110> jmol_colors = {
     0xff1493, 0xffffff, 0xd9ffff, 0xcc80ff, 0xc2ff00, 0xffb5b5, 0x909090, 0x3050f8, 0xff0d0d, 0x90e050, 0xb3e3f5,
     0xab5cf2, 0x8aff00, 0xbfa6a6, 0xf0c8a0, 0xff8000, 0xffff30, 0x1ff01f, 0x80d1e3, 0x8f40d4, 0x3dff00, 0xe6e6e6,
@@ -25,7 +25,7 @@ constexpr std::array<std::uint32_t, 110> jmol_colors = {
     0x007d00, 0x70abfa, 0x00baff, 0x00a1ff, 0x008fff, 0x0080ff, 0x006bff, 0x545cf2, 0x785ce3, 0x8a4fe3, 0xa136d4,
     0xb31fd4, 0xb31fba, 0xb30da6, 0xbd0d87, 0xc70066, 0xcc0059, 0xd1004f, 0xd90045, 0xe00038, 0xe6002e, 0xeb0026};
 
-/// gemmi has deuterium as an element of its own, after all others.
+/// gemmi lists deuterium as a separate element, after all others.
 constexpr int most_elements = 118;
 gemmi::El el_of(std::uint8_t element) { return static_cast<gemmi::El>(element); }
 
@@ -47,7 +47,7 @@ std::uint8_t element_of(std::string_view symbol) {
 }
 
 float covalent_radius(std::uint8_t element) {
-  constexpr float carbon = 0.76F;  // of sp3: gemmi has that of sp2, 0.73
+  constexpr float carbon = 0.76F;  // sp3; gemmi has the value of sp2, 0.73
   return element == 6 ? carbon : gemmi::covalent_radius(el_of(element));
 }
 float van_der_waals_radius(std::uint8_t element) { return gemmi::vdw_radius(el_of(element)); }

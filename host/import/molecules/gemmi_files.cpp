@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// PDB and mmCIF, read by gemmi.
+// Reads PDB and mmCIF with gemmi.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 
 bool begins_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
 
-/// gemmi names lines as "PATH:LINE:COLUMN(BYTE): ..." or "Problem in line LINE: ...".
+/// gemmi reports lines as "PATH:LINE:COLUMN(BYTE): ..." or "Problem in line LINE: ...".
 [[noreturn]] void refuse(const std::string& path, std::string message) {
   SourceLocation where{path, 0, 0};
   const auto number = [&message](std::size_t& at) {
@@ -63,7 +63,7 @@ ResidueKind residue_kind(const std::string& name) {
   return info.is_nucleic_acid() ? ResidueKind::nucleotide : ResidueKind::other;
 }
 
-/// Which alternative place of a residue's atoms is kept: '*' all of them, '\0' those without any alone.
+/// Returns the alternative place of a residue's atoms that is kept: '*' all of them, '\0' only atoms without one.
 char kept_altloc(const gemmi::Residue& residue, const std::string& asked) {
   if (asked == "all") return '*';
   if (asked != "first") return asked[0];
@@ -216,7 +216,7 @@ auto read_by_gemmi(const std::string& path, const Work& work) {
   }
 }
 
-/// CONECT: columns 7-11 an atom, then up to four others of five columns each.
+/// Reads CONECT: columns 7-11 hold an atom, then up to four others follow in five columns each.
 void add_conect(std::string_view text, Molecule& out) {
   std::unordered_map<std::int32_t, std::uint32_t> by_serial;
   const auto serial_at = [](std::string_view line, std::size_t column) {
@@ -242,7 +242,7 @@ void add_conect(std::string_view text, Molecule& out) {
   }
 }
 
-/// REMARK 350 by its words: beyond 999 copies the columns move, and gemmi 0.5 reads other numbers.
+/// Splits REMARK 350 by words: beyond 999 copies its columns shift, and gemmi 0.5 misreads them.
 std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::string_view text, const std::string& path) {
   std::map<std::string, std::vector<AssemblyPart>> out;
   std::vector<AssemblyPart>* parts = nullptr;
@@ -283,8 +283,8 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
   return out;
 }
 
-/// gemmi 0.5 reads the distance of SSBOND and LINK, columns 74 to 78, beyond the end of a line that ends within it: such lines
-/// get blanks up to column 80.
+/// gemmi 0.5 reads the distance of SSBOND and LINK, columns 74 to 78, beyond the end of a line that ends within it. Such lines
+/// are padded with blanks to column 80.
 std::string with_whole_distances(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -305,14 +305,14 @@ gemmi::cif::Document document_of(std::string_view text, const std::string& path)
   return gemmi::cif::read_memory(text.data(), text.size(), path.c_str());
 }
 
-/// gemmi 0.5 makes a byte of a component's charge whatever it is, none included.
+/// gemmi 0.5 converts a component's charge to a byte without a check, even a missing one.
 void mend_charges(gemmi::cif::Block& block) {
   for (auto row : block.find("_chem_comp_atom.", {"charge"}))
     if (!(std::abs(gemmi::cif::as_number(row[0])) <= 100)) row[0] = "0";
 }
 
-/// gemmi 0.5 reads no atoms without some columns of _atom_site that other programs leave out (PyMOL auth_seq_id): they become
-/// those of the other name, or say that nothing is known.
+/// gemmi 0.5 reads no atoms without certain columns of _atom_site that other programs omit (PyMOL auth_seq_id). They are copied
+/// from an equivalent column, or filled with "unknown".
 void add_columns(gemmi::cif::Block& block) {
   const std::string category = "_atom_site.";
   gemmi::cif::Loop* loop = block.find_loop(category + "Cartn_x").get_loop();
@@ -327,7 +327,7 @@ void add_columns(gemmi::cif::Block& block) {
                                       {"occupancy", "", "1"},
                                       {"B_iso_or_equiv", "", "0"},
                                       {"auth_seq_id", "label_seq_id", "?"}};
-  std::vector<std::pair<int, std::string>> added;  // the column whose values they have, or what all rows have
+  std::vector<std::pair<int, std::string>> added;  // the column that is copied, or the value of all rows
   const std::size_t width = loop->width();
   for (const Column& column : needed) {
     if (loop->has_tag(category + column.name)) continue;
@@ -347,7 +347,7 @@ void add_columns(gemmi::cif::Block& block) {
 }
 
 void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
-  // A const table of gemmi 0.5 is not to be had.
+  // gemmi 0.5 offers no const access to tables.
   auto& table_of = const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   for (const auto row : table_of.find("_chem_comp_bond.", {"comp_id", "atom_id_1", "atom_id_2"}))
     out[row.str(0)].emplace_back(row.str(1), row.str(2));

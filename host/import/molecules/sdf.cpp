@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// MDL molfiles and SD files: connection tables of V2000 (fixed columns) and V3000 (free ones), as BIOVIA's "CTfile formats" has
-// them.
+// MDL molfiles and SD files: connection tables of V2000 (fixed columns) and V3000 (free format), as in BIOVIA's "CTfile
+// formats".
 #include <fmt/format.h>
 
 #include <cmath>
@@ -32,8 +32,8 @@ class SdfReader {
                        "is XML: simulators' SDFormat is not read, which has the same ending as molecules' SD files");
     out_.chains = {""};
     out_.name = std::string(trimmed(line()));
-    line();  // program and date
-    line();  // comment
+    line();  // skips program and date
+    line();  // skips the comment
     const std::string_view counts = line();
     if (counts.find("V3000") != std::string_view::npos)
       read_v3000();
@@ -75,7 +75,7 @@ class SdfReader {
     return records;
   }
 
-  /// A field of fixed columns, from 0.
+  /// Reads a field of fixed columns, which count from 0.
   template <class Number>
   Number fixed(std::string_view text, std::size_t begin, std::size_t size, const char* what) const {
     const std::string_view field = text.size() > begin ? trimmed(text.substr(begin, size)) : std::string_view();
@@ -117,7 +117,7 @@ class SdfReader {
     }
   }
 
-  /// A line "M  V30 ..." without that, and with those after it where it ends in "-".
+  /// Returns a line "M  V30 ..." without that prefix, joined with those that follow if it ends in "-".
   std::string v30() {
     std::string out;
     for (;;) {

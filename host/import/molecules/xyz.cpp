@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// XYZ: frames of a count, a comment, and a line an atom. Extended XYZ says in its comment ("Properties=...") which columns are
-// what.
+// XYZ: frames of a count, a comment, and one line per atom. The comment of extended XYZ describes the columns
+// ("Properties=...").
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -18,7 +18,7 @@ struct Columns {
   std::size_t species = 0, position = 1;
 };
 
-/// Of "Properties=species:S:1:pos:R:3:...": a name, a kind and a number of columns each.
+/// Parses "Properties=species:S:1:pos:R:3:...": a name, a kind and a number of columns each.
 Columns columns_of(std::string_view comment) {
   Columns columns;
   const std::string_view key = "Properties=";
@@ -85,7 +85,7 @@ class XyzReader {
     return take_line(text_);
   }
 
-  /// What follows the frame that is read and begins as one does.
+  /// Counts the complete frames after the one that was read.
   std::uint32_t frames_behind() const {
     std::uint32_t frames = 0;
     for (std::string_view rest = text_; !rest.empty();) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The geoms of a robot as shapes, what they are made of, and the robot's own lights.
+// Makes shapes and materials of a robot's geoms, and its own lights.
 #include "import/detail/robot.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace caplet {
 namespace {
 
 constexpr glm::dvec4 kGrey{0.5, 0.5, 0.5, 1};
-constexpr double kFar = 50;             // of an endless plane: so many times the size of what stands on it, to each side
+constexpr double kFar = 50;             // an infinite plane extends so many times the size of the objects on it to each side
 constexpr double kBrightestSky = 0.35;  // the mean of its radiance
 constexpr std::size_t kMostTriangles = std::size_t{1} << 26;
 constexpr std::size_t kMostTinted = std::size_t{1} << 30;  // bytes
@@ -62,7 +62,7 @@ class RobotDrawing {
     }
   }
 
-  /// After everything else, whose size endless planes depend on.
+  /// Runs after everything else, because the size of infinite planes depends on it.
   void finish() {
     const Bounds bounds = bounds_of(scene_);
     const bool alone = scene_.shapes.empty();
@@ -99,8 +99,8 @@ class RobotDrawing {
     return narrow<std::uint32_t>(scene_.materials.size() - 1);
   }
 
-  /// Of colours alone: diffuse. Of materials: MuJoCo's specular and shininess as an interface, whose reflectance at right angles
-  /// is 0.08 specular, and whose GGX roughness is that of Phong's exponent 128 shininess; reflectance as the share of a mirror.
+  /// Plain colours are diffuse. MuJoCo's specular and shininess become an interface whose reflectance at normal incidence is 0.08
+  /// specular, and whose GGX roughness matches Phong's exponent 128 shininess; reflectance is the share of a mirror.
   std::uint32_t material(const RobotGeom& geom, bool has_uvs) {
     const glm::dvec4 rgba = rgba_of(geom);
     const RobotMaterial* of = material_of(geom);
@@ -137,7 +137,7 @@ class RobotDrawing {
     return out;
   }
 
-  /// The image, times the colour; its index.
+  /// Adds the image times the colour, and returns its index.
   std::uint32_t texture(const RobotGeom& geom, const RobotMaterial& of, const glm::dvec4& rgba, bool has_uvs) {
     ImagemapTexture image;
     image.filter = 2;
@@ -157,24 +157,24 @@ class RobotDrawing {
       mapping.uscale = of.texrepeat.x;
       mapping.vscale = of.texrepeat.y;
     } else {
-      // Uniform: so often in two units of length, from the geom's edge.
+      // Uniform textures repeat by length: that many times in two units, from the geom's edge.
       glm::dvec2 repeat = of.texrepeat;
       for (int k = 0; k < 2; ++k)
         if (of.texuniform && !is_endless[k]) repeat[k] *= size[k];
       if (geom.kind == GeomKind::plane || geom.kind == GeomKind::box || geom.kind == GeomKind::mesh) {
-        // Across x and y.
+        // The texture is projected along z.
         mapping.kind = TextureMapping::Kind::planar;
         mapping.v1 = {0.5 * repeat.x / size.x, 0, 0};
         mapping.v2 = {0, 0.5 * repeat.y / size.y, 0};
         mapping.udelta = is_endless.x ? 0.5 : 0.5 * repeat.x;
         mapping.vdelta = is_endless.y ? 0.5 : 1 - 0.5 * repeat.y;
       } else {
-        // Around z, and from the top down.
+        // The texture wraps around z, from the top down.
         mapping.uscale = repeat.x;
         mapping.vscale = repeat.y;
         mapping.vdelta = 1 - repeat.y;
         if (geom.kind == GeomKind::capsule) {
-          // v goes along the whole profile: once over the side.
+          // v covers the whole profile of a capsule: the texture covers its side once.
           const double cap = 0.5 * std::numbers::pi * geom.size.x, side = 2 * geom.size.y;
           mapping.vscale = repeat.y * (2 * cap + side) / side;
           mapping.vdelta = 1 - repeat.y * (1 + cap / side);
@@ -188,7 +188,7 @@ class RobotDrawing {
     return narrow<std::uint32_t>(scene_.textures.size() - 1);
   }
 
-  /// Its colours as on a screen, times another: what MuJoCo shows.
+  /// Multiplies the image by a colour in sRGB, as MuJoCo does.
   std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color,
                                              const SourceLocation& where) {
     if (color == glm::dvec3(1)) return image;
@@ -268,7 +268,7 @@ class RobotDrawing {
   std::vector<const RobotGeom*> planes_;
 };
 
-/// "visual", "collision", "all", or numbers of groups.
+/// Reads "visual", "collision", "all", or numbers of groups.
 std::function<bool(const RobotGeom&)> shown_by(const ImportOptions& options) {
   const std::string text = options.text("groups").value_or("visual");
   if (text == "all") return [](const RobotGeom&) { return true; };
@@ -290,7 +290,7 @@ std::function<bool(const RobotGeom&)> shown_by(const ImportOptions& options) {
   return [groups](const RobotGeom& geom) { return groups.contains(geom.group); };
 }
 
-/// Of all directions and channels.
+/// Returns the mean over all directions and channels.
 double mean_of(const EnvironmentImage& image) {
   double sum = 0, weight = 0;
   const auto width = static_cast<std::size_t>(image.width);
@@ -303,7 +303,7 @@ double mean_of(const EnvironmentImage& image) {
   return sum / weight;
 }
 
-/// MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the middle of what is seen.
+/// MuJoCo's lights do not fade with distance; ours get the same strength at the centre of the visible scene.
 void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   Bounds bounds;
   for (const Shape& shape : scene.shapes) {
@@ -347,15 +347,15 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
     sky.world_from_light = glm::dmat3(world);
   }
   add(sky, whole);
-  // MuJoCo's sky is seen and lights nothing: here it lights in the place of ambient light, and not more than usual for that.
+  // MuJoCo's sky emits no light. Here it replaces the ambient light, and is at most as bright as that usually is.
   if (robot.sky) scene.lights.back().scale = std::min(1.0, kBrightestSky / std::max(mean_of(*robot.sky), 1e-6));
 }
 
-/// The camera that is asked for, and the robot's lights.
+/// Sets the requested camera and the robot's lights.
 void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Imported& out) {
   Scene& scene = out.scene;
   out.is_lit = !robot.lights.empty();
-  if (out.is_lit) frame_camera(scene);  // for the headlight
+  if (out.is_lit) frame_camera(scene);  // the headlight needs it
   if (const std::optional<std::string> name = options.text("camera")) {
     const auto camera = std::ranges::find(robot.cameras, *name, &RobotCamera::name);
     if (camera == robot.cameras.end()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// MuJoCo's solids fitted to meshes: by the box that has the mesh's inertia, or by its extent along the inertia's axes
-// (XMLreference, geom/mesh, mesh/inertia, compiler/fitaabb).
+// Fits MuJoCo's solids to meshes: by the box with the mesh's inertia, or by the extent along the inertia's axes (XMLreference,
+// geom/mesh, mesh/inertia, compiler/fitaabb).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 using glm::dvec3;
 
-/// What the surface holds: how much, its middle, and its second moments about that.
+/// The mass of a mesh, its centre, and its second moments about the centre.
 struct Moments {
   double amount = 0;
   dvec3 middle{0};
@@ -40,7 +40,7 @@ void each_triangle(const MeshParts& parts, const glm::dmat4& m, const Work& work
 
 double area_of(const Corners& c) { return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) / 2; }
 
-/// Of a tetrahedron with its apex at the origin, or of the triangle alone; how much it counts. `sign`: -1 where the mesh is
+/// Returns the mass of a tetrahedron with its apex at the origin, or of the triangle alone. `sign`: -1 where the mesh is
 /// mirrored.
 double amount_of(const Corners& c, MeshFit::Mass mass, double sign) {
   if (mass == MeshFit::Mass::shell) return area_of(c);
@@ -49,7 +49,7 @@ double amount_of(const Corners& c, MeshFit::Mass mass, double sign) {
 }
 
 Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass mass) {
-  // The middle of the faces, from which tetrahedra are counted.
+  // Tetrahedra have their apex at the centre of the faces.
   double area = 0;
   dvec3 origin(0);
   each_triangle(parts, m, [&](const Corners& c) {
@@ -70,9 +70,9 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   });
   if (!(out.amount > 0)) return out;
   out.middle = origin + out.middle / out.amount;
-  // Of a simplex of n corners (the origin among those of a tetrahedron) the mean of x y is (sum of x_i y_i + sum x_i sum y_i) /
-  // (n (n + 1)).
-  // How much there is is counted anew from there: of volumes that are all positive it is another number.
+  // For a simplex of n corners (a tetrahedron has the origin as one) the mean of x y is (sum of x_i y_i + sum x_i sum y_i) /
+  // (n (n + 1)). The mass is recounted with the apex at the centre of mass, because it changes if all volumes count as
+  // positive.
   out.amount = 0;
   each_triangle(parts, m, [&](Corners c) {
     for (dvec3& p : c) p -= out.middle;
@@ -85,7 +85,7 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   return out;
 }
 
-/// Principal axes, the one of the least value first, as a rotation.
+/// Returns the principal axes as a rotation, the one of the least value first.
 glm::dmat3 axes_of(const glm::dmat3& symmetric, dvec3& values) {
   const PrincipalAxes found = principal_axes(symmetric);
   std::array<int, 3> order{0, 1, 2};
@@ -106,7 +106,7 @@ bool fit(RobotGeom& geom, const MeshParts& parts) {
   const MeshFit how = *geom.fit;
   const Moments moments = moments_of(parts, geom.geom_from_mesh, how.mass);
   if (!(moments.amount > 0)) return false;
-  // A box's second moment along an axis is its amount times a third of the half length squared.
+  // A box's second moment along an axis is its mass times a third of the squared half length.
   dvec3 second;
   const glm::dmat3 axes = axes_of(moments.second, second);
   dvec3 half;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The meshes that robots name, in the coordinates of their files.
+// Meshes that robots name, in the coordinates of their files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace caplet {
 
 namespace {
 
-/// MuJoCo's own: four counts, then positions, normals, texture coordinates (from the top) and triangles.
+/// Reads MuJoCo's .msh: four counts, then positions, normals, texture coordinates (from the top) and triangles.
 TriangleMeshShape parse_msh(const std::string& bytes, const std::string& file) {
   std::array<std::int32_t, 4> counts{};
   const auto fail = [&](const std::string& message) { throw InputError({file, 0, 0}, message); };

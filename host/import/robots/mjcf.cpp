@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// An MJCF model as a robot.
+// Reads an MJCF model as a robot.
 #include "import/detail/mjcf.h"
 
 namespace caplet {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Assets of MJCF: meshes, height fields, materials.
+// Assets of MJCF: meshes, height fields and materials.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Heights {
   std::vector<float> values;          // 0 to 1
 };
 
-/// From the least to the greatest, 0 to 1.
+/// Scales the values linearly to 0 to 1.
 void stretch(std::vector<float>& values) {
   const auto [least, most] = std::ranges::minmax(values);
   for (float& v : values) v = most > least ? (v - least) / (most - least) : 0;
@@ -48,7 +48,7 @@ Heights heights_of(const Element& of, const ImageReader& images, const std::file
     if (ending == ".png" || of.text("content_type") == "image/png") {
       const TextureImage image = images.read_texture(path, {ImageEncoding::Kind::linear, 1});
       counted(image.height, image.width);
-      for (std::size_t row = 0; row < out.rows; ++row)  // the image's bottom is the least y
+      for (std::size_t row = 0; row < out.rows; ++row)  // the image's bottom row is at the least y
         for (std::size_t column = 0; column < out.columns; ++column) {
           const std::size_t at = ((out.rows - 1 - row) * out.columns + column) * static_cast<std::size_t>(image.channels);
           float sum = 0;
@@ -58,7 +58,7 @@ Heights heights_of(const Element& of, const ImageReader& images, const std::file
           out.values.push_back(sum / static_cast<float>(channels));
         }
     } else {
-      // Two whole numbers, then floats.
+      // The file has two integers, then floats.
       const std::string bytes = read_file(path, of.where());
       std::array<std::int32_t, 2> counts{};
       if (bytes.size() < sizeof counts) throw InputError({path.string()}, "is no height field: it is too short");
@@ -87,7 +87,7 @@ Heights heights_of(const Element& of, const ImageReader& images, const std::file
   return out;
 }
 
-/// Its surface, two triangles a cell, and the sides and bottom of its base.
+/// Makes the surface, two triangles per cell, and the sides and bottom of the base.
 TriangleMeshShape height_mesh(const Heights& heights, const std::vector<double>& size) {
   TriangleMeshShape mesh;
   const std::size_t rows = heights.rows, columns = heights.columns, far = rows * columns;
@@ -123,7 +123,7 @@ TriangleMeshShape height_mesh(const Heights& heights, const std::vector<double>&
   return mesh;
 }
 
-/// A mesh that stands in the file itself.
+/// Reads a mesh that is written in the model itself.
 TriangleMeshShape written_mesh(const Element& of) {
   const auto numbers = [&](const char* name, std::size_t of_each) {
     const std::vector<double> v = numbers_of(of.text(name), 0, kMany, of.where(), name);
@@ -173,7 +173,7 @@ void Assets::mesh(const Model& model, const std::string& name, RobotGeom& geom) 
     if (!parts) parts = std::make_shared<const MeshParts>(MeshParts{written_mesh(of)});
     geom.parts = parts;
   }
-  // Points of the file, less refpos, turned back by refquat, then scaled.
+  // Points are translated by -refpos, rotated by the inverse of refquat, then scaled.
   const glm::dvec3 scale = of.vector("scale", {1, 1, 1}), reference = of.vector("refpos", {0, 0, 0});
   for (int k = 0; k < 3; ++k)
     if (scale[k] == 0) of.fail("scale: 0 leaves nothing of it");
@@ -210,7 +210,7 @@ void Assets::height_field(const Model& model, const std::string& name, RobotGeom
     const std::filesystem::path path =
         of.text("file").empty() ? std::filesystem::path() : model.file(of, of.text("file"), model.compiler().meshes);
     const Heights heights = heights_of(of, images_, path);
-    // Two vertices and four triangles each.
+    // Each value takes two vertices and four triangles.
     make(of, heights.values.size() * (2 * sizeof(glm::vec3) + 4 * sizeof(std::array<std::uint32_t, 3>)));
     parts = std::make_shared<const MeshParts>(MeshParts{height_mesh(heights, size)});
   }

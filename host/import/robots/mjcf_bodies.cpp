@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The bodies of an MJCF model in a pose: frames, replicas and attached models, joints, geoms, lights, cameras and tendons.
+// Poses the bodies of an MJCF model: frames, replicas and attached models, joints, geoms, lights, cameras and tendons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace caplet::mjcf {
 
 namespace {
 
-/// Where an element stands: its model, the class of what names none, and what its name becomes.
+/// The context of an element: its model, the default class of elements that name none, and the change of names.
 struct Scope {
   const Model* model = nullptr;
   const Class* childclass = nullptr;
@@ -26,7 +26,7 @@ struct Scope {
   std::string name(const char* own) const { return prefix + own + suffix; }
 };
 
-/// The numbers of a pose, joint by joint in the order of the file.
+/// Hands out the numbers of a pose, joint by joint in the order of the file.
 class ElementValues {
  public:
   ElementValues(const Model& model, const Pose& pose) : pose_(pose) {
@@ -49,7 +49,7 @@ class ElementValues {
                                                known.empty() ? "" : " (it has: " + known + ")"));
   }
 
-  /// What a joint of `otherwise.size()` numbers is set to.
+  /// Returns the position of a joint, of `otherwise.size()` numbers.
   std::vector<double> joint(const std::string& name, std::vector<double> otherwise) {
     const std::size_t count = otherwise.size(), begin = at_;
     at_ += count;
@@ -67,14 +67,14 @@ class ElementValues {
     if (mpos_.size() >= 3 * (i + 1)) position = {mpos_[3 * i], mpos_[3 * i + 1], mpos_[3 * i + 2]};
     if (mquat_.size() >= 4 * (i + 1)) rotation = turn({mquat_[4 * i], mquat_[4 * i + 1], mquat_[4 * i + 2], mquat_[4 * i + 3]});
   }
-  /// Throws InputError where the pose does not fit the model.
+  /// Throws InputError when the pose does not fit the model.
   void finish() const {
     if (qpos_ && qpos_->size() != at_)
       throw InputError(where_, fmt::format("qpos: {} numbers, but the joints take {}", qpos_->size(), at_));
     for (const auto& [name, values] : pose_.joints)
       if (!moved_.contains(name)) throw InputError({"--pose"}, "the file has no joint '" + name + "'");
   }
-  /// Of any length but none; of none: no turn, as MuJoCo.
+  /// Normalises a quaternion; zero becomes the identity, as in MuJoCo.
   static glm::dquat turn(const std::array<double, 4>& q) {
     const glm::dquat out(q[0], q[1], q[2], q[3]);
     const double length = glm::length(out);
@@ -112,7 +112,7 @@ class BodiesReader {
   }
 
  private:
-  // --- What stands in a body, as if frames, replicas and attached models were not there ---
+  // --- The content of a body, with frames, replicas and attached models resolved ---
 
   void count(const Scope& scope, pugi::xml_node node) {
     if (scope.depth > most_nested) scope.model->fail(node, fmt::format("elements are nested more than {} deep", most_nested));
@@ -155,7 +155,7 @@ class BodiesReader {
       element.fail(fmt::format("count: a whole number from 0 to {} is needed", most_elements));
     const std::size_t count = static_cast<std::size_t>(asked);
     const std::size_t digits = std::to_string(count).size();
-    // The i-th is turned i times, and stands an offset, turned as it is, beyond the one before.
+    // Copy i is rotated i times; its offset from the one before is rotated likewise.
     const std::vector<double> euler = element.numbers("euler", 3, {0, 0, 0});
     const glm::dvec3 offset = element.vector("offset", {0, 0, 0});
     Scope inner = scope;
@@ -201,7 +201,7 @@ class BodiesReader {
                              quoted(std::string_view(body.empty() ? named : body))));
   }
 
-  /// The element of this name in `of`; `scope` gets the class that it stands in.
+  /// Returns the element of this name in `of`; `scope` receives its default class.
   static pugi::xml_node find(const Model& model, pugi::xml_node of, std::string_view kind, const std::string& name, Scope& scope,
                              int depth) {
     if (depth > most_nested) model.fail(of, fmt::format("elements are nested more than {} deep", most_nested));
@@ -224,7 +224,7 @@ class BodiesReader {
 
   // --- Bodies ---
 
-  /// First what a body holds itself, then the bodies in it: MuJoCo's order.
+  /// A body's own content comes first, then the bodies in it: this is MuJoCo's order.
   void contents(const std::vector<pugi::xml_node>& nodes, const Scope& scope, const glm::dmat4& world) {
     const auto things = [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) { thing(child, at, world * frame); };
     const auto inner = [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) {
@@ -283,7 +283,7 @@ class BodiesReader {
       world = world * placed(at, glm::angleAxis(moved, axis)) * glm::translate(glm::dmat4(1), -at);
   }
 
-  /// A geom, a light, a camera or a site.
+  /// Reads a geom, a light, a camera or a site.
   void thing(pugi::xml_node node, const Scope& scope, const glm::dmat4& world) {
     const std::string_view kind = node.name();
     if (kind == "geom") return geom(node, scope, world);
@@ -306,7 +306,7 @@ class BodiesReader {
     return {(v[0] + v[3]) / 2, (v[1] + v[4]) / 2, (v[2] + v[5]) / 2};
   }
 
-  /// Of a solid that takes its size from a mesh; false where it is left out.
+  /// Fits a solid to a mesh; returns false if it is left out.
   bool fit(const Element& element, const Model& model, const std::string& mesh, bool is_none, RobotGeom& geom) {
     if (is_none) {
       Diagnostics().warning(geom.where, "the geom is left out: of its type none is fitted to a mesh");
@@ -472,7 +472,7 @@ class BodiesReader {
       for (const pugi::xml_node of : model.sections(section)) model.each(of, draw);
   }
 
-  /// Those that go straight from site to site, as capsules.
+  /// Draws tendons that run straight from site to site as capsules.
   void tendons(const Scope& scope) {
     const Model& model = *scope.model;
     for (const pugi::xml_node section : model.sections("tendon"))
@@ -493,7 +493,7 @@ class BodiesReader {
           const std::string name = scope.name(part.attribute("site").value());
           const auto site = sites_.find(name);
           if (site == sites_.end()) {
-            // Of a model that is attached in part, the rest is not there.
+            // If a model is attached in part, its other sites do not exist.
             if (&model == &model_) model.fail(part, "there is no site " + quoted(std::string_view(name)));
             return;
           }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What attributes of MJCF say, with the defaults of their classes.
+// Attributes of MJCF, with the defaults of their classes.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ glm::dvec3 unit(const glm::dvec3& v, const Model& model, pugi::xml_node node, co
 
 glm::dquat from_z(const glm::dvec3& direction) {
   const glm::dvec3 d = glm::normalize(direction);
-  const glm::dvec3 axis(-d.y, d.x, 0);  // z x d
+  const glm::dvec3 axis(-d.y, d.x, 0);  // the cross product of z and d
   const double sine = glm::length(axis);
   return glm::angleAxis(std::atan2(sine, d.z), sine < 1e-10 ? glm::dvec3(1, 0, 0) : axis / sine);
 }
@@ -129,7 +129,7 @@ glm::dquat Element::rotation() const {
   glm::dquat out(1, 0, 0, 0);
   for (std::size_t i = 0; i < 3; ++i) {
     const char letter = model_->compiler().euler[i];
-    const bool moves = letter >= 'a';  // small letters: about the axes as turned so far
+    const bool moves = letter >= 'a';  // lower case letters rotate about the moving axes
     glm::dvec3 axis(0);
     axis[(moves ? letter - 'x' : letter - 'X')] = 1;
     const glm::dquat one = glm::angleAxis(v[i] * scale, axis);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// MJCF files with what they include, their sections, default classes and assets.
+// MJCF files with their includes, sections, default classes and assets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace caplet::mjcf {
 
 namespace {
 
-/// The sections of a model that say nothing about what is seen.
+/// Sections of a model that do not affect the picture.
 constexpr std::string_view kPhysics =
     " option size statistic custom extension contact equality actuator sensor deformable lengthrange ";
 constexpr std::string_view kSections = " compiler default asset worldbody visual tendon keyframe ";
@@ -25,7 +25,7 @@ bool is_among(std::string_view name, std::string_view words) {
 
 struct Words {
   const char* element;
-  std::string_view attributes;  // each between blanks
+  std::string_view attributes;  // separated by blanks
 };
 constexpr Words kAttributes[] = {
     {"compiler",
@@ -60,7 +60,7 @@ constexpr Words kAttributes[] = {
     {"material", " class emission metallic name reflectance rgba roughness shininess specular texrepeat texture texuniform "},
 };
 
-/// One name of a file for all its spellings; of what has none, such as a pipe, its own.
+/// Returns one name for all spellings of a path; the path itself if it has no canonical form, such as a pipe.
 std::string known_as(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path out = std::filesystem::weakly_canonical(path, error);
@@ -195,7 +195,7 @@ void Model::read_assets(pugi::xml_node node) {
     std::string name = asset.attribute("name").value();
     if (name.empty()) name = std::filesystem::path(asset.attribute("file").value()).stem().string();
     if (kind == "model" && !asset.attribute("name")) {
-      // As its own root says.
+      // The name is the one in the model's own root.
       const std::filesystem::path path = folder_ / asset.attribute("file").value();
       auto model = std::make_unique<Model>(path, place(asset), above_);
       name = model->name();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Skins of MJCF: meshes whose vertices go with several bodies, in the pose.
+// Skins of MJCF: meshes whose vertices follow several bodies, in the pose.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMany = std::size_t{1} << 32;
 
-/// Vertices go as their bones do, by these shares.
+/// A bone moves vertices by these weights.
 struct Bone {
   std::string body;
   glm::dvec3 position{0};
@@ -53,7 +53,7 @@ glm::dquat turn(const Element& of, double w, double x, double y, double z) {
   return out / length;
 }
 
-/// A .skn file: four counts, vertices, texture coordinates, faces, and the bones with 40 letters of a body's name each.
+/// Reads a .skn file: four counts, vertices, texture coordinates, faces, and the bones, each with a body name of 40 letters.
 class SkinFile {
  public:
   SkinFile(const Element& of, const std::filesystem::path& path) : of_(of), path_(path), bytes_(read_file(path, of.where())) {}
@@ -107,7 +107,7 @@ class SkinFile {
   std::size_t at_ = 0;
 };
 
-/// What stands in the model itself.
+/// Reads a skin that is written in the model itself.
 Skin written_skin(const Model& model, const Element& of) {
   const auto numbers = [](const Element& from, const char* name, std::size_t of_each) {
     std::vector<double> v = numbers_of(from.text(name), 0, kMany, from.where(), name);
@@ -160,7 +160,7 @@ void read_skin(const Model& model, pugi::xml_node node, const std::function<cons
   if (mesh.triangles.empty() || skin.bones.empty()) of.fail("a skin has faces and bones");
   if (mesh.uvs.size() != mesh.positions.size()) mesh.uvs.clear();
   for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
-  // Shares are of their sum; each bone takes a vertex from where it was bound to where its body is.
+  // Weights are normalised by their sum. Each bone moves a vertex from its bind pose to the body's pose.
   std::vector<glm::dvec3> moved(mesh.positions.size(), glm::dvec3(0));
   std::vector<double> sum(mesh.positions.size(), 0);
   for (const Bone& bone : skin.bones)

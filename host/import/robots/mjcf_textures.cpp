@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Textures of MJCF: images that MuJoCo makes itself, those of files, and cubes of six.
+// Textures of MJCF: built-in images, image files, and cubes of six faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Rgb bytes_of(const glm::dvec3& color) {
   return out;
 }
 
-/// rgb2 at -1, rgb1 at 1, steepest at 0.
+/// Returns rgb2 at -1, rgb1 at 1; the slope is greatest at 0.
 Rgb between(const Recipe& recipe, double at) {
   const double share = std::clamp(0.5 * (1 + at / std::sqrt(1 + at * at) * std::numbers::sqrt2), 0.0, 1.0);
   return bytes_of(share * recipe.rgb1 + (1 - share) * recipe.rgb2);
@@ -73,7 +73,7 @@ Pixels blank(int width, int height) {
   return out;
 }
 
-/// `color(row, column)` at every texel.
+/// Sets every texel to `color(row, column)`.
 template <class Color>
 Pixels painted(int width, int height, Color&& color) {
   Pixels out = blank(width, height);
@@ -107,7 +107,7 @@ Pixels made(const Recipe& recipe, int width, int height) {
   return painted(width, height, [&](int, int) { return bytes_of(recipe.rgb1); });
 }
 
-/// MuJoCo's boards go on over the edges of a cube, and its flat ones have the second colour below.
+/// MuJoCo's checkers continue across the edges of a cube, and its flat cubes have the second colour on the bottom face.
 Recipe of_face(Recipe recipe, std::size_t face) {
   constexpr std::size_t down = 3, front = 4;
   if ((recipe.builtin == checker && face >= front) || (recipe.builtin == flat && face == down))
@@ -140,16 +140,16 @@ Pixels read(const Element& of, const ImageReader& images, const std::string& nam
   });
 }
 
-/// The direction at `theta` from z and `phi` around it from x.
+/// Returns the direction at `theta` from z and `phi` around it from x.
 glm::dvec3 direction(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// By OpenGL's cube maps: x to the right, y up, z to the front.
+/// Looks up a cube map by OpenGL's convention: x is right, y up, z front.
 Rgb seen(const Cube& cube, const glm::dvec3& d) {
   const glm::dvec3 a = glm::abs(d);
   std::size_t face = 0;
-  double s = 0, t = 0, most = 0;  // to the right and down
+  double s = 0, t = 0, most = 0;  // s runs right, t down
   if (a.x >= a.y && a.x >= a.z) {
     face = d.x > 0 ? 0 : 1;
     s = d.x > 0 ? -d.z : d.z;
@@ -182,7 +182,7 @@ Pixels flat_texture(const Element& of, const ImageReader& images) {
   Pixels out;
   if (recipe.builtin == gradient)
     out = painted(width, height, [&](int row, int column) {
-      // From the middle outwards, 1 to -1 and beyond.
+      // Coordinates run from the centre outwards, 1 to -1 and beyond.
       const double x = 2.0 * column / std::max(1, width - 1) - 1, y = 1 - 2.0 * row / std::max(1, height - 1);
       return between(recipe, 1 - 2 * std::hypot(x, y));
     });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// URDF: links, joints as a tree of them, visual and collision geometry (wiki.ros.org/urdf/XML). rpy turns about the fixed x, then
-// y, then z.
+// URDF: links, the tree of their joints, visual and collision geometry (wiki.ros.org/urdf/XML). rpy rotates about the fixed x,
+// then y, then z.
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
@@ -87,7 +87,7 @@ class UrdfReader {
     out = glm::rotate(out, rpy.y, {0.0, 1.0, 0.0});
     return glm::rotate(out, rpy.x, {1.0, 0.0, 0.0});
   }
-  /// What the pose says of a joint, or of the one that it follows; 0 where that says nothing. `followers`: joints that follow it.
+  /// Returns a joint's position in the pose, or that of the joint it mimics; 0 by default. `followers`: joints that mimic it.
   double joint_value(pugi::xml_node joint, std::size_t followers = 0) const {
     const auto own = pose_.joints.find(joint.attribute("name").value());
     if (own != pose_.joints.end()) return own->second[0];
@@ -137,7 +137,7 @@ class UrdfReader {
       const std::string_view kind = geometry.name();
       if (kind == "sphere") {
         geom.kind = GeomKind::sphere;
-        // A point's place: nothing is seen of it.
+        // A sphere of radius 0 marks a point and is not drawn.
         if (numbers(geometry, "radius", 1)[0] == 0) {
           Diagnostics().warning(geom.where, "a sphere of radius 0 is left out");
           continue;
@@ -160,7 +160,7 @@ class UrdfReader {
     }
   }
 
-  /// Of package://NAME/REST: REST beside the file or in a folder above it, or NAME/REST there.
+  /// Resolves package://NAME/REST: REST or NAME/REST beside the file or in a folder above it.
   std::filesystem::path mesh_path(pugi::xml_node node) const {
     std::string name = node.attribute("filename").value();
     if (name.empty()) fail(node, "a mesh without filename");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Capsules in lists: what a .capsules file holds, within the statement.
+// Reads capsules from lists in a statement: the content of a .capsules file.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// One float from 0 up a capsule; none where the parameter is not there or wrong (reported).
+/// Reads one float from 0 up per capsule; none where the parameter is missing or wrong (reported).
 std::vector<float> radii(Parameters& parameters, const char* name, std::size_t count) {
   std::vector<float> out;
   const Parameter* given = parameters.values(name, {"float"});
@@ -30,7 +30,7 @@ std::vector<float> radii(Parameters& parameters, const char* name, std::size_t c
   return out;
 }
 
-/// The materials that "materialindices" tells by their places in "capsulematerials".
+/// Reads the materials that "materialindices" selects from "capsulematerials".
 void read_materials(Parameters& parameters, const MaterialIndex& material_index, CapsulesShape& capsules) {
   const Parameter* names = parameters.values("capsulematerials", {"string"});
   const Parameter* indices = parameters.values("materialindices", {"integer"});

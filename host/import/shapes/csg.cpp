@@ -19,7 +19,7 @@ CsgShape::Operation operation_of(Parameters& parameters) {
   return CsgShape::Operation::set_union;
 }
 
-/// Why a shape cannot be an operand; empty: it can.
+/// Returns why a shape cannot be an operand; empty: it can.
 std::string objection(const Shape& shape) {
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   if (capsules && capsules->p0.size() > 1)
@@ -31,7 +31,7 @@ std::string objection(const Shape& shape) {
   return {};
 }
 
-/// The operand with a material for each of its surfaces.
+/// Returns the operand with a material for each of its surfaces.
 std::shared_ptr<const Shape> operand_of(const Shape& shape) {
   auto operand = std::make_shared<Shape>(shape);
   if (auto* capsules = std::get_if<CapsulesShape>(&operand->geometry); capsules && !capsules->materials.empty()) {
@@ -50,7 +50,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
   const Parameter* operands = parameters.values("operands", {"string"});
   if (!operands) return {};
   bool good = true;
-  std::set<std::string> said;  // messages already reported: an object may be named twice
+  std::set<std::string> said;  // messages already reported, because an object may be named twice
   const auto wrong = [&](const std::string& message) {
     if (said.insert(message).second) parameters.error("operands", message);
     good = false;
@@ -64,7 +64,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
       continue;
     }
     if (object->shapes.empty() && parameters.diagnostics().has_errors()) {
-      good = false;  // it may be empty since its shape was refused
+      good = false;  // its only shape may have been refused
       continue;
     }
     if (object->shapes.size() != 1) {
@@ -76,7 +76,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
     const auto* nested = std::get_if<CsgShape>(&shape.geometry);
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
     if ((nested && nested->operands.empty()) || (capsules && capsules->p0.empty())) {
-      good = false;  // reported where it was made
+      good = false;  // reported where the object was made
       continue;
     }
     if (const std::string why = objection(shape); !why.empty()) {

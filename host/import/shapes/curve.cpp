@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// pbrt-v4's curves as chains of tapered capsules.
+// Converts pbrt-v4's curves to chains of tapered capsules.
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
@@ -18,12 +18,12 @@ namespace {
 using glm::dvec3;
 using Cubic = std::array<dvec3, 4>;  // Bezier control points
 
-/// The same curve as one of degree 3.
+/// Raises a quadratic curve to degree 3.
 Cubic elevate(const dvec3& p0, const dvec3& p1, const dvec3& p2) {
   return {p0, (p0 + 2.0 * p1) / 3.0, (2.0 * p1 + p2) / 3.0, p2};
 }
 
-/// Segment `at` of a uniform B-spline as a Bezier curve (knot insertion at both ends of the segment).
+/// Converts segment `at` of a uniform B-spline to Bezier form (knot insertion at both ends of the segment).
 Cubic of_b_spline(const std::vector<glm::vec3>& points, std::size_t at, std::size_t degree) {
   const auto p = [&](std::size_t i) { return dvec3(points[at + i]); };
   if (degree == 2) return elevate((p(0) + p(1)) / 2.0, p(1), (p(1) + p(2)) / 2.0);
@@ -36,14 +36,14 @@ Cubic of_bezier(const std::vector<glm::vec3>& points, std::size_t at, std::size_
   return degree == 2 ? elevate(p(0), p(1), p(2)) : Cubic{p(0), p(1), p(2), p(3)};
 }
 
-/// With radii that change evenly along it.
+/// Adds radii that change linearly along the curve.
 CubicTube tube_of(const Cubic& c, double radius0, double radius1) {
   const double step = (radius1 - radius0) / 3;
   return {glm::dvec4(c[0], radius0), glm::dvec4(c[1], radius0 + step), glm::dvec4(c[2], radius1 - step),
           glm::dvec4(c[3], radius1)};
 }
 
-/// The number of segments that P makes; 0 when its count is wrong (reported).
+/// Returns the number of segments of P; 0 when its count is wrong (reported).
 std::size_t segments_of(Parameters& parameters, std::size_t points, std::size_t degree, bool bezier) {
   if (points == 0) return 0;
   const std::string wrong = "has " + std::to_string(points) + " points; a " + (bezier ? "Bezier curve" : "B-spline") +
@@ -59,7 +59,7 @@ std::size_t segments_of(Parameters& parameters, std::size_t points, std::size_t 
   return bezier ? (points - 1) / degree : points - degree;
 }
 
-/// One of two names; the first is the default.
+/// Reads one of two names; the first is the default.
 bool is_second(Parameters& parameters, const char* name, const char* first, const char* second) {
   const std::string given = parameters.text(name, first);
   if (given != first && given != second)

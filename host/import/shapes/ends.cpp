@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Capsules, cylinders and cones.
+// Readers of capsules, cylinders and cones.
 #include <algorithm>
 #include <limits>
 
@@ -11,7 +11,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// "float radius" of one or two values, from 0 up and not all 0; empty when wrong or missing (reported).
+/// Reads "float radius" of one or two values, from 0 up and not all 0; empty when wrong or missing (reported).
 std::vector<double> end_radii(Parameters& parameters) {
   if (!parameters.has("radius")) parameters.error("\"float radius\" is missing");
   const Parameter* radius = parameters.values("radius", {"float"});
@@ -47,7 +47,7 @@ std::array<Cap, 2> caps_of(Parameters& parameters) {
   return {first, names.size() > 1 && names[1] != names[0] ? cap_of(parameters, names[1]) : first};
 }
 
-/// p0 and p1 of a cylinder or cone.
+/// Reads p0 and p1 of a cylinder or cone.
 template <class Solid>
 void read_ends(Parameters& parameters, Solid& solid) {
   const glm::dvec3 p0 = required_point(parameters, "p0"), p1 = required_point(parameters, "p1");

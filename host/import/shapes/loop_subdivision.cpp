@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Subdivision surfaces by Loop's rules (Loop 1987; borders and limits by Hoppe et al. 1994), as pbrt-v4 has them: refined
-// `levels` times, then the vertices moved to the limit.
+// Subdivision surfaces by Loop's rules (Loop 1987; borders and limits by Hoppe et al. 1994), as in pbrt-v4: refined `levels`
+// times, then vertices are moved to the limit.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -22,13 +22,13 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 struct Edge {
   std::array<std::uint32_t, 2> ends{}, opposite{};
   int faces = 0;
-  std::uint32_t first_from = 0;  // the end that the first face goes from
+  std::uint32_t first_from = 0;  // where the first face's edge starts
 };
 
-/// What is around each vertex of a mesh.
+/// The neighbourhood of each vertex of a mesh.
 struct Around {
   explicit Around(std::size_t vertices) : ring(vertices), border(vertices), valence(vertices), borders(vertices) {}
-  std::vector<glm::dvec3> ring, border;  // sums over its neighbours, and over those along a border
+  std::vector<glm::dvec3> ring, border;  // sums of its neighbours, and of those along a border
   std::vector<int> valence, borders;
 };
 
@@ -39,7 +39,7 @@ struct Edges {
   std::unordered_map<std::uint64_t, std::uint32_t> number;
 };
 
-/// The edges of the faces; says in `problem` where they make no surface.
+/// Collects the edges of the faces; `problem` receives the reason if they are no surface.
 Edges edges_of(const Triangles& faces, std::string& problem) {
   Edges edges;
   for (const auto& face : faces)
@@ -75,7 +75,7 @@ Around around(const std::vector<glm::dvec3>& points, const Edges& edges) {
 
 double even_weight(int valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
 
-/// Vertices by the weights of their neighbours: of the rule, or of the limit.
+/// Moves vertices by weights of their neighbours: of the subdivision rule, or of the limit.
 template <class Weight>
 std::vector<glm::dvec3> smoothed(const std::vector<glm::dvec3>& points, const Around& of, double border_weight, Weight weight) {
   std::vector<glm::dvec3> out = points;
@@ -111,7 +111,7 @@ void refine(std::vector<glm::dvec3>& points, Triangles& faces, const Edges& edge
   faces = std::move(finer);
 }
 
-/// The neighbours of each vertex in order, counter-clockwise; of a vertex at a border from one border to the other.
+/// Returns the neighbours of each vertex in counter-clockwise order; at a border they run from one border edge to the other.
 std::vector<std::vector<std::uint32_t>> rings(const Triangles& faces, std::size_t vertices) {
   std::vector<std::vector<std::array<std::uint32_t, 2>>> steps(vertices);
   for (const auto& face : faces)
@@ -136,7 +136,7 @@ std::vector<std::vector<std::uint32_t>> rings(const Triangles& faces, std::size_
   return out;
 }
 
-/// Normal of the limit, counter-clockwise faces seen from its side. The ring is in order.
+/// Returns the limit normal, on the side from which faces are counter-clockwise. The ring is in order.
 glm::dvec3 limit_normal(const glm::dvec3& at, const std::vector<glm::dvec3>& ring, bool is_border) {
   const std::size_t n = ring.size();
   glm::dvec3 s(0), t(0);
@@ -200,7 +200,7 @@ TriangleMeshShape make_loop_subdivision(Parameters& parameters) {
     const glm::dvec3 normal = ring.size() < 2 ? glm::dvec3(0, 0, 1) : limit_normal(points[i], ring, last.borders[i] > 0);
     const double length = glm::length(normal);
     mesh.positions.emplace_back(points[i]);
-    // pbrt-v4's go round the vertex the other way: a mesh of counter-clockwise faces has its outside within.
+    // pbrt-v4 walks round the vertex the other way: the normals of counter-clockwise meshes point inward.
     mesh.normals.emplace_back(length > 0 ? -normal / length : glm::dvec3(0, 0, 1));
   }
   for (const auto& face : faces) mesh.triangles.push_back({face[0], face[2], face[1]});

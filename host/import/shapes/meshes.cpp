@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Triangle meshes and bilinear meshes.
+// Readers of triangle meshes and bilinear meshes.
 #include "base/log.h"
 #include "import/detail/pbrt_geometry.h"
 
@@ -9,7 +9,7 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// "P", "N" and the uvs under any of their names, one entry a vertex.
+/// Reads "P", "N" and the uvs under any of their names, one entry per vertex.
 template <class Mesh>
 void read_vertices(Parameters& parameters, Mesh& mesh, std::initializer_list<const char*> uv_names) {
   if (!parameters.has("P")) parameters.error("\"point3 P\" is missing");
@@ -29,7 +29,7 @@ void read_vertices(Parameters& parameters, Mesh& mesh, std::initializer_list<con
     }
 }
 
-/// "indices" in groups of K; a mesh of K vertices needs none: its only face has them in order.
+/// Reads "indices" in groups of K. A mesh of K vertices needs none: it has one face with the vertices in order.
 template <std::size_t K>
 std::vector<std::array<std::uint32_t, K>> read_indices(Parameters& parameters, std::size_t count) {
   std::vector<std::array<std::uint32_t, K>> faces;
@@ -89,7 +89,7 @@ BilinearMeshShape make_bilinear_mesh(Parameters& parameters) {
   BilinearMeshShape mesh;
   read_vertices(parameters, mesh, {"uv"});
   parameters.values("faceIndices", {"integer"});
-  parameters.ignore("emissionfilename");  // where light samples go: the light's own image decides what it emits
+  parameters.ignore("emissionfilename");  // affects only sampling; emission comes from the light's own image
   mesh.patches = read_indices<4>(parameters, mesh.positions.size());
   return mesh;
 }

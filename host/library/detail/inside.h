@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What stands behind the public classes. In these files caplet::Scene is the model and v0::Scene the public class of that name,
-// and so for the others.
+// The implementation behind the public classes. In these files caplet::Scene is the model and v0::Scene the public class, and
+// likewise for the others.
 #pragma once
 
 #include <cstdint>
@@ -26,27 +26,27 @@
 
 namespace caplet::v0 {
 
-/// A number that no other state of a scene has.
+/// Returns a number that identifies a state of a scene, different from all others.
 std::uint64_t next_serial();
 
 struct Scene::Data {
   caplet::Scene model;
-  /// A scene as it came, and its edits since: a copy has those of the scene that it is a copy of up to then, and its own.
+  /// One of the edits since the scene was read. A copy has those of its original up to the copy, and then its own.
   struct Logged {
     std::uint64_t serial;
     SceneEdit edit;
   };
   std::uint64_t origin = next_serial();
   std::vector<Logged> edits;
-  // A scene that is built has these: whether no one has given it a camera, or a light; whether
-  // present() has given it its light; and the state (`origin`) that present() has processed.
+  // These belong to a scene that is built: whether it still lacks a camera or a light; whether present() has added its light; and
+  // the state (`origin`) that present() has processed.
   bool open_camera = false, open_light = false, studio_light = false;
   std::optional<std::uint64_t> presented = {};
 
   void edit(const SceneEdit& edit);
-  /// What has changed is more than edits say: sessions take the scene anew.
+  /// Marks a change that edits cannot express: sessions then take the whole scene again.
   void as_a_whole();
-  /// The same, of what neither camera nor light follow.
+  /// Does the same for a change that leaves the automatic camera and light alone.
   void as_a_whole_in_view();
 };
 
@@ -57,10 +57,10 @@ struct Device::Data {
 
 struct Film::Data {
   caplet::Film film;
-  std::shared_ptr<const post::Sight> sight;  // what it is a film of
+  std::shared_ptr<const post::Sight> sight;  // of the scene in the film
   std::map<std::string, std::string> notes;  // for its pictures
   double render_seconds = 0;
-  mutable std::once_flag once = {};  // when it is developed
+  mutable std::once_flag once = {};  // guards the development of `image`
   mutable LayeredImage image = {};
 };
 
@@ -76,7 +76,7 @@ struct Inside {
   static Device device(caplet::Device device, DeviceInfo info) {
     return Device(std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
   }
-  /// Throws RunError in a forked process (check_process): before a scene is lowered for it, which takes time.
+  /// Throws RunError in a forked process (check_process), before the slow lowering of a scene for it.
   static const caplet::Device& device(const Device& device) {
     begin_opencl();
     return device.data_->device;
@@ -91,7 +91,7 @@ struct Inside {
 
 DeviceInfo to_public(const caplet::DeviceInfo& info);
 
-/// Throws InputError when the number is not within the range.
+/// Throws InputError when the number is outside the range.
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most);
 
 }  // namespace caplet::v0

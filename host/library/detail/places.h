@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Transforms and numbers of shapes of the public classes -> the model's.
+// Converts transforms and shape numbers of the public classes to the model's.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace caplet::v0 {
 glm::dmat4 to_model(const Transform& rows);
 Transform to_public(const glm::dmat4& m);
 
-/// Shapes of the world are numbered first, then those of each object. Throws InputError when there is none of that number.
+/// Shapes of the world are numbered first, then those of each object. Throws InputError for a number without a shape.
 ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape);
 
 }  // namespace caplet::v0

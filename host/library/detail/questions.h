@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Questions to a scene on a device, answered as the public classes do.
+// Ray queries to a scene on a device, with the results that the public classes return.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace caplet::v0 {
 
 struct Questions {
   Query& query;
-  const caplet::Scene& scene;  // that the query asks
+  const caplet::Scene& scene;  // of the query
   std::uint64_t shapes;        // FlatScene::shapes
   const caplet::Device& device;
 
@@ -29,7 +29,7 @@ struct Questions {
   std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most) const;
 
  private:
-  /// take(number of the ray, crossing) for each, in order.
+  /// Calls take(number of the ray, crossing) for each crossing, in order.
   template <class Take>
   void for_lists(std::span<const Ray> rays, std::size_t most, Take&& take) const;
 };

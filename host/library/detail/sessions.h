@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Between the sessions of host/render and the public classes.
+// Connects the sessions of host/render with the public classes.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,18 @@
 
 namespace caplet::v0 {
 
-/// What a session has done since its film was empty.
+/// The work of a session since its film was empty.
 struct SessionRuns {
   double seconds = 0;
   bool interrupted = false;
 
   /// Adds the next samples and returns how many were finished.
   std::uint32_t render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options);
-  /// What there is of `scene` now.
+  /// Returns the present film of `scene`.
   Film film(caplet::Session& session, const caplet::Scene& scene);
 
  private:
-  std::shared_ptr<const post::Sight> sight_;  // of the scene, once a film was asked for
+  std::shared_ptr<const post::Sight> sight_;  // of the scene, after the first film
 };
 
 }  // namespace caplet::v0

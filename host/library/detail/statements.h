@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parameters of the public classes -> those of statements.
+// Converts parameters of the public classes to those of statements.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace caplet::v0 {
 
-/// Puts the values of `parameter` into `out`: of lists those from `first` on, `count` of them; all where `count` is 0. Throws
-/// InputError for an image, and for numbers that are not finite; `owner` is what the message names.
+/// Puts the values of `parameter` into `out`: of a list, `count` values from `first` on, or all where `count` is 0. Throws
+/// InputError for an image, and for numbers that are not finite; the message names `owner`.
 void put_values(const std::string& owner, const Parameter& parameter, StatementParameter& out, std::size_t first = 0,
                 std::size_t count = 0);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Lines, boxes and text on a displayed picture, with smooth edges. Pixel (0, 0) is the square from (0, 0) to (1, 1), y down.
+// Draws smooth-edged lines, boxes and text on a displayed picture. Pixel (0, 0) is the square from (0, 0) to (1, 1), y down.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace caplet::post {
 
-/// What share of each pixel is covered.
+/// The covered share of each pixel.
 class Mask {
  public:
   Mask(int width, int height)
@@ -27,9 +27,9 @@ class Mask {
   }
   const std::vector<float>& shares() const { return share_; }
 
-  /// A line of that width with round ends.
+  /// Draws a line of that width with round ends.
   void line(const glm::dvec2& from, const glm::dvec2& to, double width);
-  /// Exactly the pixels' shares.
+  /// Covers exactly each pixel's share of the box.
   void box(const glm::dvec2& low, const glm::dvec2& high);
 
  private:
@@ -37,10 +37,10 @@ class Mask {
   std::vector<float> share_;
 };
 
-/// Paints what the mask covers in a colour, sRGB from 0 to 1, mixed as sRGB.
+/// Paints the mask in a colour, sRGB from 0 to 1, blended in sRGB.
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb);
 
-/// Letters are strokes. `size`: the height of capitals; the baseline begins at `at`. What there is no letter of is a box.
+/// Letters are strokes. `size`: the height of capitals; `at` is the start of the baseline. Unknown characters become boxes.
 double text_width(std::string_view utf8, double size);
 void text(Mask& mask, const glm::dvec2& at, std::string_view utf8, double size);
 

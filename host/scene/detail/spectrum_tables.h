@@ -28,7 +28,7 @@ struct NamedTable {
 
 const std::vector<IlluminantTable>& illuminant_tables();
 const std::vector<MetalTable>& metal_tables();
-/// pbrt-v4's own (spectrum_tables_pbrt.cpp).
+/// These are pbrt-v4's own tables (spectrum_tables_pbrt.cpp).
 const std::vector<NamedTable>& pbrt_tables();
 
 }  // namespace caplet

@@ -17,26 +17,26 @@
 
 namespace caplet {
 
-/// What a luminaire sends where (ANSI/IES LM-63, type C). Angles in radians, ascending; linear between them; beyond the polar
-/// angles nothing.
+/// The intensity distribution of a luminaire (ANSI/IES LM-63, type C). Angles are in radians and ascend; intensity is linear
+/// between them and zero beyond the polar angles.
 struct IesProfile {
-  std::vector<double> polar;     // from the light's -z on; at least 2
-  std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or one alone for all
-  std::vector<double> candela;   // for each azimuth those of all polar angles
-  std::string file = {};         // that it was read from
+  std::vector<double> polar;     // measured from the light's -z; at least 2
+  std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or a single one for all
+  std::vector<double> candela;   // the values at all polar angles, one azimuth after the other
+  std::string file = {};         // the file that it was read from
 
-  /// Lumens: the integral of the intensity over all directions.
+  /// Returns the lumens: the integral of the intensity over all directions.
   double flux() const {
     double sum = 0;
     for (std::size_t j = 0; j < azimuths.size(); ++j) {
-      // By the trapezoidal rule around, which is exact for what is linear.
+      // The trapezoidal rule over the azimuth is exact for linear intensity.
       const double before = j > 0 ? azimuths[j] - azimuths[j - 1] : 0;
       const double behind = j + 1 < azimuths.size() ? azimuths[j + 1] - azimuths[j] : 0;
       const double around = azimuths.size() == 1 ? 2 * std::numbers::pi : (before + behind) / 2;
       for (std::size_t i = 0; i + 1 < polar.size(); ++i) {
         const double a = polar[i], b = polar[i + 1], low = candela[j * polar.size() + i],
                      high = candela[j * polar.size() + i + 1];
-        // The integral of (low + slope (t - a)) sin t, by parts.
+        // Integrates (low + slope (t - a)) sin t by parts.
         const double slope = (high - low) / (b - a);
         sum += around * (low * std::cos(a) - high * std::cos(b) + slope * (std::sin(b) - std::sin(a)));
       }
@@ -46,7 +46,7 @@ struct IesProfile {
 };
 
 struct IesLight {
-  Spectrum intensity = ConstantSpectrum{1};  // for each candela
+  Spectrum intensity = ConstantSpectrum{1};  // multiplied by each candela value
   std::shared_ptr<const IesProfile> profile;
   glm::dvec3 position{0};          // world
   glm::dmat3 world_from_light{1};  // rotation, possibly mirroring

@@ -15,16 +15,16 @@
 
 namespace caplet {
 
-/// The corners of a rectangle in the world, in order around it. Light goes through it the way of (p3 - p0) x (p1 - p0), reversed:
-/// it is seen along that direction.
+/// The corners of a rectangle in the world, in order around it. It is seen along the direction (p3 - p0) x (p1 - p0), and light
+/// passes through it the opposite way.
 using LightPortal = std::array<glm::dvec3, 4>;
 
-/// An infinite light.
+/// A light at infinity.
 struct InfiniteLight {
-  Spectrum radiance = ConstantSpectrum{1};  // without an image
+  Spectrum radiance = ConstantSpectrum{1};  // used without an image
   std::shared_ptr<const EnvironmentImage> image;
   glm::dmat3 world_from_light{1};       // rotation, possibly mirroring
-  std::optional<LightPortal> portal{};  // through which alone it is seen
+  std::optional<LightPortal> portal{};  // the light is seen only through it
 
   static constexpr Field radiance_field = {"L", "radiance, the same in all directions", 0};
   static constexpr Field image_field = {"filename", "image over all directions: square equal-area, or 2:1 latitude-longitude"};

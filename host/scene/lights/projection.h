@@ -28,7 +28,7 @@ struct ProjectionLight {
     visit.image({"filename", "the picture that is projected"}, self.image);
     visit.number({"fov", "field of view of the picture's shorter side", 0.001, 179.999, "degrees"}, self.fov);
   }
-  /// Cubed cosine of the place at distance 1 (Pharr, Jakob and Humphreys 2023, section 12.2.2).
+  /// Returns the cubed cosine of the point at distance 1 (Pharr, Jakob and Humphreys 2023, section 12.2.2).
   double solid_angle(double u, double v) const {
     const double x = (2 * u - 1) * half_width(), y = (2 * v - 1) * half_height();
     return 4 * half_width() * half_height() / std::pow(1 + x * x + y * y, 1.5);
@@ -47,7 +47,7 @@ struct ProjectionLight {
     put("picture", LightPicture{image, false});
   }
 
-  // Of the image where it is at distance 1 from the light.
+  // These are half sizes of the image at distance 1 from the light.
   double half_width() const { return opposite() * std::max(1.0, aspect()); }
   double half_height() const { return opposite() * std::max(1.0, 1 / aspect()); }
 

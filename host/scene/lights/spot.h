@@ -31,7 +31,7 @@ struct SpotLight {
     visit.direction({"from", "position"}, {"to", "a point on the axis"}, self.direction);
     visit.cone(self.total_angle, self.falloff_start_angle);
   }
-  /// The solid angle of the cone. The mean of the smooth edge is a half.
+  /// Returns the solid angle of the cone; the smooth edge counts half, which is its mean.
   double per_unit() const {
     const double total = cos_total(), start = cos_falloff_start();
     return 2 * std::numbers::pi * ((1 - start) + (start - total) / 2);

@@ -9,13 +9,13 @@
 
 namespace caplet {
 
-/// What lies between a coat's interface and the base, and how the walk through it is made.
+/// The layer between a coat's interface and the base, and the random walk through it.
 struct CoatLayer {
   double thickness = 0.01;                // in mean free paths: extinction is 1 per unit
   Spectrum albedo = ConstantSpectrum{0};  // of single scattering; 0: the layer absorbs and does not scatter
   double g = 0;                           // Henyey and Greenstein's asymmetry, -1 < g < 1
-  int max_depth = 10;                     // most events of a walk
-  int samples = 1;                        // walks whose mean is a value
+  int max_depth = 10;                     // the most scattering events of a walk
+  int samples = 1;                        // the number of walks that are averaged
 
   static constexpr double most_asymmetry = 0.999999;
   static constexpr int most_walks = 10000;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Fields that several materials have alike.
+// Groups of fields that several materials share.
 #pragma once
 
 #include "scene/field.h"
@@ -30,9 +30,15 @@ inline constexpr MetalFields coated_metal = {{"conductor.eta", "real part of the
                                              {"conductor.k", "imaginary part of the metal's index of refraction", 0},
                                              metal_reflectance};
 
+<<<<<<< HEAD
 /// What a metal is of which nothing is said.
 Spectrum copper_eta() noexcept;
 Spectrum copper_k() noexcept;
+=======
+/// Copper is the default metal.
+inline Spectrum copper_eta() { return *named_spectrum("metal-Cu-eta"); }
+inline Spectrum copper_k() { return *named_spectrum("metal-Cu-k"); }
+>>>>>>> words2
 
 inline constexpr Field multiscatter_field = {"multiscatter", "restore the energy that one scattering at facets loses"};
 

@@ -7,7 +7,7 @@
 
 namespace caplet {
 
-/// Roughness and multiscatter as of ConductorMaterial.
+/// Roughness and multiscatter have the meaning that they have in ConductorMaterial.
 struct DielectricMaterial {
   Spectrum eta = ConstantSpectrum{1.5};
   double alpha_u = 0, alpha_v = 0;

@@ -9,7 +9,7 @@
 
 namespace caplet {
 
-/// Lambert's law on both sides of a sheet; reflectance and transmittance are scale times these, at most 1 each.
+/// Lambertian on both sides of a sheet. Reflectance and transmittance are multiplied by scale and at most 1 each.
 struct DiffuseTransmissionMaterial {
   Spectrum reflectance = ConstantSpectrum{0.25}, transmittance = ConstantSpectrum{0.25};
   double scale = 1;

@@ -9,8 +9,8 @@
 
 namespace caplet {
 
-/// A fibre, whose axis is along dp/dv (docs/materials.md). sigma_a: absorption per radius; reflectance: the colour that many
-/// fibres are to have together, which replaces it. beta_m, beta_n: roughness along and around; alpha: tilt of the scales in
+/// A fibre whose axis is along dp/dv (docs/materials.md). sigma_a: absorption per radius. reflectance: the colour of many
+/// fibres together, which replaces sigma_a. beta_m, beta_n: roughness along and around the fibre. alpha: tilt of the scales in
 /// degrees.
 struct HairMaterial {
   Spectrum sigma_a = melanin(eumelanin, 0);
@@ -20,7 +20,7 @@ struct HairMaterial {
   double alpha = 2;
 
   static constexpr double eumelanin = 1.3;  // of brown hair
-  /// Absorption per radius by the concentrations of the pigments (Chiang et al. 2016; d'Eon et al. 2011), by sRGB components.
+  /// Returns absorption per radius from pigment concentrations (Chiang et al. 2016; d'Eon et al. 2011), as sRGB components.
   static Spectrum melanin(double eumelanin, double pheomelanin) {
     return RgbSpectrum{eumelanin * glm::dvec3(0.419, 0.697, 1.37) + pheomelanin * glm::dvec3(0.187, 0.4, 1.05), ColorSpace::srgb};
   }

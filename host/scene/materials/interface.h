@@ -4,7 +4,7 @@
 
 namespace caplet {
 
-/// Light goes on as if there were no surface: it bounds media alone.
+/// Light passes unchanged: the surface only separates media.
 struct InterfaceMaterial {
   template <class Self, class Visit>
   static void fields(Self&, Visit&&) {}

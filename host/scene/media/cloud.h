@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// A cloud of noise, thinner along +y of its space: coefficients are those of density 1.
+/// A procedural cloud that thins along +y of its space. The coefficients apply at density 1.
 struct CloudMedium {
   ScatteringProperties scattering;
   MediumBounds bounds;

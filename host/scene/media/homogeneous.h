@@ -10,10 +10,10 @@
 
 namespace caplet {
 
-/// The same everywhere.
+/// A medium with constant properties.
 struct HomogeneousMedium {
   ScatteringProperties scattering;
-  std::optional<Spectrum> radiance;  // that it emits per absorption
+  std::optional<Spectrum> radiance;  // emitted radiance per absorption
   double radiance_scale = 1;
 
   template <class Self, class Visit>
@@ -21,7 +21,7 @@ struct HomogeneousMedium {
     visit.scattering(self.scattering, milk);
     visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance, self.radiance_scale);
   }
-  /// What has no parameters: a glass of milk in millimetres, as pbrt-v4 has it.
+  /// The default, as in pbrt-v4, is whole milk in millimetres.
   static ScatteringProperties milk() { return *named_scattering("Wholemilk"); }
 };
 

@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// One stuff of densities that are 0 in most places. Where there are temperatures it glows as UniformGridMedium does.
+/// A medium with a sparse density grid. Where a temperature grid exists, it emits as UniformGridMedium does.
 struct NanovdbMedium {
   ScatteringProperties scattering;
   SparseGridPointer density, temperature;

@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// Coefficients of any colour in each cell; of those that are not given, 1. `scale` is of both, `radiance_scale` of what it emits
-/// per absorption.
+/// A medium with coloured coefficients in each cell; coefficients that are not given are 1. `scale` multiplies both coefficients,
+/// `radiance_scale` the emission per absorption.
 struct RgbGridMedium {
   double scale = 1, g = 0;
   MediumBounds bounds;

@@ -12,8 +12,8 @@
 
 namespace caplet {
 
-/// One stuff of different densities: coefficients are those of density 1. It emits `radiance` per absorption, or as a black body
-/// of temperaturescale (temperature - temperatureoffset) kelvin, times `radiance_scale`.
+/// A medium with a density per cell; the coefficients apply at density 1. It emits `radiance` per absorption, or a black body's
+/// at temperaturescale (temperature - temperatureoffset) kelvin, times `radiance_scale`.
 struct UniformGridMedium {
   ScatteringProperties scattering;
   MediumBounds bounds;

@@ -6,7 +6,7 @@
 
 namespace caplet {
 
-/// Between two opposite corners, along the axes. Surfaces: 0 and 1 at the least and greatest x, 2 and 3 y, 4 and 5 z.
+/// An axis-aligned box between two corners. Surfaces: 0 and 1 at the least and greatest x, 2 and 3 y, 4 and 5 z.
 struct BoxShape {
   glm::dvec3 p0{0}, p1{1};
 };
@@ -42,7 +42,7 @@ inline glm::dvec3 normal_on(const BoxShape&, int surface, const glm::dvec3&) {
   return out;
 }
 
-/// v along z (on the z faces along y), u to the right of it as seen from outside; each from 0 to 1.
+/// v runs along z (on the z faces along y), u to the right of it as seen from outside; each runs from 0 to 1.
 inline glm::dvec2 uv_on(const BoxShape& box, int surface, const glm::dvec3& p) {
   const glm::dvec3 low = glm::min(box.p0, box.p1), size = glm::max(box.p0, box.p1) - low, w = p - low;
   const auto share = [](double x, double whole) { return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0; };
@@ -55,7 +55,7 @@ inline glm::dvec2 uv_on(const BoxShape& box, int surface, const glm::dvec3& p) {
   return {right[along] > 0 ? part : 1 - part, share(w[up], size[up])};
 }
 
-/// Its planes stay along the axes.
+/// The planes stay parallel to the axes.
 inline double tilt_of(const BoxShape&, double) { return 0; }
 
 inline BoxShape drawn(std::type_identity<BoxShape>, Draws& draws) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Branch and bound: boxes are told to be outside, inside or neither by functions of each solid that grow no faster than distance.
+// Branch and bound: functions of each solid that grow no faster than distance classify boxes as outside, inside or unknown.
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ struct Solid {
   bool subtracted;
 };
 
-/// A box, and the solids (bits) that it is known to be inside or outside of.
+/// A box, and the solids (as bits) that it is known to be inside or outside of.
 struct Box {
   dvec3 min, max;
   std::uint32_t inside = 0, outside = 0;
@@ -37,8 +37,8 @@ class Search {
  public:
   Search(const CsgShape& csg, const glm::dmat4& world_from_csg) : csg_(csg) { add(csg, world_from_csg, false); }
 
-  /// An upper bound of how far the solid reaches along `axis`, up or down by `sign`, found in parts of `share` of the box;
-  /// -infinity when it is empty.
+  /// Returns an upper bound of the solid's extent along `axis` in the direction of `sign`, searched in parts of `share` of the
+  /// box; -infinity when the solid is empty.
   double reach(const Box& whole, int axis, double sign, double share) const {
     const auto extreme = [&](const Box& box) { return sign > 0 ? box.max[axis] : -box.min[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return extreme(a) < extreme(b); };
@@ -91,7 +91,7 @@ class Search {
     return side_of(csg_, box, bit);
   }
 
-  /// On which side of the solid the box lies; `bit` stands for its first operand, and then for the one after its last.
+  /// Classifies the box against the solid. `bit` stands for its first operand, and afterwards for the one after its last.
   static Side side_of(const CsgShape& csg, const Box& box, std::uint32_t& bit) {
     using enum CsgShape::Operation;
     Side result = Side::unknown;
@@ -129,7 +129,7 @@ class Search {
     const Beyond at_center = beyond(center);
     if (at_center.least > reach) return Side::outside;
     if (at_center.most > 0) return Side::unknown;
-    // The solid is convex: if it holds the corners, it holds the box. Only solids that are taken away need to be known to hold
+    // A convex solid that contains the corners contains the box. Only subtracted solids need to be known to contain
     // it.
     if (!solid.subtracted) return Side::unknown;
     for (const dvec3& corner : corners)
@@ -141,10 +141,10 @@ class Search {
   std::vector<Solid> solids_;
 };
 
-/// Bounds of a csg solid under `world_from_csg`, from `bounds` that hold it: each side is moved inward to the first part, 1/32 of
-/// the box long in each direction, that is not seen to be outside, and then again with 1/128 of the new box; or until a fixed
-/// effort is spent (2048 parts a side). Where the solid's surfaces meet the side at a slant, a few parts lie between. The solid
-/// is never cut. Empty when no part of the box can hold any of it.
+/// Tightens `bounds`, which contain the csg solid under `world_from_csg`. Each side moves inward to the first part, 1/32 of the
+/// box long in each direction, that is not shown to be outside, and then again with 1/128 of the new box, or until a fixed effort
+/// is spent (2048 parts per side). Where the surfaces meet the side at a slant, a few parts remain between. The bounds never cut
+/// the solid, and are empty when no part of the box can contain any of it.
 Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bounds& bounds) {
   const dvec3 size = bounds.max - bounds.min;
   const double least = std::min({size.x, size.y, size.z});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Csg shapes as far as their operands tell.
+// Properties of csg shapes that follow from their operands.
 #include "scene/shape.h"
 
 namespace caplet {

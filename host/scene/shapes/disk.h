@@ -6,7 +6,7 @@
 
 namespace caplet {
 
-/// Disk of `radius` in the plane z = height, normal +z. Partial as pbrt's: without a hole of `inner_radius`, up to `phi_max`.
+/// A disk of `radius` in the plane z = height, normal +z. As in pbrt it may have a hole of `inner_radius` and end at `phi_max`.
 struct DiskShape {
   double height = 0;
   double radius = 1;
@@ -36,7 +36,7 @@ inline Bounds bounds_under(const DiskShape& disk, const glm::dmat4& m) {
   });
 }
 
-/// Whole, and in part.
+/// Random disks are whole or partial.
 template <>
 inline constexpr int drawn_sorts<DiskShape> = 2;
 inline DiskShape drawn(std::type_identity<DiskShape>, Draws& draws) {

@@ -14,9 +14,9 @@ struct End {
   bool round;
 };
 
-/// For a point at height y along the axis and rho off it, and the hull of two ends at heights 0 and l. The hull is the union over
-/// s of the sums of a disk and a ball whose radii run linearly; the distance from these is convex in s, and at any s it is no
-/// less than the hull's.
+/// Bounds the distance from a hull to a point at height y along the axis and rho off it; the ends are at heights 0 and l. The
+/// hull is the union over s of sums of a disk and a ball whose radii are linear in s. The distance from these is convex in s, and
+/// at any s it is no less than the distance from the hull.
 Beyond beyond_hull(double y, double rho, double l, const End& a, const End& b) {
   const auto at = [&](double s) {
     const double disk = (a.round ? 0 : (1 - s) * a.radius) + (b.round ? 0 : s * b.radius);
@@ -44,14 +44,14 @@ Beyond beyond_ends(const dvec3& p, const dvec3& p0, const dvec3& p1, const End& 
   const double y = glm::dot(p - p0, axis);
   const double rho = glm::length(p - p0 - y * axis);
   if (!a.round && !b.round) {
-    // Two planes and the side, whose slope c keeps it from growing faster than distance.
+    // The solid is bounded by two planes and the side; its slope c keeps the function from growing faster than distance.
     const double taper = (a.radius - b.radius) / l, c = 1 / std::sqrt(1 + taper * taper);
     return Beyond::exactly(std::max({-y, y - l, c * (rho - a.radius + taper * y)}));
   }
   return beyond_hull(y, rho, l, a, b);
 }
 
-/// The hull of the ends: balls, or disks with normal n across the axis, whose image has half extents radius |row - (row.n) n|.
+/// Returns the bounds of balls or of disks with normal n across the axis, whose image has half extents radius |row - (row.n) n|.
 Bounds bounds_of_ends(const dvec3& p0, const dvec3& p1, double radius0, double radius1, const std::array<Cap, 2>& caps,
                       const glm::dmat4& m) {
   const glm::dmat3 a(m);

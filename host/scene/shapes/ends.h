@@ -12,10 +12,10 @@
 
 namespace caplet {
 
-/// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres each. Also the bulk form.
-/// All vectors have one entry a capsule; `radius1` is empty when no capsule is tapered; `materials` is empty or holds an index
-/// into Scene::materials a capsule (overriding Shape::material). `u` is empty, or holds what u is at p0 and at p1 of each capsule
-/// of a chain, whose uv then are those of pbrt's curves (docs/shapes.md, "Chains").
+/// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres each. All vectors have one
+/// entry per capsule. `radius1` is empty when no capsule is tapered. `materials` is empty or holds an index into Scene::materials
+/// per capsule (overriding Shape::material). `u` is empty, or holds u at p0 and at p1 of each capsule of a chain, which then has
+/// the uv of pbrt's curves (docs/shapes.md, "Chains").
 struct CapsulesShape {
   std::vector<glm::vec3> p0, p1;
   std::vector<float> radius0, radius1;
@@ -23,8 +23,8 @@ struct CapsulesShape {
   std::vector<glm::vec2> u = {};
 };
 
-/// How an end of a cylinder or cone is closed. The solid is the convex hull of its two ends: flat ones are disks across the axis,
-/// round ones balls of the end's radius. An open end is a flat one that rays pass through: the shape is then no solid.
+/// The ends of a cylinder or cone. The solid is the convex hull of its two ends: flat ones are disks across the axis, round ones
+/// balls of the end's radius. Rays pass through an open end, which is otherwise flat; the shape is then no solid.
 enum class Cap { flat, round, open };
 
 /// Surfaces: 0 side, 1 the cap at p0, 2 the cap at p1.
@@ -34,7 +34,7 @@ struct CylinderShape {
   std::array<Cap, 2> caps{Cap::flat, Cap::flat};
 };
 
-/// A frustum where both caps are flat; one radius may be 0. Surfaces as the cylinder's.
+/// A frustum where both caps are flat; one radius may be 0. The surfaces are numbered as the cylinder's.
 struct ConeShape {
   glm::dvec3 p0{0, 0, 0}, p1{0, 0, 1};
   std::array<double, 2> radius{1, 0};
@@ -46,8 +46,8 @@ inline std::size_t surfaces_of(const CapsulesShape&) { return 1; }
 inline bool closed(const CapsulesShape&) { return true; }
 Bounds bounds_under(const CapsulesShape& capsules, const glm::dmat4& m);
 void check(const CapsulesShape& capsules, ShapeCheck& report);
-Beyond beyond(const CapsulesShape& capsules, const glm::dvec3& p);  // of the first
-/// Without u, and with it.
+Beyond beyond(const CapsulesShape& capsules, const glm::dvec3& p);  // only the first capsule
+/// Random capsules are drawn without u and with it.
 CapsulesShape drawn(std::type_identity<CapsulesShape>, Draws& draws);
 template <>
 inline constexpr int drawn_sorts<CapsulesShape> = 2;

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the file of each geometry says, shapes/NAME.h, and what helps to say it. For every row of geometries.def there are
+// The functions that each geometry defines in shapes/NAME.h, and helpers for them. For every row of geometries.def there are
 //
-//   std::size_t count_of(const Type&)                       primitives in it
-//   std::size_t surfaces_of(const Type&)                    material slots
-//   bool closed(const Type&)                                whether it has an inside: csg can combine it
-//   Bounds bounds_under(const Type&, const dmat4& m)        exact, of its image
-//   void check(const Type&, ShapeCheck&)                    what of it cannot be rendered
-//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` where nothing is closed
-//   Type drawn(std::type_identity<Type>, Draws&)            one at random, for hard scenes; csg has it where its operands are
-//                                                           drawn, verify/torture.cpp
+//   std::size_t count_of(const Type&)                       the number of primitives
+//   std::size_t surfaces_of(const Type&)                    the number of material slots
+//   bool closed(const Type&)                                whether it has an inside, so that csg can combine it
+//   Bounds bounds_under(const Type&, const dmat4& m)        exact bounds of its image
+//   void check(const Type&, ShapeCheck&)                    reports what cannot be rendered
+//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` for open geometries
+//   Type drawn(std::type_identity<Type>, Draws&)            a random one, for hard scenes; csg has it in
+//                                                           verify/torture.cpp, which draws the operands
 //
-// found by their type: one that is missing does not compile. Lengths and points are in the shape's own space.
+// which are found by type: a missing one is a compile error. Lengths and points are in the shape's own space.
 //
-// A convex solid may be told by its surfaces, each of which bounds it alone by a convex function (FacedSolid). Then it needs no
-// `beyond`, and its witness and the rays that try devices follow from what its file says:
+// A convex solid may be defined by its surfaces, each of which bounds it by a convex function (FacedSolid). It needs no
+// `beyond`, and its witness and the rays that test devices follow from these functions:
 //
-//   double outside(const Type&, int surface, const dvec3& p)    growing by no more than the way gone; the solid is where all are
+//   double outside(const Type&, int surface, const dvec3& p)    grows no faster than distance; in the solid all are
 //                                                               at most 0
-//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   unit, outward, at a point of the surface
+//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   the unit outward normal at a point of the surface
 //   dvec2 uv_on(const Type&, int surface, const dvec3& p)       docs/shapes.md
 //   double tilt_of(const Type&, double moved)                   radians by which its surfaces turn when its points move by
 //   `moved`
 //
-// A geometry that scene files give by a few numbers may name them (FieldedShape), and is then read without a reader of its own:
+// A geometry of a few numbers may name them as fields (FieldedShape), and then needs no reader of its own:
 //
 //   void fields(Type&, auto& each)                          each.corners("p0", "p1", box.p0, box.p1), ...: see Fields
 #pragma once
@@ -50,10 +50,10 @@ namespace caplet {
 struct Shape;
 
 inline constexpr double full_turn = 6.283185307179586;
-/// The greatest coordinate or size in a scene: squares of 1e18, and sums of some, are within a 32-bit float (3.4e38).
+/// The greatest coordinate or size in a scene: squares of 1e18, and sums of some, fit a 32-bit float (3.4e38).
 inline constexpr double largest_length = 1e18;
 
-/// How far a point is outside of a solid: a lower bound of the distance, and a number that is at most 0 only within.
+/// Bounds how far a point is outside a solid: `least` is a lower bound of the distance; `most` is at most 0 only inside.
 struct Beyond {
   double least, most;
   static Beyond exactly(double distance) { return {distance, distance}; }
@@ -67,42 +67,42 @@ bool is_finite(const Vector& v) {
   return true;
 }
 
-/// Where a geometry says what is wrong with it.
+/// Receives the errors that a geometry finds in itself.
 class ShapeCheck {
  public:
   virtual ~ShapeCheck() = default;
   virtual void error(const std::string& message) = 0;
-  /// Of a field or parameter: `message` goes on from its name.
+  /// Reports an error of a field or parameter: `message` continues after its name.
   virtual void error(std::string_view field, const std::string& message) = 0;
-  /// How many materials there are to name.
+  /// Returns the number of materials.
   virtual std::size_t materials() const = 0;
-  /// Checks a part as a shape of its own.
+  /// Checks an operand as a shape of its own.
   virtual void operand(const Shape& shape) = 0;
 
-  /// Also as a 32-bit float.
+  /// The value must also be positive as a 32-bit float.
   void positive(double value, const char* what) {
     if (!(static_cast<float>(value) > 0 && std::isfinite(value))) error(std::string(what) + " must be positive and finite");
   }
 };
 
-/// What random geometries are drawn with: of sizes of about 1, thin ones down to a ten thousandth.
+/// Draws random numbers for random geometries, whose sizes are about 1, and for thin ones down to 1e-4.
 class Draws {
  public:
   virtual ~Draws() = default;
   virtual double uniform(double low, double high) = 0;
-  virtual double power(double low, double high) = 0;  // 10 to a uniform power
+  virtual double power(double low, double high) = 0;  // 10 to the power of a uniform number
   virtual std::size_t below(std::size_t n) = 0;
   virtual glm::dvec3 direction() = 0;
 
   bool one_in(std::size_t n) { return below(n) == 0; }
-  /// 1, or up to a ten thousandth.
+  /// Returns a number from 0.1 to 1, or in half of the cases from 1e-4 to 1.
   double thin() { return one_in(2) ? uniform(0.1, 1) : power(-4, 0); }
   glm::vec3 point() { return glm::vec3(direction()); }
 
   double size = 1, angle = 1;  // drawn for every geometry: 0.2 to 1, and 0.5 to 6.2 radians
   int sort = 0;                // below drawn_sorts
 };
-/// How many sorts of a geometry are drawn.
+/// The number of variants of a geometry that are drawn.
 template <class Type>
 inline constexpr int drawn_sorts = 1;
 
@@ -111,12 +111,12 @@ concept FacedSolid = requires(const Type& solid, int surface, const glm::dvec3& 
   { outside(solid, surface, p) } -> std::same_as<double>;
 };
 
-/// What `fields` is called with.
+/// The visitor that `fields` is called with.
 struct Fields {
   virtual ~Fields() = default;
-  /// Two opposite corners of a box, in any order; in order they come back.
+  /// Visits two opposite corners of a box, in any order; they are returned in ascending order.
   virtual void corners(const char* name0, const char* name1, glm::dvec3& p0, glm::dvec3& p1) = 0;
-  /// A positive length; `value` as it comes is what it is where it is not given.
+  /// Visits a positive length; `value` holds its default.
   virtual void positive(const char* name, double& value) = 0;
 };
 template <class Type>
@@ -124,7 +124,7 @@ concept FieldedShape = requires(Type& shape, Fields& each) {
   fields(shape, each);
 };
 
-/// The greatest `outside` of all surfaces.
+/// Returns the greatest `outside` over all surfaces.
 template <FacedSolid Type>
 Beyond beyond(const Type& solid, const glm::dvec3& p) {
   double most = -INFINITY;
@@ -136,7 +136,7 @@ Beyond beyond(const Type& solid, const glm::dvec3& p) {
 
 inline glm::dvec3 transformed(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1)); }
 
-/// Half the extents of the unit ball's image under `a`: the lengths of its rows.
+/// Returns half the extents of the unit ball's image under `a`: the lengths of its rows.
 inline glm::dvec3 row_lengths(const glm::dmat3& a) {
   const glm::dmat3 rows = glm::transpose(a);
   return {glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])};
@@ -147,7 +147,7 @@ inline void extend_box(Bounds& bounds, const glm::dvec3& center, const glm::dvec
   bounds.extend(center + half);
 }
 
-/// Bounds from the greatest value of a.p over the points p of a shape, for each row a of the matrix and its opposite.
+/// Computes bounds from the greatest value of a.p over the points p of a shape, for each row a of the matrix and its negative.
 template <class Greatest>
 Bounds bounds_along_rows(const glm::dmat4& m, Greatest greatest) {
   Bounds bounds;
@@ -159,7 +159,7 @@ Bounds bounds_along_rows(const glm::dmat4& m, Greatest greatest) {
   return bounds;
 }
 
-/// The greatest value of a.x cos(phi) + a.y sin(phi) for 0 <= phi <= phi_max.
+/// Returns the greatest value of a.x cos(phi) + a.y sin(phi) for 0 <= phi <= phi_max.
 inline double greatest_across(const glm::dvec3& a, double phi_max) {
   const double summit = std::atan2(a.y, a.x);
   if (phi_max >= full_turn || (summit < 0 ? summit + full_turn : summit) <= phi_max) return std::hypot(a.x, a.y);

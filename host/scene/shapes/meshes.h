@@ -15,16 +15,16 @@ namespace caplet {
 struct TriangleMeshShape {
   std::vector<glm::vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<glm::vec3> normals;  // empty or one a vertex
-  std::vector<glm::vec2> uvs;      // empty or one a vertex
+  std::vector<glm::vec3> normals;  // empty or one per vertex
+  std::vector<glm::vec2> uvs;      // empty or one per vertex
 };
 
-/// Bilinear patches; a patch's corners are p00, p10, p01, p11 (pbrt's order). Open.
+/// Bilinear patches, an open shape. The corners of a patch are p00, p10, p01, p11 (pbrt's order).
 struct BilinearMeshShape {
   std::vector<glm::vec3> positions;
   std::vector<std::array<std::uint32_t, 4>> patches;
-  std::vector<glm::vec3> normals;  // empty or one a vertex
-  std::vector<glm::vec2> uvs;      // empty or one a vertex
+  std::vector<glm::vec3> normals;  // empty or one per vertex
+  std::vector<glm::vec2> uvs;      // empty or one per vertex
 };
 
 template <class Mesh>

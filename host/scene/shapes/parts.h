@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// pbrt's parts of spheres and tubes around the z axis.
+// pbrt's partial spheres and tubes around the z axis.
 #pragma once
 
 #include "scene/shapes/family.h"
 
 namespace caplet {
 
-/// Part of a sphere around the origin, as pbrt's: z_min <= z <= z_max, 0 <= phi <= phi_max. Open.
+/// A part of a sphere around the origin, as in pbrt: z_min <= z <= z_max, 0 <= phi <= phi_max. It is open.
 struct PartialSphereShape {
   double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
 };
 
-/// pbrt's cylinder around the z axis: a tube, or part of one. Open.
+/// pbrt's cylinder around the z axis: a tube or a part of one. It is open.
 struct OpenCylinderShape {
   double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
 };
@@ -34,8 +34,8 @@ inline Beyond beyond(const PartialSphereShape&, const glm::dvec3&) { return unkn
 inline void check(const PartialSphereShape& sphere, ShapeCheck& report) { check_part(sphere, "the sphere", report); }
 
 inline Bounds bounds_under(const PartialSphereShape& s, const glm::dmat4& m) {
-  // At height z the sphere has the radius rho = sqrt(r^2 - z^2) and a.p is at most a_z z + across rho: concave in z, with its
-  // summit at r a_z / |(across, a_z)|, where across >= 0; otherwise convex.
+  // At height z the sphere has the radius rho = sqrt(r^2 - z^2), and a.p is at most a_z z + across rho. This is concave in z with
+  // its maximum at r a_z / |(across, a_z)| where across >= 0; otherwise it is convex.
   return bounds_along_rows(m, [&](const glm::dvec3& a) {
     const double across = greatest_across(a, s.phi_max);
     const auto at = [&](double z) { return a.z * z + across * std::sqrt(std::max(0.0, s.radius * s.radius - z * z)); };

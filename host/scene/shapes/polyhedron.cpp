@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Half-spaces -> faces: a box that holds everything is cut by one plane after the other.
+// Converts half-spaces to faces: a box that contains the whole solid is cut by one plane after the other.
 #include "scene/shapes/polyhedron.h"
 
 #include <algorithm>
@@ -24,16 +24,16 @@ struct Plane {
 };
 
 struct Face {
-  std::size_t plane;  // box_side: of the box that was cut
+  std::size_t plane;  // box_side: a face of the initial box
   std::vector<dvec3> corners;
 };
 
 bool same_point(const dvec3& a, const dvec3& b, double tolerance) { return glm::length(a - b) <= tolerance; }
 
-/// A convex body as its faces.
+/// A convex body, stored as its faces.
 class Body {
  public:
-  /// A cube of half size `half` around the origin.
+  /// Starts with a cube of half size `half` around the origin.
   explicit Body(double half) : tolerance_(half * 0x1p-46) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double side : {-half, half}) {
@@ -49,7 +49,7 @@ class Body {
       }
   }
 
-  /// Keeps what lies below the plane. False when nothing is left, or to rounding only points in the plane.
+  /// Keeps the part below the plane. Returns false when nothing is left, or, up to rounding, only points in the plane.
   bool cut(const Plane& plane, std::size_t number) {
     // Coordinates are within `half`, rounded to 2^-53 of it; a few operations on them are within 2^-46.
     const auto above = [&](const dvec3& x) { return glm::dot(plane.normal, x) - plane.offset; };
@@ -93,7 +93,7 @@ class Body {
   std::vector<Face> faces_;
 
  private:
-  /// The new face: the corners in its plane, in order.
+  /// Adds the new face: the corners in its plane, in order.
   void close(const Plane& plane, std::size_t number, std::vector<dvec3>& rim) {
     const dvec3 center = std::accumulate(rim.begin(), rim.end(), dvec3(0)) / std::max(1.0, double(rim.size()));
     const dvec3 s = glm::normalize(glm::cross(plane.normal, std::abs(plane.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
@@ -131,7 +131,7 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
   }
   if (size == 0) size = 1;  // all planes through one point: a cone or nothing
 
-  // Twice, the second time from a box that fits: rounding errors grow with the box that is cut.
+  // The second pass starts from a box that fits, because rounding errors grow with the box that is cut.
   double half = 1e6 * size;
   for (int pass = 0; pass < 2; ++pass) {
     Body body(half);
@@ -150,7 +150,7 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
       for (const dvec3& x : face.corners) faces[face.plane].push_back(center + x);
     }
     if (endless) {
-      // A face that is unbounded reaches the box.
+      // An unbounded face reaches the box.
       while (first_endless + 1 < n && std::ranges::none_of(faces[first_endless], [&](const dvec3& x) {
                const dvec3 a = glm::abs(x - center);
                return std::max({a.x, a.y, a.z}) >= half * (1 - 1e-9);
@@ -170,7 +170,7 @@ std::vector<dvec3> polyhedron_corners(const PolyhedronShape& polyhedron, std::si
   Bounds bounds;
   for (const auto& face : faces)
     for (const dvec3& x : face) bounds.extend(x);
-  // Faces hold their own copies of a corner, apart by rounding (more of it where they meet at small angles).
+  // Each face has its own copy of a corner. Copies differ by rounding, and more so where faces meet at small angles.
   const double tolerance = 1e-9 * glm::length(bounds.max - bounds.min);
   std::vector<dvec3> corners;
   for (const auto& face : faces)
@@ -201,7 +201,7 @@ void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
   }
   std::size_t bad = 0;
   if (!polyhedron_corners(polyhedron, &bad).empty()) return;
-  // Cut by a far box, an unbounded polyhedron has corners; one without an inside still has none.
+  // Cut by a distant box, an unbounded polyhedron has corners; one without an inside still has none.
   PolyhedronShape boxed = polyhedron;
   for (int side = 0; side < 6; ++side) {
     dvec3 n(0);

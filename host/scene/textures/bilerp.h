@@ -8,7 +8,7 @@
 
 namespace caplet {
 
-/// Bilinear in (s, t): v01 at (0, 1), v10 at (1, 0).
+/// Interpolates bilinearly in (s, t): v01 is at (0, 1), v10 at (1, 0).
 struct BilerpTexture {
   TextureOperand v00 = 0, v01 = 1, v10 = 0, v11 = 1;
   TextureMapping mapping = {};

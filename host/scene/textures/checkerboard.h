@@ -8,7 +8,7 @@
 
 namespace caplet {
 
-/// Unit squares of (s, t), or unit cubes: tex1 where the sum of their whole parts is even.
+/// A pattern of unit squares of (s, t) or of unit cubes: tex1 where the sum of the integer parts is even.
 struct CheckerboardTexture {
   TextureOperand tex1 = 1, tex2 = 0;
   TextureMapping mapping = {};

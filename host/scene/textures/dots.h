@@ -8,7 +8,7 @@
 
 namespace caplet {
 
-/// Disks in the unit squares of (s, t), at random.
+/// Places disks at random in the unit squares of (s, t).
 struct DotsTexture {
   TextureOperand inside = 1, outside = 0;
   TextureMapping mapping = {};

@@ -8,7 +8,7 @@
 
 namespace caplet {
 
-/// Octaves of noise, each `roughness` times as high as the last.
+/// A sum of octaves of noise, each `roughness` times as strong as the last.
 struct FbmTexture {
   int octaves = 8;
   double roughness = 0.5;

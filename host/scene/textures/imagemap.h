@@ -12,11 +12,11 @@
 
 namespace caplet {
 
-/// In the order of CAPLET_WRAP_... and CAPLET_FILTER_... (kernels/shared/kinds.h).
+/// The order is that of CAPLET_WRAP_... and CAPLET_FILTER_... (kernels/shared/kinds.h).
 inline constexpr std::array<const char*, 4> texture_wrap_names = {"repeat", "black", "clamp", "octahedralsphere"};
 inline constexpr std::array<const char*, 4> texture_filter_names = {"point", "bilinear", "trilinear", "EWA"};
 
-/// `scale` times an image at (s, t); its bottom row is at t = 0. invert: 1 less that, from 0 up.
+/// `scale` times an image at (s, t); its bottom row is at t = 0. invert: 1 minus that, at least 0.
 struct ImagemapTexture {
   std::shared_ptr<const TextureImage> image;
   int wrap = 0, filter = 1;

@@ -8,7 +8,7 @@
 
 namespace caplet {
 
-/// Layers along y of the point times `scale`, moved by `variation` times octaves of noise.
+/// Layers along y of the point times `scale`, displaced by `variation` times octaves of noise.
 struct MarbleTexture {
   int octaves = 8;
   double roughness = 0.5, scale = 1, variation = 0.2;

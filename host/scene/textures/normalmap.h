@@ -9,7 +9,7 @@
 
 namespace caplet {
 
-/// Normals of surfaces: Material::normalmap.
+/// Surface normals, used as Material::normalmap.
 struct NormalmapTexture {
   std::shared_ptr<const TextureImage> image;
 

@@ -7,7 +7,7 @@
 
 namespace caplet {
 
-/// The square root: GGX's alpha of a roughness that is remapped.
+/// The square root of a texture: it remaps a roughness to GGX's alpha.
 struct RootTexture {
   TextureOperand tex = 0;
 

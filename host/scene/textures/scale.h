@@ -7,7 +7,7 @@
 
 namespace caplet {
 
-/// Their product.
+/// The product of two textures.
 struct ScaleTexture {
   TextureOperand tex = 1, scale = 1;
 

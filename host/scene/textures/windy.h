@@ -6,7 +6,7 @@
 
 namespace caplet {
 
-/// Waves as of wind on water.
+/// Imitates the waves of wind on water.
 struct WindyTexture {
   glm::dmat4 texture_from_world{1};
 

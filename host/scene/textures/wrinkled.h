@@ -6,7 +6,7 @@
 
 namespace caplet {
 
-/// The same of the noise's magnitude.
+/// Sums the absolute values of the noise.
 struct WrinkledTexture : FbmTexture {};
 
 }  // namespace caplet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Takes what a model's `fields` visit as a list of parameters.
+// Makes a list of parameters from a model's `fields`.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 
 namespace caplet::schema {
 
-/// As scene files have it.
+/// Returns the value as scene files write it.
 std::string text_of(double value);
 std::string text_of(const Spectrum& spectrum);
 
@@ -149,7 +149,7 @@ class Describe {
   void heat(const std::optional<Spectrum>&, const FloatGrid&) {}
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
 
-  /// Numbers and spectra from now on may be textures.
+  /// Allows textures for the numbers and spectra that follow.
   void may_be_textures() { textured_ = true; }
 
   Parameter& add(const Field& field, std::vector<std::string> types, std::string fallback) {
@@ -169,7 +169,7 @@ class Describe {
   }
 
  private:
-  /// What is new of fields that several kinds have.
+  /// Adds only fields that an earlier kind does not have.
   struct New {
     Describe& to;
     void number(const Field& field, double value) const {
@@ -179,7 +179,7 @@ class Describe {
       if (!to.has(field.name)) to.vector(field, value);
     }
   };
-  /// Those of media are no textures.
+  /// Coefficients of media cannot be textures.
   struct Coefficients {
     Describe& to;
     void unbounded(const Field& field, const Spectrum& value) const { to.add(field, medium_spectrum, text_of(value)); }

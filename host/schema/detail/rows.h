@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parameters that only scene files' text has: what models hold otherwise, or not at all.
+// Parameters that only scene files have; models hold them in another form or not at all.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace caplet::schema {
 
-/// A parameter as a row of a table. types: names with blanks between; fallback: as Parameter.
+/// A parameter as a row of a table. types: names separated by blanks; fallback: as in Parameter.
 struct Row {
   Field field;
   const char* types;
@@ -20,7 +20,7 @@ struct Row {
 
 Parameter parameter_of(const Row& row);
 void add_rows(std::span<const Row> rows, std::vector<Parameter>& out);
-/// Parameters without effect.
+/// Adds parameters without effect.
 void add_ignored(std::span<const Row> rows, std::vector<Parameter>& out);
 
 void add_shape(const std::string& type, std::vector<Parameter>& out);

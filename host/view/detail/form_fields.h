@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The fields of forms: what of a scene's parts the lists of host/scene visit, by name, kind and range.
+// Fields of forms: the fields of a scene's parts that host/scene's lists visit, with name, kind and range.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace caplet::view {
 
-/// Where a texture may stand in place of a value.
+/// Says whether a texture may replace a value.
 struct Slot {
   bool is_float = false;
   std::optional<std::uint32_t> texture = {};
-  std::size_t before = SIZE_MAX;  // the texture's index is below this
+  std::size_t before = SIZE_MAX;  // the texture's index must be below this
 };
 
-/// Sees each field of a part, and may change it.
+/// Visits each field of a part, and may change it.
 class FormFields {
  public:
   virtual ~FormFields() = default;
@@ -32,33 +32,33 @@ class FormFields {
   virtual void choice(const std::string& name, int& value, const std::vector<std::string>& options) = 0;
   virtual void flag(const std::string& name, bool& value) = 0;
   virtual void text(const std::string& name, std::string& value) = 0;
-  /// `most`: of its values.
+  /// `most`: the greatest allowed value.
   virtual void spectrum(const std::string& name, Spectrum& value, double most, Slot* slot = nullptr) = 0;
-  /// Above 0, or none.
+  /// A number above 0, or none.
   virtual void option(const std::string& name, std::optional<double>& value) = 0;
   virtual void point(const std::string& name, glm::dvec3& value) = 0;
-  /// Of unit length.
+  /// A direction of unit length.
   virtual void direction(const std::string& name, glm::dvec3& value) = 0;
-  /// A file's name, which stays.
+  /// A file name, which cannot be changed.
   virtual void file(const std::string& name, const std::string& value) = 0;
   virtual void material(const std::string& name, std::uint32_t& value) = 0;
   /// A texture, or none.
   virtual void texture(const std::string& name, Slot& slot) = 0;
 };
 
-/// `own`: the index that it has or is to have.
+/// `own`: the index that the part has or will have.
 void visit_form(FormFields& fields, Material& material, std::uint32_t own, const Scene& scene);
 void visit_form(FormFields& fields, Texture& texture, std::uint32_t own);
 void visit_form(FormFields& fields, Light& light);
 void visit_form(FormFields& fields, std::optional<AreaEmission>& emission);
 void visit_form(FormFields& fields, Shape& shape);
-/// Of the film, the filter, the sampler or the integrator.
+/// Visits the film, the filter, the sampler or the integrator.
 void visit_form(FormFields& fields, ViewEdit& view, Part::Kind kind);
 
-/// What a list calls its rows, those alone that can be made out of nothing.
+/// Lists the kinds that can be made without an existing part.
 std::vector<std::string> new_kinds(Part::Kind what);
 
-/// A part of a kind that the list knows. Throws InputError. Names are those that the scene has not yet.
+/// Makes a part of a kind in the list, with a name that the scene does not have yet. Throws InputError.
 Material new_material(const Scene& scene, const Add& add);
 Texture new_texture(const Scene& scene, const Add& add);
 Light new_light(const Add& add);

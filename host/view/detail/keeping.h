@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Changes with what is kept of them: made, saved, taken back, made again at the next start.
+// Makes and undoes changes, saves them, and replays them at the next start.
 #pragma once
 
 #include <filesystem>
@@ -19,25 +19,25 @@ namespace caplet::view {
 
 class Keeping {
  public:
-  /// Makes again what `keeper` has of an earlier session. Both scenes outlive this. Without a keeper nothing is kept, nor saved.
+  /// Replays the changes of an earlier session that `keeper` has. Both scenes outlive this. Without a keeper nothing is kept.
   Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper);
 
-  /// Makes an Edit, an Undo, a Discard or what a Kept asks for; `text`: as it was said. Whether the scene is another one now.
-  /// Throws InputError.
+  /// Handles an Edit, Undo, Discard or Kept; `text` is the message as received. Returns whether the scene has changed. Throws
+  /// InputError.
   bool make(const Message& message, const std::string& text);
-  /// Saves with the scene's own camera and film, or with that camera. A message: `saved`, or `save_asks` when the file holds what
-  /// would be lost. Throws InputError and RunError.
+  /// Saves with the scene's own camera and film, or with that camera. Returns the message `saved`, or `save_asks` when data in
+  /// the file would be lost. Throws InputError and RunError.
   nlohmann::ordered_json save(const Save& save, const Look& look, const std::function<bool()>& cancelled);
-  /// A picture is there: the processor may do other things for a moment.
+  /// Uses the pause after a picture for other work.
   void pause() {
     if (keeper_) keeper_->look_at_contents();
   }
-  /// What the page is told: whether there are unsaved changes, whether they are kept, what was there from an earlier session.
+  /// Returns the message on unsaved changes: whether there are any, whether they are kept, and what an earlier session left.
   nlohmann::ordered_json text() const;
-  /// The camera and the size that the scene is saved with.
+  /// Returns the camera and the size that the scene is saved with.
   const Look& own_look() const { return own_; }
   bool has_unsaved() const { return editor_.state() != saved_; }
-  /// The journal, when changes stay in it.
+  /// Returns the journal if changes remain in it.
   std::optional<std::filesystem::path> end();
 
  private:
@@ -48,7 +48,7 @@ class Keeping {
   Editor& editor_;
   std::unique_ptr<Keeper> keeper_;
   Look own_;
-  bool own_is_new_ = false;   // it was saved with another camera than it came with
+  bool own_is_new_ = false;   // it was saved with a different camera
   std::uint64_t saved_ = 0;   // state of the editor
   std::size_t restored_ = 0;  // changes of an earlier session
 };

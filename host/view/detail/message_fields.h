@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Fields of what the page says, checked. Each throws InputError with the field as its place.
+// Reads and checks the fields of messages from the page. Each function throws InputError with the field as its place.
 #pragma once
 
 #include <fmt/format.h>
@@ -99,7 +99,7 @@ inline glm::dvec3 point(const json& object, const char* name) {
   return out;
 }
 
-/// A part of the scene: `of` and `part`.
+/// Reads a part of the scene: `of` and `part`.
 Part part(const json& object);
 /// Reads a change of a form; returns none where `what` is another kind of message.
 std::optional<FormChange> form_change(const json& object);

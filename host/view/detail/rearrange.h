@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Things that come and go: changes of a scene as a whole, each of which gives the one that takes it back.
+// Adds and removes things. A rearrangement changes the scene as a whole, and returns the one that undoes it.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace caplet::view {
 
-/// Things, with the places among their kind that they have or are to have, in ascending order.
+/// Things, with their present or future indices among their kind, in ascending order.
 struct Things {
   std::vector<std::pair<std::size_t, Shape>> shapes;
   std::vector<std::pair<std::size_t, Instance>> instances;
@@ -49,7 +49,7 @@ void take_out(std::vector<T>& of, const std::vector<std::size_t>& places, std::v
   of = std::move(rest);
 }
 
-/// The places in the whole, hidden things among it, of those that are shown at `places`, in ascending order both.
+/// Converts indices among shown things to indices among all, including hidden ones; both ascend.
 template <class T>
 std::vector<std::size_t> places_in_whole(const HiddenList<T>& hidden, std::vector<std::size_t> places) {
   std::size_t before = 0;
@@ -60,7 +60,7 @@ std::vector<std::size_t> places_in_whole(const HiddenList<T>& hidden, std::vecto
   return places;
 }
 
-/// The hidden things when shown ones go.
+/// Adjusts the indices of hidden things when shown ones are removed.
 template <class T>
 void close_gaps(HiddenList<T>& hidden, const std::vector<std::size_t>& places) {
   const std::vector<std::size_t> gone = places_in_whole(hidden, places);
@@ -71,7 +71,7 @@ void close_gaps(HiddenList<T>& hidden, const std::vector<std::size_t>& places) {
   }
 }
 
-// Rearrangements, each of which gives the one that takes it back.
+// Each of these rearrangements returns the one that undoes it.
 template <class Rearrange>
 Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the page is told of a scene.
+// Messages that describe a scene to the page.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,24 +13,24 @@
 
 namespace caplet::view {
 
-/// Most shapes and instances that are named one by one.
+/// The most shapes and instances that are listed by name.
 inline constexpr std::size_t most_named = 5000;
 
 /// Three numbers: x, y, z.
 nlohmann::ordered_json to_json(const glm::dvec3& v);
 
-/// How the page says it, too (messages.h).
+/// The page sends cameras in the same form (messages.h).
 nlohmann::ordered_json camera_text(const Look& look);
 
-/// Its name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials, the device's name, and the samples
-/// of a pixel at which a picture is done.
+/// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials, the device's name, and the
+/// samples per pixel of a finished picture.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
 
-/// Names of what is hidden: shapes, then instances.
+/// Returns the names of hidden things: shapes, then instances.
 nlohmann::ordered_json hidden_text(const Scene& scene, const Hidden& hidden);
 
-/// A thing: its place in the world, bounds, surfaces with their materials, and a capsule of it where it has some, with its ends
-/// in the world. Null where there is none.
+/// Returns a thing: its transform, bounds, surfaces with their materials, and one of its capsules if it has some, with its ends
+/// in the world. Returns null if the thing does not exist.
 nlohmann::ordered_json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive);
 
 }  // namespace caplet::view

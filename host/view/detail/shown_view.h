@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Views of a scene as the page asks for them.
+// Views of a scene that the page asks for.
 #pragma once
 
 #include "scene/edit.h"
@@ -9,10 +9,10 @@
 
 namespace caplet::view {
 
-/// How the scene itself is looked at.
+/// Returns the scene's own view.
 Look look_of_scene(const Scene& scene);
 
-/// `own`, looked at as `look` says: a pixel for each square of `scale` pixels. `eye`: of a pair, 0 the left.
+/// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the left of a stereo pair.
 ViewEdit shown_view(const ViewEdit& own, const Look& look, int scale, int eye);
 
 }  // namespace caplet::view

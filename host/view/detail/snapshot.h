@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Pictures for the page: what it shows, and whole files.
+// Pictures for the page: those that it shows, and whole files.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace caplet::view {
 
-/// Colours in linear sRGB, ids where they are asked for, and the noise by the image's variance.
+/// Returns colours in linear sRGB, ids if asked for, and the noise from the image's variance.
 Picture shown_of(const LayeredImage& image, bool ids);
 
-/// The image as an EXR file. Throws RunError.
+/// Returns the image as an EXR file. Throws RunError.
 std::string exr_bytes(const LayeredImage& image);
 
 }  // namespace caplet::view

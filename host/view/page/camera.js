@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// A camera as the program has it: world_from_camera as columns right, up, forward and eye. Whether it is left- or right-handed is the file's,
-// and stays.
+// A camera in the program's form: world_from_camera as columns right, up, forward and eye. It is left- or right-handed as in the
+// file.
 export const add = (a, b) => a.map((v, i) => v + b[i]);
 export const sub = (a, b) => a.map((v, i) => v - b[i]);
 export const mul = (a, s) => a.map((v) => v * s);
@@ -10,7 +10,7 @@ export const length = (a) => Math.hypot(...a);
 export const unit = (a) => mul(a, 1 / (length(a) || 1));
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// `v` turned about a unit axis (Rodrigues).
+// Rotates `v` about a unit axis (Rodrigues).
 export function turned(v, axis, angle) {
   const c = Math.cos(angle), s = Math.sin(angle), x = cross(axis, v), along = dot(axis, v) * (1 - c);
   return v.map((value, i) => value * c + x[i] * s + axis[i] * along);
@@ -24,7 +24,7 @@ export class Camera {
     this.target = null;
     this.separation = from.separation ?? 0; this.convergence = from.convergence ?? 0;
     this.parallel = from.orthographic > 0;
-    // A distance from which a perspective camera frames the same.
+    // This is the distance at which a perspective camera has the same frame.
     if (this.parallel) this.target = add(this.eye, mul(unit(this.forward), from.orthographic / Math.tan(this.fov / 2)));
   }
   copy() {
@@ -34,14 +34,14 @@ export class Camera {
   matrix() {
     return [0, 1, 2].flatMap((i) => [this.right[i], this.up[i], this.forward[i], this.eye[i]]).concat([0, 0, 0, 1]);
   }
-  // Half the shorter side of what is seen at the distance of the target: there both cameras frame the same.
+  // Returns half the shorter side of the view at the target's distance, where both kinds of camera have the same frame.
   half() { return this.distance() * Math.tan(this.fov / 2); }
   distance() { return length(sub(this.target, this.eye)); }
   turn(axis, angle) {
     for (const name of ["right", "up", "forward"]) this[name] = turned(this[name], axis, angle);
     this.eye = add(this.target, turned(sub(this.eye, this.target), axis, angle));
   }
-  // By angles about the axis that is up in the world, and about what is right in the picture. Never over the pole.
+  // Rotates by angles about the world's up axis and the picture's right axis, but never over the pole.
   orbit(about, over, world_up) {
     const forward = unit(this.forward), up = Math.asin(Math.max(-1, Math.min(1, dot(forward, world_up))));
     const hand = Math.sign(dot(cross(this.right, this.up), this.forward)) || 1;
@@ -55,7 +55,7 @@ export class Camera {
     this.target = add(this.target, by);
   }
   dolly(factor) { this.eye = add(this.target, mul(sub(this.eye, this.target), factor)); }
-  // Looks along `forward`, `up` as near to up as it goes, from so far away that a ball fills the picture.
+  // Looks along `forward`, with `up` upward if possible, from a distance at which a ball fills the picture.
   look(forward, up, center, radius) {
     const hand = Math.sign(dot(cross(this.right, this.up), this.forward)) || 1;
     this.forward = unit(forward);

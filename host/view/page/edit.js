@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Changes of what is selected: by handles in the picture, by numbers beside it. The program checks and makes them; the page only asks.
+// Changes the selected things with handles in the picture and numbers beside it. The program checks and makes all changes.
 import { add, cross, dot, length, mul, sub, unit } from "./camera.js";
 import { texts } from "./texts.js";
 
 const NS = "http://www.w3.org/2000/svg", COLORS = ["#ff5a4d", "#5fd35f", "#5a9bff"], AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-const ANGLE = Math.PI / 12;  // a step of turns
+const ANGLE = Math.PI / 12;  // a step of rotations
 const snaps = (event) => event.shiftKey || event.ctrlKey;
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const make = (name, attributes) => {
@@ -13,7 +13,7 @@ const make = (name, attributes) => {
   for (const [key, value] of Object.entries(attributes)) out.setAttribute(key, value);
   return out;
 };
-// Row-major matrix of x -> center + scale * R (x - center), R by an angle about an axis.
+// Returns the row-major matrix of x -> center + scale * R (x - center), where R rotates by an angle about an axis.
 function about(center, axis, angle, scale) {
   const u = unit(axis), c = Math.cos(angle), s = Math.sin(angle), m = [];
   for (let i = 0; i < 3; ++i)
@@ -27,7 +27,7 @@ function about(center, axis, angle, scale) {
 const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; return m; };
 
 export class Edits {
-  // `say` sends a message, `ask` one that is answered, `view` gives the camera, `stage` is what the picture fills.
+  // `say` sends a message, `ask` one with an answer, `view` returns the camera, `stage` is the element that the picture fills.
   constructor({ say, describe, view, stage, find, shown, click }) {
     Object.assign(this, { say, describe, view, stage, find, shown, click });
     this.ids = [];
@@ -65,14 +65,14 @@ export class Edits {
     this.change({ what: "reshape", id: this.ids[0], capsule: number, ...capsule, ...what }, goes_on);
   }
 
-  // What is selected, and the primitive that was met.
+  // Sets the selection, and the primitive that was hit.
   select(ids, primitive) {
     this.ids = ids;
     this.primitive = primitive;
     this.thing = null;
     this.refresh();
   }
-  // Asks what it is now.
+  // Asks for the present description of the selection.
   refresh() {
     this.find("edit").hidden = !this.ids.length || this.read_only;
     if (!this.ids.length) { this.shown(null, "", false); this.draw(); return; }
@@ -105,9 +105,9 @@ export class Edits {
 
   // --- Handles ---
 
-  // Half the shorter side of what is seen so far away.
+  // Returns half the shorter side of the view at a distance.
   half(z) { const camera = this.view(); return camera.parallel ? camera.half() : z * Math.tan(camera.fov / 2); }
-  // A point of the world in the stage, in CSS pixels; null behind the camera.
+  // Projects a point of the world to the stage, in CSS pixels; null behind the camera.
   project(p) {
     const camera = this.view(), d = sub(p, camera.eye), z = dot(d, unit(camera.forward)) / length(camera.forward);
     if (z <= 0) return null;
@@ -115,7 +115,7 @@ export class Edits {
     return [w / 2 + scale * dot(d, unit(camera.right)), h / 2 - scale * dot(d, unit(camera.up)), z];
   }
   draw() {
-    if (this.dragged) return;  // a handle that goes loses the pointer
+    if (this.dragged) return;  // a handle that is removed loses the pointer
     this.handles.replaceChildren();
     if (!this.thing || !this.ids.length || this.read_only || this.view().separation > 0) return;
     const center = this.center(), at = this.project(center);
@@ -171,7 +171,7 @@ export class Edits {
       });
     });
   }
-  // Where the ray under the pointer meets the plane through a point; null where it does not, or hardly.
+  // Intersects the ray under the pointer with the plane through a point; null if there is no well-defined intersection.
   on_plane(center, normal, event) {
     const camera = this.view(), box = this.stage.getBoundingClientRect(), pixel = 2 * this.half(1) / Math.min(box.width, box.height);
     const aside = add(mul(unit(camera.right), (event.clientX - box.left - box.width / 2) * pixel), mul(unit(camera.up), -(event.clientY - box.top - box.height / 2) * pixel));
@@ -181,7 +181,7 @@ export class Edits {
     const t = dot(sub(center, from), normal) / dot(way, normal);
     return t > 0 || camera.parallel ? add(from, mul(way, t)) : null;
   }
-  // A handle that is not moved lets the click through. Here one whose way is a number; `matrix` is what comes to what has gone so far.
+  // Adds a handle that moves along one number; `matrix` gives the transform of that number. A click without a drag goes through.
   grip(shape, attributes, first, way, matrix) {
     const node = this.handles.appendChild(make(shape, { ...attributes, tabindex: -1 }));
     node.addEventListener("pointerdown", (start) => {
@@ -201,7 +201,7 @@ export class Edits {
       node.addEventListener("pointercancel", end, { once: true });
     });
   }
-  // The way of the pointer along an axis of the world, as far as it goes.
+  // Returns the pointer's motion along an axis of the world, where it is defined.
   along(center, axis, start, move) {
     const a = this.project(center), b = this.project(add(center, mul(axis, this.size() * 0.1)));
     const way = [b[0] - a[0], b[1] - a[1]], square = way[0] ** 2 + way[1] ** 2 || 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Forms of the scene's parts. The program says which fields a part has, of what kind and range, and checks what they are set to.
+// Forms of the scene's parts. The program lists each part's fields with kind and range, and checks new values.
 import { texts } from "./texts.js";
 
 const SETTINGS = ["film", "filter", "sampler", "integrator"];
@@ -11,7 +11,7 @@ const node = (name, attributes = {}, ...inside) => {
 };
 const short = (v) => String(+v.toPrecision(7));
 const numbers = (text) => text.trim().split(/[\s,]+/).map(Number);
-// sRGB as screens have it (IEC 61966-2-1), of linear values, and back.
+// Convert linear values to sRGB (IEC 61966-2-1), and back.
 const encoded = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.max(0, Math.min(1, v)) ** (1 / 2.4) - 0.055));
 const decoded = (b) => { const v = b / 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
 const hex = (rgb) => "#" + rgb.map((v) => Math.min(255, Math.max(0, encoded(v))).toString(16).padStart(2, "0")).join("");
@@ -20,7 +20,7 @@ export const swatch = (material) => hex(material.color);
 
 const options = (list, chosen) => list.map(([value, text]) => new Option(text, value, false, String(value) === String(chosen)));
 
-// One part's form, in a <details>: asked for while it is open.
+// The form of one part in a <details>, requested while it is open.
 class Form {
   constructor(forms, of, box) {
     Object.assign(this, { forms, of, box, part: null, key: "", errors: new Map(), last: "" });
@@ -87,7 +87,7 @@ class Form {
     const put = (this[`row_${field.type}`] ?? this.row_file).call(this, field, holder, named);
     return { box, error, put };
   }
-  // Sets an input, unless one is typing there.
+  // Sets an input, unless the user is typing there.
   static put(input, value) { if (document.activeElement !== input || input.type === "range" || input.type === "checkbox") input.value = value; }
 
   textured(field, holder, named) {
@@ -204,7 +204,7 @@ class Form {
 }
 
 export class Forms {
-  // `ask` gets a part's form, `edit` makes a change and is told what came of it; `place` says where new things come to be.
+  // `ask` requests a part's form, `edit` makes a change and receives the result, and `place` returns the place of new things.
   constructor({ ask, edit, find, place, lamp, select, chosen }) {
     Object.assign(this, { asks: ask, edit, find, place, lamp, select, chosen });
     this.queue = new Map();
@@ -243,7 +243,7 @@ export class Forms {
       this.asks(part, (form) => { --this.waits; done(form); this.go_on(); });
     }
   }
-  // A new connection: nothing is waited for.
+  // A new connection cancels all pending requests.
   reset() { this.waits = 0; this.queue.clear(); this.refresh(); }
   refresh() { for (const form of Object.values(this.forms)) form.refresh(); }
   key() { return [this.parts.textures.map((t) => t.name + t.of_floats), this.parts.materials.map((m) => m.name)]; }
@@ -260,7 +260,7 @@ export class Forms {
     find("new-texture").replaceChildren(new Option(texts.new_texture, ""), ...options(lists.texture.flatMap((kind) => [["f" + kind, `${kind}, ${texts.of_floats}`], ["s" + kind, `${kind}, ${texts.of_spectra}`]]), ""));
     find("new-material").replaceChildren(new Option(texts.new_material, ""), new Option(texts.copy_material, "*"), ...options(lists.material.map((kind) => [kind, kind]), ""));
   }
-  // At the point under the cursor where there is one, else where the camera looks.
+  // New things appear at the point under the cursor, or else where the camera looks.
   add_shape(kind, hit) {
     this.last_shape = kind;
     const place = this.place(hit), material = Math.max(0, this.forms.material.part ?? this.parts.materials.length - 1);
@@ -271,7 +271,7 @@ export class Forms {
     if (this.chosen().length) this.edit({ what: "paint", ids: this.chosen(), surface: surface === "" ? null : +surface, material }, false, () => {});
   }
 
-  // What there is now.
+  // Takes the present lists.
   told(parts) {
     this.parts = parts;
     const { find } = this, fill = (id, none, list) => {
@@ -300,7 +300,7 @@ export class Forms {
     this.mark();
     this.refresh();
   }
-  // What is selected: a thing, and the material that is shown of it.
+  // Sets the selection: a thing, and the material of it that is shown.
   thing(id, material, is_shape) {
     this.forms.material.show(material === "" || material === undefined ? null : +material);
     this.forms.emission.show(is_shape ? id : null);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Every crossing along a ray: a table, and a diagram of what is entered and left, beside what the witness finds.
+// Shows every crossing along a ray: a table, and a diagram of the solids along it, beside the witness's result.
 import { texts } from "./texts.js";
 
 const svg = (name, attributes) => {
@@ -10,7 +10,7 @@ const svg = (name, attributes) => {
 };
 const cell = (name, text) => Object.assign(document.createElement(name), { textContent: text });
 
-// Stretches within solids: a crossing that leaves ends the last that entered the same one.
+// Returns the intervals inside solids: a crossing that leaves ends the last one that entered the same solid.
 function stretches(crossings) {
   const out = [];
   for (const c of crossings) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Saving, and what is not saved: the program keeps it; the page says so, and asks before anything is lost.
+// Saving and unsaved changes: the program keeps them; the page shows them, and asks before anything is lost.
 import { texts } from "./texts.js";
 
 const words = texts.keeping;
@@ -11,7 +11,7 @@ const make = (name, properties, ...children) => {
 };
 
 export class Keep {
-  // `say` sends a message; `title` takes the mark of unsaved changes.
+  // `say` sends a message; `title` shows the mark of unsaved changes.
   constructor({ say, stage, tools, aside, title }) {
     Object.assign(this, { say, title });
     this.now = { unsaved: false, kept: true };
@@ -39,7 +39,7 @@ export class Keep {
       event.preventDefault();
       if (!this.read_only) this.save();
     });
-    // What is kept is not lost with the page.
+    // Changes that are kept are not lost with the page.
     window.addEventListener("beforeunload", (event) => { if (this.now.unsaved && !this.now.kept) event.preventDefault(); });
   }
 
@@ -58,7 +58,7 @@ export class Keep {
     this.discard.disabled = !keep.unsaved;
     this.title(keep.unsaved);
     const is = keep.unsaved ? keep.kept ? "unsaved" : "not kept" : "saved";
-    if (is !== this.is) {  // else what stands there may be why it could not be saved
+    if (is !== this.is) {  // otherwise the text may say why saving failed
       if (keep.unsaved) this.said.textContent = keep.kept ? words.unsaved : words.not_kept(keep.why);
       else if (!this.just_saved) this.said.textContent = "";
     }
@@ -67,7 +67,7 @@ export class Keep {
     this.notice();
   }
 
-  // What is there of an earlier session.
+  // Shows the changes of an earlier session.
   notice() {
     const { old, restored } = this.now, what = this.read_only ? "" : old ? `old ${old}` : restored ? `restored ${restored}` : "";
     this.note.hidden = !what || what === this.closed;
@@ -98,7 +98,7 @@ export class Keep {
     this.name.value = name;
     this.name.removeAttribute("aria-invalid");
   }
-  // Why the program did not.
+  // Shows why the program could not save.
   failed(text) {
     if (!this.asked) return;
     this.asked = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Pictures as the program sends them (docs/viewer.md), and how they are shown.
+// Decodes the program's pictures (docs/viewer.md) and displays them.
 const TILE = 64, WHOLE = 1, IDS = 2;
 
 const float_of_half = new Float32Array(65536);
@@ -22,7 +22,7 @@ async function inflated(bytes) {
 export class Picture {
   constructor() { this.width = this.height = 0; this.color = null; this.objects = this.primitives = null; this.view = 0; this.scale = 1; this.samples = 0; this.noise = 0; }
 
-  // Takes a message; messages are to be given one after the other.
+  // Takes a message; messages must be passed in order, one at a time.
   async take(buffer) {
     const head = new DataView(buffer, 0, 40), at = (i) => head.getUint32(4 * i, true);
     if (at(0) !== 0x464c5043) return false;
@@ -65,7 +65,7 @@ export class Picture {
     return true;
   }
 
-  // Bytes R G B A for the screen. "film": as the program's previews (docs/output.md).
+  // Returns R G B A bytes for the screen. "film": as in the program's previews (docs/output.md).
   shown(exposure, curve) {
     const n = this.width * this.height, out = new Uint8ClampedArray(4 * n), gain = 2 ** exposure, color = this.color;
     for (let i = 0; i < n; ++i) {
@@ -88,7 +88,7 @@ export class Picture {
     return out;
   }
 
-  // Where one of `chosen` (object ids) ends: pixels of it beside others.
+  // Marks where things of `chosen` (object ids) end: their pixels next to others.
   outline(chosen) {
     const { width, height, objects } = this, out = new Uint8ClampedArray(4 * width * height);
     if (!objects) return out;

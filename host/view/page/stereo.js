@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Two pictures as one: beside each other, one over the other, or red of the left and the rest of the right.
+// Shows two pictures as one: side by side, one above the other, or red of the left with green and blue of the right.
 export const LAYOUTS = ["off", "sbs", "over-under", "anaglyph"];
 
-// How much of the stage a view has, across and down.
+// Returns the share of the stage that a view has, across and down.
 export const share = (layout) => [layout === "sbs" ? 2 : 1, layout === "over-under" ? 2 : 1];
 
-// [width, height, bytes] of R G B A of both, of the same size; where there is no right one yet, the left stands for it.
+// Returns [width, height, bytes] of the combined R G B A, of equally sized pictures; the left stands for a missing right one.
 export function arranged(layout, width, height, left, right) {
   if (layout === "off") return [width, height, left];
   right ??= left;
@@ -29,7 +29,7 @@ export function arranged(layout, width, height, left, right) {
   return [2 * width, height, out];
 }
 
-// Pixel of a view, and which view's: of a pixel of the whole.
+// Converts a pixel of the whole to a pixel of a view, and says which view.
 export function view_pixel(layout, width, height, [x, y]) {
   if (layout === "sbs" && x >= width) return [x - width, y, 1];
   if (layout === "over-under" && y >= height) return [x, y - height, 1];

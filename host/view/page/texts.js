@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Every word of the page, for translation.
+// All texts of the page, for translation.
 export const texts = {
   fit: "Fit all", home: "Scene's camera", undo: "Last view", redo: "Next view", keep: "Save view", kept: "Saved views", axis: "Look along",
   axes: { "": "Look along…", "+x": "from +x", "-x": "from −x", "+y": "from +y", "-y": "from −y", "+z": "from +z", "-z": "from −z" },

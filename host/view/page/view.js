@@ -48,13 +48,13 @@ function edit(what, goes_on = false, done = () => {}) {
 const forms = new Forms({
   edit, find: $, chosen: () => [...chosen], select: (ids) => choose_all(ids),
   ask: (part, done) => { waiting.set(++number, done); say({ type: "form", number, ...part }); },
-  // Where new things come to be: on what is under the cursor, or where the camera looks.
+  // New things appear on the surface under the cursor, or where the camera looks.
   place: (hit) => {
     const size = camera.distance() * Math.tan(camera.fov / 2) * 0.2;
     if (hit) return { at: add(hit.point, mul(unit(hit.normal), size)), size };
     return { at: camera.target, size };
   },
-  // Over one's shoulder.
+  // New lights stand above the camera and shine at its target.
   lamp: () => {
     const at = add(camera.eye, mul(unit(camera.up), 0.3 * camera.distance()));
     return { at, size: camera.distance(), towards: sub(camera.target, at) };
@@ -143,11 +143,11 @@ function begin(message) {
   center = mul(add(low, high), 0.5);
   radius = length(sub(high, low)) / 2 || 1;
   if (again && camera) {
-    if (restarted) { choose(null, false); looked = ""; }  // it is shown what this page looks at
+    if (restarted) { choose(null, false); looked = ""; }  // the new program must know what this page looks at
     else camera_of(scene.camera);
   } else {
     camera = new Camera(scene.camera);
-    // What turns least in the picture when one orbits: the axis of the world that is nearest to the picture's up.
+    // Orbiting turns about the world axis that is nearest to the picture's up.
     const up = unit(camera.up), axis = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
     world_up = [0, 0, 0];
     world_up[axis] = Math.sign(up[axis]);
@@ -170,7 +170,7 @@ function begin(message) {
 
 // --- The camera ---
 
-// As another page has it.
+// Takes the view of another page.
 function camera_of(message) {
   const now = new Camera(message);
   if (!now.parallel) now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
@@ -208,7 +208,7 @@ function look() {
   say(message);
 }
 
-// Before a change, so that it can be undone; changes of one gesture count as one.
+// Records the camera before it changes, for undo; the changes of one gesture count as one.
 function remember() { past.push(camera.copy()); future = []; if (past.length > 1000) past.shift(); }
 function change(what) { remember(); what(); look(); }
 function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
@@ -260,7 +260,7 @@ function pixel_at(event) {
   return view_pixel(layout(), picture.width, picture.height, [Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale)].map((v) => Math.max(0, v)));
 }
 
-// One question at a time: the next is asked when the last is answered.
+// Only one query runs at a time: the next one starts after the last answer.
 function hover(pixel) {
   under_next = pixel;
   if (under_asked || !under_next) return;
