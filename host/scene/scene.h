@@ -69,17 +69,12 @@ struct SamplerSettings {
   }
 };
 
-<<<<<<< HEAD
-/// Names in scene files, by SamplerSettings::Kind.
+/// Lists the names in scene files, in the order of SamplerSettings::Kind.
 inline constexpr std::array sampler_names = {
 #define SAMPLER(name) #name,
 #include "shared/samplers.def"
 #undef SAMPLER
 };
-=======
-/// Lists the names in scene files, in the order of SamplerSettings::Kind.
-inline constexpr std::array sampler_names = {"sobol", "independent", "stratified", "zsobol"};
->>>>>>> words2
 
 /// Returns strata along x and y whose product is samples_per_pixel: the sampler's own, or else those nearest to a square.
 std::array<int, 2> strata_of(const SamplerSettings& sampler);

@@ -30,15 +30,9 @@ inline constexpr MetalFields coated_metal = {{"conductor.eta", "real part of the
                                              {"conductor.k", "imaginary part of the metal's index of refraction", 0},
                                              metal_reflectance};
 
-<<<<<<< HEAD
-/// What a metal is of which nothing is said.
+/// Copper is the default metal.
 Spectrum copper_eta() noexcept;
 Spectrum copper_k() noexcept;
-=======
-/// Copper is the default metal.
-inline Spectrum copper_eta() { return *named_spectrum("metal-Cu-eta"); }
-inline Spectrum copper_k() { return *named_spectrum("metal-Cu-k"); }
->>>>>>> words2
 
 inline constexpr Field multiscatter_field = {"multiscatter", "restore the energy that one scattering at facets loses"};
 
