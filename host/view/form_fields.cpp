@@ -13,6 +13,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -234,7 +235,11 @@ class OptionFields {
   explicit OptionFields(FormFields& to) : to_(to) {}
 
   void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
-  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  /// Files may say more: what a page asks for must end.
+  void integer(const Field& field, int& value) {
+    const int most = std::string_view(field.name) == "maxdepth" ? 10000 : 1 << 24;
+    to_.whole(field.name, value, static_cast<int>(field.low), std::min(static_cast<int>(field.high), most));
+  }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
   /// An unsigned integer, as in scene files.
   void seed(const Field& field, std::uint32_t& value) {

@@ -321,6 +321,10 @@ TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   editor.make(Set{{Kind::film}, "xresolution", 77.0});
   editor.make(Set{{Kind::film}, "iso", 200.0});
   editor.make(Set{{Kind::filter}, "kind", std::string("box")});
+  editor.make(Set{{Kind::integrator}, "maxdepth", 10000.0});
+  EXPECT_THROW(editor.make(Set{{Kind::integrator}, "maxdepth", 10001.0}), InputError);
+  EXPECT_THROW(editor.make(Set{{Kind::sampler}, "pixelsamples", 16777217.0}), InputError);
+  ASSERT_TRUE(editor.undo());
   editor.make(Set{{Kind::integrator}, "maxdepth", 9.0});
   const Scene kept = editor.document();
   EXPECT_EQ(kept.film.width, 77);
