@@ -33,7 +33,7 @@ SETS = {
     "all": "all",
 }
 TITLES = {"capsules": "capsules alone, no instances", "basic": "spheres, capsules, tapered ones, triangles, instances", "all": "every shape"}
-SLOW = {"shade", "shade_media", "travel"}
+SLOW = {"shade", "shade_media", "sample_distance"}
 OPTIONS = ["-x", "cl", "-cl-std=CL1.2", "-Xclang", "-finclude-default-header", "-DCAPLET_REAL_WIDTH=1"]
 CLC = pathlib.Path("/usr/lib/clc")
 SKIPPED = 77

@@ -14,7 +14,7 @@
 #include "base/reading.h"
 #include "base/spelling.h"
 #include "import/color_map.h"
-#include "import/look.h"
+#include "import/picture_options.h"
 #include "present/lights.h"
 #include "present/present.h"
 #include "scene/append.h"
@@ -300,7 +300,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
   }
   Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
-  apply_look(scene, images, options,
+  apply_picture_options(scene, images, options,
              std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
   make_names_valid(scene);
   return validated(std::move(scene));

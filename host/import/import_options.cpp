@@ -13,11 +13,11 @@ namespace caplet {
 const std::vector<ImportOptionRow>& import_option_rows() {
   static const std::vector<ImportOptionRow> rows = {
 #define IMPORT_OPTION(name, values, help) {name, values, help, ImportOptionRow::Of::format},
-#define LOOK_OPTION(name, values, help) {name, values, help, ImportOptionRow::Of::picture},
+#define PICTURE_OPTION(name, values, help) {name, values, help, ImportOptionRow::Of::picture},
 #define READING_OPTION(name, values, help) {name, values, help, ImportOptionRow::Of::reading},
 #include "import/import_options.def"
 #undef IMPORT_OPTION
-#undef LOOK_OPTION
+#undef PICTURE_OPTION
 #undef READING_OPTION
   };
   return rows;

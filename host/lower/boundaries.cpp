@@ -21,8 +21,8 @@ double surface_of(const Bounds& box) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Parting is a shape that separates media, and the geometries that it became.
-struct Parting {
+/// MediumInterface is a shape that separates media, and the geometries that it became.
+struct MediumInterface {
   BoundaryRecord record;
   double size;
   std::size_t begin, end;
@@ -42,15 +42,15 @@ class BoundaryLowering {
     }
     // All open surfaces of the same media count together, because several may bound one volume.
     std::map<std::pair<uint, uint>, double> whole;
-    for (const Parting& one : all_)
+    for (const MediumInterface& one : all_)
       if (!is_closed(one.record)) whole[sides(one.record)] += one.size;
-    for (Parting& one : all_)
+    for (MediumInterface& one : all_)
       if (!is_closed(one.record)) one.size = whole[sides(one.record)];
-    std::ranges::stable_sort(all_, [](const Parting& a, const Parting& b) {
+    std::ranges::stable_sort(all_, [](const MediumInterface& a, const MediumInterface& b) {
       return a.size != b.size ? a.size > b.size : key(a.record) < key(b.record);
     });
     out_.geometry_boundary.assign(out_.geometries.size(), CAPLET_NONE);
-    for (const Parting& one : all_) {
+    for (const MediumInterface& one : all_) {
       if (out_.boundaries.empty() || key(out_.boundaries.back()) != key(one.record)) out_.boundaries.push_back(one.record);
       std::fill(out_.geometry_boundary.begin() + static_cast<std::ptrdiff_t>(one.begin),
                 out_.geometry_boundary.begin() + static_cast<std::ptrdiff_t>(one.end), narrow<uint>(out_.boundaries.size() - 1));
@@ -67,8 +67,8 @@ class BoundaryLowering {
   void add(const std::vector<Shape>& shapes, const LoweredShapes& lowered, const std::vector<glm::dmat4>& placed) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const Shape& shape = shapes[i];
-      if (!shape.media.differ() || shape.one_sided || !lowered.extents[i].part) continue;
-      Parting one{};
+      if (!shape.media.differ() || shape.one_sided || !lowered.extents[i].subtree) continue;
+      MediumInterface one{};
       one.begin = lowered.extents[i].begin.geometries;
       one.end = lowered.extents[i].end.geometries;
       one.record.inside = number_of(shape.media.inside);
@@ -89,7 +89,7 @@ class BoundaryLowering {
 
   const Scene& scene_;
   FlatScene& out_;
-  std::vector<Parting> all_;
+  std::vector<MediumInterface> all_;
 };
 
 }  // namespace

@@ -78,28 +78,28 @@ class GeometryLowering {
     for (const Object& object : scene_.objects) lowered.objects.push_back(lower_shapes(object.shapes, object_number));
 
     find_shapes(lowered);
-    std::deque<Part>& world = lowered.world.parts;
-    Part& top = world[0];
+    std::deque<Subtree>& world = lowered.world.subtrees;
+    Subtree& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
       encode(world[i]);
       place(world[i], world[i].placed, CAPLET_NONE, top, lowered.placed);
     }
     for (LoweredShapes& object : lowered.objects)
-      for (Part& part : object.parts)
-        if (!part.primitives.empty()) encode(part);
+      for (Subtree& subtree : object.subtrees)
+        if (!subtree.primitives.empty()) encode(subtree);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Instance& instance = scene_.instances[i];
-      for (const Part& part : lowered.objects[instance.object].parts)
-        if (!part.primitives.empty())
-          place(part, instance.world_from_object * part.placed, narrow<std::uint32_t>(i), top, lowered.placed);
+      for (const Subtree& subtree : lowered.objects[instance.object].subtrees)
+        if (!subtree.primitives.empty())
+          place(subtree, instance.world_from_object * subtree.placed, narrow<std::uint32_t>(i), top, lowered.placed);
     }
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
     add_emitters(top, CAPLET_NONE, Matrix(1), lowered.emitters);
-    for (const Placed& placed : lowered.placed) {
-      if (placed.part->emitter_count == 0) continue;
+    for (const PlacedSubtree& placed : lowered.placed) {
+      if (placed.subtree->emitter_count == 0) continue;
       out_.instances[placed.instance].light_base = narrow<uint>(lowered.emitters.size());
-      add_emitters(*placed.part, placed.instance, placed.world_from_part, lowered.emitters);
+      add_emitters(*placed.subtree, placed.instance, placed.world_from_subtree, lowered.emitters);
     }
     out_.world.root = top.tree.root;
     set_world_bounds(top.tree, out_.world);
@@ -110,8 +110,8 @@ class GeometryLowering {
     return lowered;
   }
 
-  void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Part& part) {
-    const std::size_t first = part.primitives.size();
+  void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Subtree& subtree) {
+    const std::size_t first = subtree.primitives.size();
     const auto primitive_begin = narrow<uint>(out_.primitive_geometry.size());
     GeometryRecord record{};
     record.material = shape.material;
@@ -123,19 +123,19 @@ class GeometryLowering {
     record.normal_begin = record.uv_begin = CAPLET_NONE;
     record.uv_space = append_uv_space(shape.geometry, m, out_.leaves);
     if (shape.emission) {
-      record.light_offset = narrow<uint>(part.emitter_count);
+      record.light_offset = narrow<uint>(subtree.emitter_count);
       if (shape.emission->two_sided) record.flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
     }
     if (turns_normals(shape, m)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
     if (!is_watertight(shape)) record.flags |= CAPLET_GEOMETRY_OPEN;
     reversed_ = shape.reverse_orientation;
-    std::visit([&](const auto& geometry) { append(geometry, m, record, part); }, shape.geometry);
-    const std::size_t count = part.primitives.size() - first;
+    std::visit([&](const auto& geometry) { append(geometry, m, record, subtree); }, shape.geometry);
+    const std::size_t count = subtree.primitives.size() - first;
     if (shape.emission && count > 0) {
-      part.emissive.push_back({first, count, &shape, part.emitter_count});
-      part.emitter_count += count;
+      subtree.emissive.push_back({first, count, &shape, subtree.emitter_count});
+      subtree.emitter_count += count;
     }
-    part.shapes.push_back(&shape);
+    subtree.shapes.push_back(&shape);
   }
 
  private:
@@ -160,8 +160,8 @@ class GeometryLowering {
     out_.has_chains =
         std::ranges::any_of(out_.geometries, [](const GeometryRecord& one) { return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0; });
     const auto add = [&](const LoweredShapes& shapes) {
-      for (const Part& part : shapes.parts)
-        for (const FlatPrimitive& p : part.primitives) {
+      for (const Subtree& subtree : shapes.subtrees)
+        for (const FlatPrimitive& p : subtree.primitives) {
           out_.shapes |= shape_bit(p.shape);
           if (p.shape != shape_csg) continue;
           out_.shapes |= csg_operand_shapes(p, out_.leaves);
@@ -170,7 +170,7 @@ class GeometryLowering {
     };
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
-    if (lowered.world.parts.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    if (lowered.world.subtrees.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
     // Kernels have at least one kind.
     if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
     kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
@@ -184,30 +184,30 @@ class GeometryLowering {
 
   LoweredShapes lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
     LoweredShapes lowered;
-    lowered.parts.emplace_back();
+    lowered.subtrees.emplace_back();
     lowered.extents.resize(shapes.size());
-    std::map<std::pair<std::array<double, 16>, uint>, Part*> by_space;
+    std::map<std::pair<std::array<double, 16>, uint>, Subtree*> by_space;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const Shape& shape = shapes[i];
       if (std::holds_alternative<CsgShape>(shape.geometry) && bounds_of(shape).empty()) continue;
-      Part* part = &lowered.parts[0];
-      const PartKey own = part_key(shape, shape.world_from_object);
+      Subtree* subtree = &lowered.subtrees[0];
+      const SubtreeKey own = subtree_key(shape, shape.world_from_object);
       if (!own.is_common()) {
         std::array<double, 16> key;
         for (int k = 0; k < 16; ++k) key[static_cast<std::size_t>(k)] = own.placed[k / 4][k % 4];
         const auto [found, fresh] = by_space.emplace(std::pair(key, own.flags), nullptr);
         if (fresh) {
-          found->second = &lowered.parts.emplace_back();
+          found->second = &lowered.subtrees.emplace_back();
           found->second->placed = own.placed;
           found->second->flags = own.flags;
         }
-        part = found->second;
+        subtree = found->second;
       }
       ShapeExtent& extent = lowered.extents[i];
-      extent.part = part;
-      extent.first = part->primitives.size();
+      extent.subtree = subtree;
+      extent.first = subtree->primitives.size();
       extent.begin = lengths();
-      lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i), *part);
+      lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i), *subtree);
       extent.end = lengths();
     }
     return lowered;
@@ -254,8 +254,8 @@ class GeometryLowering {
     return narrow<uint>(out_.geometries.size() - 1);
   }
 
-  FlatPrimitive& add_primitive(Part& part, int shape, uint geometry) {
-    FlatPrimitive& p = part.primitives.emplace_back();
+  FlatPrimitive& add_primitive(Subtree& subtree, int shape, uint geometry) {
+    FlatPrimitive& p = subtree.primitives.emplace_back();
     p = FlatPrimitive{static_cast<std::uint32_t>(shape), narrow<std::uint32_t>(out_.primitive_geometry.size()), {}};
     out_.primitive_geometry.push_back(geometry);
     return p;
@@ -263,13 +263,13 @@ class GeometryLowering {
 
   /// Appends shapes of one primitive.
   template <class Geometry>
-  void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record, Part& part) {
+  void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record, Subtree& subtree) {
     const FlatPrimitive flat = flat_primitive(geometry, m, out_.leaves);
-    FlatPrimitive& p = add_primitive(part, static_cast<int>(flat.shape), add_geometry(record, static_cast<int>(flat.shape)));
+    FlatPrimitive& p = add_primitive(subtree, static_cast<int>(flat.shape), add_geometry(record, static_cast<int>(flat.shape)));
     std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
   }
 
-  void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Part& part) {
+  void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Subtree& subtree) {
     const double scale = similarity_scale(m);
     std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
     const bool identity = m == Matrix(1);
@@ -280,7 +280,7 @@ class GeometryLowering {
       reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
       for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
     }
-    reserve_more(part.primitives, capsules.p0.size());
+    reserve_more(subtree.primitives, capsules.p0.size());
     for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
       const FlatPrimitive flat = flat_capsule(capsules, i, identity ? nullptr : &m, scale);
       const int kind = static_cast<int>(flat.shape);
@@ -291,7 +291,7 @@ class GeometryLowering {
         own.material = material;
         found->second = add_geometry(own, kind);
       }
-      FlatPrimitive& p = add_primitive(part, kind, found->second);
+      FlatPrimitive& p = add_primitive(subtree, kind, found->second);
       std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
     }
   }
@@ -322,7 +322,7 @@ class GeometryLowering {
     record.flags &= ~CAPLET_GEOMETRY_NORMALS;
   }
 
-  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
+  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Subtree& subtree) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     std::vector<glm::vec3> moved;
@@ -335,13 +335,13 @@ class GeometryLowering {
     };
     if (mesh.uvs.empty() && std::ranges::any_of(mesh.triangles, turned)) {
       drop_vertex_data(record);
-      return append(with_uvs(mesh), m, record, part);
+      return append(with_uvs(mesh), m, record, subtree);
     }
     const uint geometry = add_geometry(record, shape_triangle);
-    reserve_more(part.primitives, mesh.triangles.size());
+    reserve_more(subtree.primitives, mesh.triangles.size());
     for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
       if (turned(triangle)) std::swap(triangle[1], triangle[2]);
-      FlatPrimitive& p = add_primitive(part, shape_triangle, geometry);
+      FlatPrimitive& p = add_primitive(subtree, shape_triangle, geometry);
       for (std::size_t k = 0; k < 3; ++k) {
         out_.mesh_indices.push_back(triangle[k]);
         put(p, triangle_at_v0 + static_cast<int>(3 * k), dvec3(moved[triangle[k]]));
@@ -361,7 +361,7 @@ class GeometryLowering {
     return (flipped ? -side : side) < 0;
   }
 
-  void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record, Part& part) {
+  void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record, Subtree& subtree) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
@@ -374,12 +374,12 @@ class GeometryLowering {
     };
     if (mesh.uvs.empty() && std::ranges::any_of(mesh.patches, turned)) {
       drop_vertex_data(record);
-      return append(with_uvs(mesh), m, record, part);
+      return append(with_uvs(mesh), m, record, subtree);
     }
     const uint geometry = add_geometry(record, shape_bilinear);
     for (std::array<std::uint32_t, 4> patch : mesh.patches) {
       if (turned(patch)) std::swap(patch[1], patch[2]);
-      FlatPrimitive& p = add_primitive(part, shape_bilinear, geometry);
+      FlatPrimitive& p = add_primitive(subtree, shape_bilinear, geometry);
       for (std::size_t k = 0; k < 4; ++k) {
         out_.mesh_indices.push_back(patch[k]);
         put(p, bilinear_at_p00 + static_cast<int>(3 * k), corner(patch, k));
@@ -387,28 +387,28 @@ class GeometryLowering {
     }
   }
 
-  void encode(Part& part) {
-    part.tree = encode_tree(part.primitives, out_.nodes, out_.leaves, kind_bits_);
-    out_.bvh_nodes += part.tree.nodes;
-    out_.bvh_depth = std::max(out_.bvh_depth, part.tree.depth);
+  void encode(Subtree& subtree) {
+    subtree.tree = encode_tree(subtree.primitives, out_.nodes, out_.leaves, kind_bits_);
+    out_.bvh_nodes += subtree.tree.nodes;
+    out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }
 
-  void place(const Part& part, const Matrix& world_from_part, std::uint32_t scene_instance, Part& top,
-             std::vector<Placed>& placed) {
+  void place(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t scene_instance, Subtree& top,
+             std::vector<PlacedSubtree>& placed) {
     const auto index = narrow<uint>(out_.instances.size());
     const auto shapes = narrow<std::uint32_t>(scene_.shapes.size());
     out_.instances.push_back(
-        instance_record(part, world_from_part, scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
-    placed.push_back({&part, index, world_from_part, scene_instance, top.primitives.size()});
+        instance_record(subtree, world_from_subtree, scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
+    placed.push_back({&subtree, index, world_from_subtree, scene_instance, top.primitives.size()});
     FlatPrimitive& p = top.primitives.emplace_back();
     p = FlatPrimitive{shape_instance, index, {}};
-    set_instance_box(part, world_from_part, p);
+    set_instance_box(subtree, world_from_subtree, p);
   }
 
-  void add_emitters(const Part& part, uint instance, const Matrix& world_from_part, std::vector<Emitter>& emitters) {
-    for (const Part::Emissive& emissive : part.emissive) {
+  void add_emitters(const Subtree& subtree, uint instance, const Matrix& world_from_subtree, std::vector<Emitter>& emitters) {
+    for (const Subtree::Emissive& emissive : subtree.emissive) {
       emitters.resize(emitters.size() + emissive.count);
-      set_emitters(part, emissive, instance, world_from_part, group_++, spectra_, out_,
+      set_emitters(subtree, emissive, instance, world_from_subtree, group_++, spectra_, out_,
                    &emitters[emitters.size() - emissive.count]);
     }
   }
@@ -425,8 +425,8 @@ class GeometryLowering {
 
 }  // namespace
 
-PartKey part_key(const Shape& shape, const Matrix& m) {
-  // There is one part for what is baked into the shapes' common space, then one for each transform
+SubtreeKey subtree_key(const Shape& shape, const Matrix& m) {
+  // There is one subtree for what is baked into the shapes' common space, then one for each transform
   // that cannot be baked.
   const bool stays = !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
   return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
@@ -436,11 +436,11 @@ LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, S
   return GeometryLowering(scene, images, spectra, out).run();
 }
 
-Part lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object,
+Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object,
                        const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
-  Part part;
-  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, part);
-  return part;
+  Subtree subtree;
+  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, subtree);
+  return subtree;
 }
 
 }  // namespace caplet

@@ -84,7 +84,7 @@ struct LiveScene::State {
 
   FlatScene& flat() { return lowering->flat; }
   LoweredGeometry& geometry() { return lowering->geometry; }
-  Part& top() { return geometry().world.parts[0]; }
+  Subtree& top() { return geometry().world.subtrees[0]; }
 
   ShapeExtent& extent(const ShapeAt& at) {
     return (at.object ? geometry().objects[*at.object] : geometry().world).extents[at.shape];
@@ -96,42 +96,42 @@ struct LiveScene::State {
   bool follow(const CapsuleEdit& edit, const CapsuleEdit&) {
     const Shape& shape = shape_at(scene, edit.at);
     ShapeExtent& of = extent(edit.at);
-    if (!of.part) return false;
-    const Matrix baked = part_key(shape, shape.world_from_object).baked;
+    if (!of.subtree) return false;
+    const Matrix baked = subtree_key(shape, shape.world_from_object).baked;
     const std::size_t at = of.first + edit.capsule;
-    FlatPrimitive& p = of.part->primitives[at];
+    FlatPrimitive& p = of.subtree->primitives[at];
     const FlatPrimitive moved = flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
                                              baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
     if (moved.shape != p.shape) return false;
     std::copy(std::begin(moved.data), std::end(moved.data), std::begin(p.data));
-    trees->move(*of.part, at, changes);
-    part_has_changed(*of.part, &shape);
+    trees->move(*of.subtree, at, changes);
+    subtree_has_changed(*of.subtree, &shape);
     return true;
   }
 
   bool follow(const TransformEdit& edit, const TransformEdit& before) {
     const Shape& shape = shape_at(scene, edit.at);
     ShapeExtent& of = extent(edit.at);
-    if (!of.part) return false;
-    const PartKey old = part_key(shape, before.world_from_object), now = part_key(shape, edit.world_from_object);
-    const bool other_part = !now.same_part(old);
-    if (other_part && (now.is_common() || old.is_common() || of.part->shapes.size() != 1)) return false;
+    if (!of.subtree) return false;
+    const SubtreeKey old = subtree_key(shape, before.world_from_object), now = subtree_key(shape, edit.world_from_object);
+    const bool other_subtree = !now.same_subtree(old);
+    if (other_subtree && (now.is_common() || old.is_common() || of.subtree->shapes.size() != 1)) return false;
     if (now.baked != old.baked && !bake(shape, of, now.baked)) return false;
-    of.part->placed = now.placed;
-    of.part->flags = now.flags;
-    part_has_changed(*of.part, &shape);
+    of.subtree->placed = now.placed;
+    of.subtree->flags = now.flags;
+    subtree_has_changed(*of.subtree, &shape);
     return true;
   }
 
   /// Bakes a shape of which only numbers change, under another matrix.
   bool bake(const Shape& shape, ShapeExtent& of, const Matrix& baked) {
-    Part& part = *of.part;
+    Subtree& subtree = *of.subtree;
     const std::size_t count = of.end.primitives - of.begin.primitives;
-    if (count > most_moved && count * least_unmoved_share > part.primitives.size()) return false;
+    if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
     for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
-      if (const auto kind = part.primitives[of.first + i].shape; kind == shape_csg || kind == shape_polyhedron) return false;
+      if (const auto kind = subtree.primitives[of.first + i].shape; kind == shape_csg || kind == shape_polyhedron) return false;
     FlatScene fresh;
-    const Part own = lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);
+    const Subtree own = lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);
     const auto as_long = [&](std::size_t size, std::size_t Lengths::*length) {
       return size == of.end.*length - of.begin.*length;
     };
@@ -140,7 +140,7 @@ struct LiveScene::State {
         !as_long(fresh.mesh_uvs.size(), &Lengths::uvs))
       return false;
     for (std::size_t i = 0; i < count; ++i)
-      if (own.primitives[i].shape != part.primitives[of.first + i].shape) return false;
+      if (own.primitives[i].shape != subtree.primitives[of.first + i].shape) return false;
 
     FlatScene& to = flat();
     if (!fresh.geometries.empty()) {
@@ -160,9 +160,9 @@ struct LiveScene::State {
     put(fresh.mesh_normals, to.mesh_normals, of.begin.normals, changes.mesh_normals);
     put(fresh.mesh_uvs, to.mesh_uvs, of.begin.uvs, changes.mesh_uvs);
     for (std::size_t i = 0; i < count; ++i) {
-      FlatPrimitive& p = part.primitives[of.first + i];
+      FlatPrimitive& p = subtree.primitives[of.first + i];
       std::copy_n(own.primitives[i].data, 12, p.data);
-      trees->move(part, of.first + i, changes);
+      trees->move(subtree, of.first + i, changes);
     }
     return true;
   }
@@ -186,20 +186,20 @@ struct LiveScene::State {
 
   bool follow(const EmissionEdit& edit, const EmissionEdit& before) {
     ShapeExtent& of = extent(edit.at);
-    if (!of.part || edit.to.surfaces != before.to.surfaces) return false;
+    if (!of.subtree || edit.to.surfaces != before.to.surfaces) return false;
     for (std::size_t i = of.begin.geometries; i < of.end.geometries; ++i) {
       uint& flags = flat().geometries[i].flags;
       flags &= ~CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
       if (edit.to.two_sided) flags |= CAPLET_GEOMETRY_EMIT_BOTH_SIDES;
     }
     changes.geometries.add(of.begin.geometries, of.end.geometries - of.begin.geometries);
-    update_emitters(*of.part, &shape_at(scene, edit.at));
+    update_emitters(*of.subtree, &shape_at(scene, edit.at));
     lower_lights_again();
     return true;
   }
 
   bool follow(const InstanceEdit& edit, const InstanceEdit&) {
-    for (Placed& placed : geometry().placed)
+    for (PlacedSubtree& placed : geometry().placed)
       if (placed.scene_instance == edit.instance) place_again(placed);
     world_may_have_changed();
     return true;
@@ -225,54 +225,54 @@ struct LiveScene::State {
     return edit.film.space == before.film.space && edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }
 
-  /// Call this when `part` has other primitives or another place; `shape`, where it emits, has
+  /// Call this when `subtree` has other primitives or another place; `shape`, where it emits, has
   /// other areas.
-  void part_has_changed(Part& part, const Shape* shape) {
-    if (&part != &top()) {
-      for (Placed& placed : geometry().placed)
-        if (placed.part == &part) place_again(placed);
+  void subtree_has_changed(Subtree& subtree, const Shape* shape) {
+    if (&subtree != &top()) {
+      for (PlacedSubtree& placed : geometry().placed)
+        if (placed.subtree == &subtree) place_again(placed);
     } else if (shape->emission) {
-      update_emitters(part, shape);
+      update_emitters(subtree, shape);
     }
     world_may_have_changed();
   }
 
   /// Updates an instance's record, its box in the world, and its lights.
-  void place_again(Placed& placed) {
-    const Part& part = *placed.part;
-    placed.world_from_part = placed.scene_instance == CAPLET_NONE
-                                 ? part.placed
-                                 : scene.instances[placed.scene_instance].world_from_object * part.placed;
+  void place_again(PlacedSubtree& placed) {
+    const Subtree& subtree = *placed.subtree;
+    placed.world_from_subtree = placed.scene_instance == CAPLET_NONE
+                                 ? subtree.placed
+                                 : scene.instances[placed.scene_instance].world_from_object * subtree.placed;
     InstanceRecord& record = flat().instances[placed.instance];
-    InstanceRecord fresh = instance_record(part, placed.world_from_part, record.object);
+    InstanceRecord fresh = instance_record(subtree, placed.world_from_subtree, record.object);
     fresh.light_base = record.light_base;
     if (!same_bytes(record, fresh)) {
       record = fresh;
       changes.instances.add(placed.instance, 1);
     }
     FlatPrimitive& box = top().primitives[placed.top];
-    set_instance_box(part, placed.world_from_part, box);
+    set_instance_box(subtree, placed.world_from_subtree, box);
     trees->move(top(), placed.top, changes);
-    if (part.emitter_count == 0) return;
-    for (const Part::Emissive& emissive : part.emissive)
-      emit_again(part, emissive, placed.instance, placed.world_from_part, record.light_base);
+    if (subtree.emitter_count == 0) return;
+    for (const Subtree::Emissive& emissive : subtree.emissive)
+      emit_again(subtree, emissive, placed.instance, placed.world_from_subtree, record.light_base);
   }
 
-  /// Updates the lights of a shape wherever its part is.
-  void update_emitters(const Part& part, const Shape* shape) {
-    for (const Part::Emissive& emissive : part.emissive) {
+  /// Updates the lights of a shape wherever its subtree is.
+  void update_emitters(const Subtree& subtree, const Shape* shape) {
+    for (const Subtree::Emissive& emissive : subtree.emissive) {
       if (emissive.shape != shape) continue;
-      if (&part == &top()) emit_again(part, emissive, CAPLET_NONE, Matrix(1), 0);
-      for (const Placed& placed : geometry().placed)
-        if (placed.part == &part)
-          emit_again(part, emissive, placed.instance, placed.world_from_part, flat().instances[placed.instance].light_base);
+      if (&subtree == &top()) emit_again(subtree, emissive, CAPLET_NONE, Matrix(1), 0);
+      for (const PlacedSubtree& placed : geometry().placed)
+        if (placed.subtree == &subtree)
+          emit_again(subtree, emissive, placed.instance, placed.world_from_subtree, flat().instances[placed.instance].light_base);
     }
   }
 
-  void emit_again(const Part& part, const Part::Emissive& emissive, uint instance, const Matrix& world_from_part,
+  void emit_again(const Subtree& subtree, const Subtree::Emissive& emissive, uint instance, const Matrix& world_from_subtree,
                   uint light_base) {
     Emitter* first = &geometry().emitters[light_base + emissive.offset];
-    set_emitters(part, emissive, instance, world_from_part, first->group, lowering->spectra, flat(), first);
+    set_emitters(subtree, emissive, instance, world_from_subtree, first->group, lowering->spectra, flat(), first);
     lights_are_old = true;
   }
 
@@ -320,12 +320,12 @@ struct LiveScene::State {
   }
 
   bool has_bad_tree() const {
-    const auto is_bad = [&](const Part& part) {
-      return part.primitives.size() >= rebuilt_from_primitives && trees->cost_growth(part) > rebuilt_at_growth;
+    const auto is_bad = [&](const Subtree& subtree) {
+      return subtree.primitives.size() >= rebuilt_from_primitives && trees->cost_growth(subtree) > rebuilt_at_growth;
     };
     const LoweredGeometry& all = lowering->geometry;
-    return std::ranges::any_of(all.world.parts, is_bad) || std::ranges::any_of(all.objects, [&](const LoweredShapes& object) {
-             return std::ranges::any_of(object.parts, is_bad);
+    return std::ranges::any_of(all.world.subtrees, is_bad) || std::ranges::any_of(all.objects, [&](const LoweredShapes& object) {
+             return std::ranges::any_of(object.subtrees, is_bad);
            });
   }
 

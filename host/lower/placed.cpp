@@ -15,7 +15,7 @@
 #include "lower/detail/area.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/floats.h"
-#include "lower/detail/parts.h"
+#include "lower/detail/subtrees.h"
 
 namespace caplet {
 
@@ -26,21 +26,21 @@ using glm::dvec3;
 
 /// Returns the bounds of the transformed shapes themselves while they are few; for large objects
 /// those of the tree's transformed box.
-Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
+Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree) {
   Bounds box;
-  if (part.primitives.size() <= 256) {
-    for (const Shape* shape : part.shapes) {
+  if (subtree.primitives.size() <= 256) {
+    for (const Shape* shape : subtree.shapes) {
       Shape moved = *shape;
-      // A part with its own transform holds its shapes in their object space.
-      moved.world_from_object = part.placed == Matrix(1) ? world_from_part * shape->world_from_object : world_from_part;
+      // A subtree with its own transform holds its shapes in their object space.
+      moved.world_from_object = subtree.placed == Matrix(1) ? world_from_subtree * shape->world_from_object : world_from_subtree;
       box.extend(bounds_of(moved));
     }
     return box;
   }
   for (int corner = 0; corner < 8; ++corner) {
     dvec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? part.tree.max[k] : part.tree.min[k];
-    box.extend(apply_point(world_from_part, p));
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? subtree.tree.max[k] : subtree.tree.min[k];
+    box.extend(apply_point(world_from_subtree, p));
   }
   return box;
 }
@@ -48,8 +48,8 @@ Bounds placed_bounds(const Part& part, const Matrix& world_from_part) {
 /// Placement is shared by lights that are placed together.
 struct Placement {
   explicit Placement(const Matrix& m)
-      : world_from_part(m), stays(m == Matrix(1)), normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
-  Matrix world_from_part;
+      : world_from_subtree(m), stays(m == Matrix(1)), normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
+  Matrix world_from_subtree;
   bool stays;
   glm::dmat3 normals;
 };
@@ -64,7 +64,7 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
     for (int corner = 0; corner < 8; ++corner) {
       dvec3 x;
       for (int k = 0; k < 3; ++k) x[k] = (corner >> k) & 1 ? high[k] : low[k];
-      box.extend(apply_point(to.world_from_part, x));
+      box.extend(apply_point(to.world_from_subtree, x));
     }
   }
   dvec3 normal(0);
@@ -87,18 +87,18 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
 }
 
 /// Sets the ball around the image of the primitive's box, for kinds that are sampled by it.
-void set_ball(const FlatPrimitive& p, const Matrix& world_from_part, Emitter& emitter) {
+void set_ball(const FlatPrimitive& p, const Matrix& world_from_subtree, Emitter& emitter) {
   const bool has_round_end =
       p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
   emitter.by_ball = !shape_has(p.shape, trait_own_light) || has_round_end;
   if (!emitter.by_ball) return;
   double low[3], high[3];
   primitive_box(p, low, high);
-  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_part, 0.5 * (a + b));
+  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_subtree, 0.5 * (a + b));
   double radius = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
-    radius = std::max(radius, glm::length(apply_point(world_from_part, x) - center));
+    radius = std::max(radius, glm::length(apply_point(world_from_subtree, x) - center));
   }
   for (int k = 0; k < 3; ++k) emitter.ball[k] = center[k];
   // The centre is rounded to floats.
@@ -115,21 +115,21 @@ bool is_unseen(const Shape& shape) {
 
 }  // namespace
 
-InstanceRecord instance_record(const Part& part, const Matrix& world_from_part, std::uint32_t object) {
+InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t object) {
   InstanceRecord record{};
-  const Matrix part_from_world = glm::inverse(world_from_part);
-  write_matrix(record.object_from_world, part_from_world);
-  write_matrix(record.world_from_object, world_from_part);
-  record.root = part.tree.root;
+  const Matrix subtree_from_world = glm::inverse(world_from_subtree);
+  write_matrix(record.object_from_world, subtree_from_world);
+  write_matrix(record.world_from_object, world_from_subtree);
+  record.root = subtree.tree.root;
   record.light_base = CAPLET_NONE;
   record.object = object;
-  record.flags = part.flags;
-  if (glm::determinant(glm::dmat3(world_from_part)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
+  record.flags = subtree.flags;
+  if (glm::determinant(glm::dmat3(world_from_subtree)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
   return record;
 }
 
-void set_instance_box(const Part& part, const Matrix& world_from_part, FlatPrimitive& instance) {
-  const Bounds box = placed_bounds(part, world_from_part);
+void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree, FlatPrimitive& instance) {
+  const Bounds box = placed_bounds(subtree, world_from_subtree);
   double largest = 0;
   for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
   // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on
@@ -141,10 +141,10 @@ void set_instance_box(const Part& part, const Matrix& world_from_part, FlatPrimi
   }
 }
 
-void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const Matrix& world_from_part,
+void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance, const Matrix& world_from_subtree,
                   std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out) {
   const AreaEmission& emission = *emissive.shape->emission;
-  const AreaMap area_map(world_from_part);
+  const AreaMap area_map(world_from_subtree);
   std::vector<double> areas(emissive.count);
   const auto each = [&](const auto& of) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, emissive.count, 1024),
@@ -153,7 +153,7 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
                       });
   };
   each([&](std::size_t i) {
-    areas[i] = placed_area(part.primitives[emissive.first + i], flat.leaves, area_map, emission.surfaces);
+    areas[i] = placed_area(subtree.primitives[emissive.first + i], flat.leaves, area_map, emission.surfaces);
   });
   double total_area = 0;
   for (const double area : areas) total_area += area;
@@ -174,16 +174,16 @@ void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_
     emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
   }
   emitter.luminance = luminance * emitter.scale;
-  const Placement placement(world_from_part);
+  const Placement placement(world_from_subtree);
   each([&](std::size_t i) {
     const std::size_t at = emissive.first + i;
-    const FlatPrimitive& p = part.primitives[at];
+    const FlatPrimitive& p = subtree.primitives[at];
     Emitter& to = out[i];
     to = emitter;
-    to.slot = part.tree.slots[at];
+    to.slot = subtree.tree.slots[at];
     to.geometry = flat.primitive_geometry[p.id];
     to.area = areas[i];
-    set_ball(p, world_from_part, to);
+    set_ball(p, world_from_subtree, to);
     set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, to);
     // This guess affects only the choice among lights: half of the ball's area, however little of
     // it the solid fills.

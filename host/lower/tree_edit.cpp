@@ -73,12 +73,12 @@ TreeEdit::TreeEdit(FlatScene& flat, LoweredGeometry& geometry)
 
 void TreeEdit::leaves_have_grown() { row_parent_.resize((flat_.leaves.size() + 7) / 8, CAPLET_NONE); }
 
-const FlatPrimitive& TreeEdit::primitive(const Part& part, std::uint32_t kind, std::uint32_t id) const {
-  if (kind == shape_instance) return part.primitives[geometry_.placed[id].top];
-  const bool is_top = &part == &geometry_.world.parts[0] && !geometry_.placed.empty();
+const FlatPrimitive& TreeEdit::primitive(const Subtree& subtree, std::uint32_t kind, std::uint32_t id) const {
+  if (kind == shape_instance) return subtree.primitives[geometry_.placed[id].top];
+  const bool is_top = &subtree == &geometry_.world.subtrees[0] && !geometry_.placed.empty();
   const auto end =
-      is_top ? part.primitives.begin() + static_cast<std::ptrdiff_t>(geometry_.placed[0].top) : part.primitives.end();
-  const auto found = std::ranges::lower_bound(part.primitives.begin(), end, id, {}, &FlatPrimitive::id);
+      is_top ? subtree.primitives.begin() + static_cast<std::ptrdiff_t>(geometry_.placed[0].top) : subtree.primitives.end();
+  const auto found = std::ranges::lower_bound(subtree.primitives.begin(), end, id, {}, &FlatPrimitive::id);
   CHECK_EQ_(found != end && found->id == id, true);
   return *found;
 }
@@ -105,7 +105,7 @@ void TreeEdit::set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& 
   }
 }
 
-ReferenceBox TreeEdit::leaf_box(const Part& part, std::uint32_t row) const {
+ReferenceBox TreeEdit::leaf_box(const Subtree& subtree, std::uint32_t row) const {
   const std::uint32_t parent = row_parent_[row];
   const auto reference =
       std::bit_cast<std::uint32_t>(flat_.nodes[std::size_t{parent / 8} * CAPLET_NODE_FLOATS + 48 + parent % 8]);
@@ -113,14 +113,14 @@ ReferenceBox TreeEdit::leaf_box(const Part& part, std::uint32_t row) const {
   ReferenceBox box = nothing;
   for (std::uint32_t lane = 0; lane < 8; ++lane) {
     const auto id = std::bit_cast<std::uint32_t>(flat_.leaves[std::size_t{row} * 8 + lane]);
-    if (id != CAPLET_NONE) extend(box, reference_box(primitive(part, kind, id)));
+    if (id != CAPLET_NONE) extend(box, reference_box(primitive(subtree, kind, id)));
   }
   return box;
 }
 
-void TreeEdit::write_lanes(const Part& part, std::size_t at, SceneChanges& changes) {
-  const FlatPrimitive& p = part.primitives[at];
-  const std::uint32_t slot = part.tree.slots[at], rows = rows_of(p.shape);
+void TreeEdit::write_lanes(const Subtree& subtree, std::size_t at, SceneChanges& changes) {
+  const FlatPrimitive& p = subtree.primitives[at];
+  const std::uint32_t slot = subtree.tree.slots[at], rows = rows_of(p.shape);
   float* block = &flat_.leaves[std::size_t{slot / 8} * 8];
   for (std::uint32_t lane = 0; lane < 8; ++lane) {
     // Empty lanes repeat the first primitive.
@@ -131,16 +131,16 @@ void TreeEdit::write_lanes(const Part& part, std::size_t at, SceneChanges& chang
   if (rows > 1) changes.leaves.add(std::size_t{slot / 8} * 8 + 8, std::size_t{rows - 1} * 8);
 }
 
-void TreeEdit::move(Part& part, std::size_t at, SceneChanges& changes) {
-  Cost& cost = costs_[&part];
+void TreeEdit::move(Subtree& subtree, std::size_t at, SceneChanges& changes) {
+  Cost& cost = costs_[&subtree];
   if (cost.built == 0) {
-    cost.bounds = bounds_of(part.tree);
-    cost.built = part.tree.sah;
-    cost.areas = cost.clipped = part.tree.sah * area(cost.bounds);
+    cost.bounds = bounds_of(subtree.tree);
+    cost.built = subtree.tree.sah;
+    cost.areas = cost.clipped = subtree.tree.sah * area(cost.bounds);
   }
-  write_lanes(part, at, changes);
-  const std::uint32_t row = part.tree.slots[at] / 8;
-  ReferenceBox box = leaf_box(part, row);
+  write_lanes(subtree, at, changes);
+  const std::uint32_t row = subtree.tree.slots[at] / 8;
+  ReferenceBox box = leaf_box(subtree, row);
   std::uint32_t link = row_parent_[row];
   while (link != CAPLET_NONE) {
     const std::uint32_t node = link / 8;
@@ -150,18 +150,18 @@ void TreeEdit::move(Part& part, std::size_t at, SceneChanges& changes) {
     box = bounds_of_node(node);
     link = node_parent_[node];
   }
-  const ReferenceBox before = bounds_of(part.tree);
+  const ReferenceBox before = bounds_of(subtree.tree);
   cost.areas += area(box) - area(before);
   cost.clipped += area(clipped(box, cost.bounds)) - area(clipped(before, cost.bounds));
-  std::copy_n(box.min, 3, part.tree.min);
-  std::copy_n(box.max, 3, part.tree.max);
+  std::copy_n(box.min, 3, subtree.tree.min);
+  std::copy_n(box.max, 3, subtree.tree.max);
 }
 
-double TreeEdit::cost_growth(const Part& part) const {
-  const auto found = costs_.find(&part);
+double TreeEdit::cost_growth(const Subtree& subtree) const {
+  const auto found = costs_.find(&subtree);
   if (found == costs_.end()) return 1;
   const Cost& cost = found->second;
-  const double now = area(bounds_of(part.tree)), then = area(cost.bounds);
+  const double now = area(bounds_of(subtree.tree)), then = area(cost.bounds);
   if (!(now > 0 && then > 0 && cost.built > 0)) return 1;
   return std::max(cost.areas / now, cost.clipped / then) / cost.built;
 }

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "present/lights.h"
-#include "present/look.h"
+#include "present/picture_options.h"
 #include "scene/principal_axes.h"
 
 namespace caplet {

@@ -13,7 +13,7 @@ std::vector<Primitive> primitives_in(const Model& geometry) {
   if constexpr (FacedSolid<Model>)
     return {Solid<Model>{geometry}};
   else
-    return witnesses_of(geometry);
+    return references_of(geometry);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace caplet::reference {
 
 /// These are the kinds that reports distinguish, by name: capsules with two radii are
-/// tapered_capsules, spools are cylinders or cones by theirs.
+/// tapered_capsules, frustums are cylinders or cones by theirs.
 inline constexpr std::array kind_names = {
 #define KIND(name) #name,
 #include "reference/primitives.def"

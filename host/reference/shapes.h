@@ -43,11 +43,11 @@ struct Disk {
   double radius = 1;
 };
 
-/// A Spool is a cylinder or cone: the convex hull of two ends, each a disk across the axis or a
+/// A Frustum is a cylinder or cone: the convex hull of two ends, each a disk across the axis or a
 /// ball. Surfaces: 0 the side, which touches both ends; 1 and 2 the points that belong to the end
-/// at p0 or p1 alone. `open`: that surface is not there, and the shape is no solid. make_spool
+/// at p0 or p1 alone. `open`: that surface is not there, and the shape is no solid. make_frustum
 /// makes it.
-struct Spool {
+struct Frustum {
   struct End {
     double radius = 1;
     bool round = false, open = false;
@@ -61,7 +61,7 @@ struct Spool {
   std::array<glm::dvec2, 2> side_normals;
   int side_count = 0;
 };
-Spool make_spool(const glm::dvec3& p0, const glm::dvec3& p1, const Spool::End& end0, const Spool::End& end1);
+Frustum make_frustum(const glm::dvec3& p0, const glm::dvec3& p1, const Frustum::End& end0, const Frustum::End& end1);
 
 /// Solid is a convex solid as the model's own surfaces bound it (caplet::FacedSolid), for kinds
 /// that have no shape of their own here.

@@ -134,7 +134,7 @@ std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& r
   for (const Crossing& c : solid_crossings(carrier, ray))
     // The point is computed from the foot, since the ray's origin may be far.
     if (keeps(primitive, line.foot + (c.t - line.t_foot) * line.speed * line.unit, c.surface)) out.push_back(c);
-  if (!std::holds_alternative<Spool>(primitive))
+  if (!std::holds_alternative<Frustum>(primitive))
     for (Crossing& c : out) c.surface = 0, c.surface_margin = HUGE_VAL;
   return out;
 }
@@ -421,7 +421,7 @@ double change_distance(const Primitive& primitive, const Ray& ray, double limit)
   if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
     distance = std::min(distance, distance_to_fold(line, *patch, limit));
   } else if (const Primitive carrier = carrier_of(primitive);
-             carrier.index() != primitive.index() || std::holds_alternative<Spool>(primitive)) {
+             carrier.index() != primitive.index() || std::holds_alternative<Frustum>(primitive)) {
     distance = std::min(distance, std::abs(least_on(carrier, line_near(carrier, ray))));
   }
   return distance;

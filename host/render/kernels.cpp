@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "base/check.h"
-#include "render/detail/drive.h"
+#include "render/detail/launch_policy.h"
 #include "render/detail/known_rays.h"
 
 namespace caplet {
@@ -130,7 +130,7 @@ StageOptions StageOptions::together_with(const StageOptions& others) const {
 }
 
 Kernels::Kernels(const Device& device, StageOptions options)
-    : device_(device), options_(std::move(options)), local_size_(drive_of(device.profile()).local_size) {}
+    : device_(device), options_(std::move(options)), local_size_(launch_policy_of(device.profile()).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
   return stage_shares[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;

@@ -10,7 +10,7 @@
 
 #include "base/check.h"
 #include "base/clock.h"
-#include "render/detail/drive.h"
+#include "render/detail/launch_policy.h"
 
 namespace caplet {
 
@@ -71,7 +71,7 @@ RoundStages round_stages(const DeviceScene& scene) {
 }
 /// Returns whether renders of such a scene do not use a stage.
 bool is_idle(Stage stage, const DeviceScene& scene) {
-  if (stage == Stage::immerse || stage == Stage::settle || stage == Stage::travel) return !scene.has_media();
+  if (stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance) return !scene.has_media();
   constexpr std::array choices{Stage::extend,      Stage::extend_camera, Stage::extend_alpha,  Stage::shade,
                                Stage::shade_media, Stage::connect,       Stage::connect_alpha, Stage::connect_media};
   if (std::ranges::find(choices, stage) == choices.end()) return false;
@@ -81,14 +81,14 @@ bool is_idle(Stage stage, const DeviceScene& scene) {
 
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
   const Device& device = scene.device();
-  const Drive& drive = drive_of(device.profile());
-  const std::size_t wanted = std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : drive.batch_paths, 1,
+  const LaunchPolicy& policy = launch_policy_of(device.profile());
+  const std::size_t wanted = std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : policy.batch_paths, 1,
                                                      std::max<std::size_t>(options.most_paths, 1));
   FilmLayout layout;
   layout.layers = options.layers;
   const std::uint64_t film =
       std::uint64_t{view.view.crop_width} * view.view.crop_height * layout.words_per_pixel() * sizeof(ulong);
-  const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), drive.sort_fan) * sizeof(uint);
+  const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), policy.sort_fan) * sizeof(uint);
   // Drivers keep some memory for themselves, for example for private memory of kernels.
   const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
   const PathNeeds needs = needs_of(scene, options.layers);
@@ -101,7 +101,7 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, c
 PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
-    return PathBuffers(scene.device(), paths, sort_places(bins, drive_of(scene.device().profile()).sort_fan),
+    return PathBuffers(scene.device(), paths, sort_places(bins, launch_policy_of(scene.device().profile()).sort_fan),
                        needs_of(scene, layers));
   };
   while (paths > least_batch_paths) try {
@@ -132,7 +132,7 @@ Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptio
       layers_(options.layers),
       paths_(path_buffers(scene, batch_paths_, layers_)),
       sort_bits_(sort_bits_of(scene, batch_paths_)),
-      chunk_(drive_of(scene.device().profile()).first_chunk) {
+      chunk_(launch_policy_of(scene.device().profile()).first_chunk) {
   reset(view);
 }
 
@@ -140,8 +140,8 @@ void Renderer::reset(const FlatView& view) {
   scene_.prepare_for(view);
   if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
     sort_bits_ = sort_bits;
-    const Drive& drive = drive_of(scene_.device().profile());
-    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), drive.sort_fan));
+    const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
+    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), policy.sort_fan));
   }
   paths_.provide(scene_.device(), batch_paths_, needs_of(scene_, layers_));
   sensor_ = SensorBuffers(scene_.device(), view);
@@ -163,7 +163,7 @@ void Renderer::reset(const FlatView& view) {
   is_old_ = true;
   std::vector<Stage> stages(render_stages().begin(), render_stages().end());
   std::erase_if(stages, [&](Stage stage) { return is_idle(stage, scene_); });
-  if (!drive_of(scene_.device().profile()).counts_on_device)
+  if (!launch_policy_of(scene_.device().profile()).counts_on_device)
     std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
   scene_.kernels().compile(stages, batch_paths_);
 }
@@ -187,7 +187,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   add_part(film_.parts, {window, sample_begin, sample_count});
   if (window != film_.layout.window) clear_film();
   const bool first_pass = std::exchange(is_old_, false);
-  const Drive& drive = drive_of(scene_.device().profile());
+  const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
   const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
@@ -208,9 +208,9 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
     record.color_exponent = film_.layout.color_exponent;
     record.length_exponent = film_.layout.length_exponent;
     record.first = first_pass ? 1 : 0;
-    record.by_sample = drive.by_sample ? 1 : 0;
-    record.layers_apart = drive.layers_apart ? 1 : 0;
-    record.sort_fan = drive.sort_fan;
+    record.by_sample = policy.by_sample ? 1 : 0;
+    record.layers_apart = policy.layers_apart ? 1 : 0;
+    record.sort_fan = policy.sort_fan;
     batch(record);
     if (batch_done) batch_done(first + count);
   }
@@ -219,7 +219,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
 // kernels/stages/path.cl describes the algorithm.
 void Renderer::batch(const BatchRecord& record) {
   Kernels& kernels = scene_.kernels();
-  const Drive& drive = drive_of(scene_.device().profile());
+  const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
   Bindings bindings = scene_.bindings();
   sensor_.bind(bindings);
   paths_.bind(bindings);
@@ -231,11 +231,11 @@ void Renderer::batch(const BatchRecord& record) {
   paths_.counters.counters.write(counters);
   kernels.set_chunk(chunk_);
   kernels.run(Stage::generate, bindings, record.path_count);
-  if (scene_.has_media()) kernels.run(Stage::immerse, bindings, origins_differ_ ? record.path_count : 1);
+  if (scene_.has_media()) kernels.run(Stage::camera_media, bindings, origins_differ_ ? record.path_count : 1);
   rays_.camera += record.path_count;
-  drive.counts_on_device ? rounds_on_device(bindings, record.path_count) : rounds_by_host(bindings, record.path_count);
+  policy.counts_on_device ? rounds_on_device(bindings, record.path_count) : rounds_by_host(bindings, record.path_count);
   const auto layers = static_cast<std::size_t>(std::popcount(layers_.bits()));
-  kernels.run(Stage::resolve, bindings, record.pixel_count * (drive.layers_apart ? layers : 1));
+  kernels.run(Stage::resolve, bindings, record.pixel_count * (policy.layers_apart ? layers : 1));
   paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
   ++beats_;
   rays_.not_finite += counters[counter_not_finite];
@@ -252,8 +252,8 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
     kernels.run(extend, bindings, paths);
     extend = stages.later;
     if (scene_.has_media()) {
-      kernels.run(Stage::settle, bindings, paths);
-      kernels.run(Stage::travel, bindings, paths);
+      kernels.run(Stage::recount_media, bindings, paths);
+      kernels.run(Stage::sample_distance, bindings, paths);
     }
     kernels.run(stages.shade, bindings, paths);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
@@ -286,8 +286,8 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
       kernels.run(extend, bindings, paths, 0, counter_queued);
       extend = stages.later;
       if (scene_.has_media()) {
-        kernels.run(Stage::settle, bindings, paths, 0, counter_queued);
-        kernels.run(Stage::travel, bindings, paths, 0, counter_queued);
+        kernels.run(Stage::recount_media, bindings, paths, 0, counter_queued);
+        kernels.run(Stage::sample_distance, bindings, paths, 0, counter_queued);
       }
       kernels.run(stages.shade, bindings, paths, 0, counter_queued);
       kernels.run(stages.connect, bindings, paths, 0, counter_shadow);
@@ -310,7 +310,7 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
 /// Sorts queue_next into queue.
 void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter) {
   Kernels& kernels = scene_.kernels();
-  const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), drive_of(scene_.device().profile()).sort_fan);
+  const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device().profile()).sort_fan);
   for (std::size_t i = 0; i + 1 < levels.size(); ++i) kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
   for (std::size_t i = levels.size(); i-- > 0;) kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
   kernels.run(Stage::sort_scatter, bindings, paths, 0, counter);

@@ -12,8 +12,8 @@
 #include "base/check.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "render/detail/crew.h"
-#include "render/detail/shares.h"
+#include "render/detail/worker_pool.h"
+#include "render/detail/work_queue.h"
 #include "render/renderer.h"
 
 namespace caplet {
@@ -76,7 +76,7 @@ StageSeconds& add(StageSeconds& to, const StageSeconds& more) {
 
 }  // namespace
 
-bool any_thread_given_up() { return Crew::any_given_up(); }
+bool any_thread_given_up() { return WorkerPool::any_given_up(); }
 
 namespace {
 /// Ends a pass after the batch under way.
@@ -85,7 +85,7 @@ struct PassGivenUp {};
 
 /// Run is one task of all workers; workers that hang keep it alive.
 struct Session::Run {
-  Run(Workers of, Shares of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
+  Run(Workers of, WorkQueue of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
 
   void tell(std::size_t member, double paths) {
     under_way[member] = paths;
@@ -102,7 +102,7 @@ struct Session::Run {
   }
 
   Workers workers;
-  Shares shares;
+  WorkQueue shares;
   std::vector<double> under_way;  // paths of finished batches of unfinished parts
   double pixels = 1;
   std::uint32_t asked = 0;
@@ -250,13 +250,13 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
                            std::optional<double> time_limit) {
   const Window window = layout().window;
   const std::size_t pixels = std::max<std::size_t>(1, window.pixels());
-  std::vector<Shares::Worker> members;
+  std::vector<WorkQueue::Worker> members;
   for (const auto& worker : workers_) {
     const std::size_t batch = worker->renderer.batch_paths(), fill = std::max<std::size_t>(1, batch / pixels);
     const std::size_t most = options_.pass_samples > 0 ? options_.pass_samples : workers_.size() > 1 ? batch : fill;
     members.push_back({worker->speed, batch, static_cast<std::uint32_t>(std::min(most, batch))});
   }
-  const auto run = std::make_shared<Run>(workers_, Shares(window, next_, sample_count, std::exchange(again_, {}), members));
+  const auto run = std::make_shared<Run>(workers_, WorkQueue(window, next_, sample_count, std::exchange(again_, {}), members));
   run->pixels = static_cast<double>(pixels);
   run->asked = sample_count;
   run->progress = progress;
@@ -268,26 +268,26 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
     run->last_failure = failure;
     if (run->shares.workers_there() > 0) warn_of_lost(run->workers[i]->device, failure, patience);
   };
-  const auto crew = std::make_shared<Crew>(workers_.size(), Crew::Calls{beats, lost});
-  const std::weak_ptr<Crew> weak = crew;
-  crew->run(options_.patience, [run, weak, cancelled = cancelled_, time_limit](std::size_t i, Crew::Lock& lock) {
-    const std::shared_ptr<Crew> crew_of = weak.lock();
+  const auto pool = std::make_shared<WorkerPool>(workers_.size(), WorkerPool::Calls{beats, lost});
+  const std::weak_ptr<WorkerPool> weak = pool;
+  pool->run(options_.patience, [run, weak, cancelled = cancelled_, time_limit](std::size_t i, WorkerPool::Lock& lock) {
+    const std::shared_ptr<WorkerPool> pool_of = weak.lock();
     Worker& worker = *run->workers[i];
-    while (!crew_of->gone(i) && !run->fatal) {
+    while (!pool_of->gone(i) && !run->fatal) {
       const bool late = time_limit && run->shares.begun() && seconds_since(run->start) >= *time_limit;
       if (*cancelled || late) run->shares.close();
       const std::optional<FilmPart> part = run->shares.take(i);
       if (!part) {
         if (run->shares.complete() || run->shares.workers_there() == 0) break;
-        crew_of->wait(lock);
+        pool_of->wait(lock);
         continue;
       }
       const Clock::time_point start = Clock::now();
-      const bool there = crew_of->attempt(i, lock, [&] {
+      const bool there = pool_of->attempt(i, lock, [&] {
         try {
           worker.renderer.pass(part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
-            const Crew::Lock telling(crew_of->mutex());
-            if (!crew_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
+            const WorkerPool::Lock telling(pool_of->mutex());
+            if (!pool_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
             if (run->fatal) throw PassGivenUp();
           });
         } catch (const PassGivenUp&) {  // the film is cleared below
@@ -298,11 +298,11 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
       worker.speed = run->shares.speed(i);
       add_part(worker.had, *part);
       run->tell(i, 0);
-      crew_of->notify();
+      pool_of->notify();
     }
-    crew_of->notify();
+    pool_of->notify();
   });
-  const Crew::Lock lock(crew->mutex());
+  const WorkerPool::Lock lock(pool->mutex());
   run->progress = {};
   if (run->fatal) {
     const std::exception_ptr fatal = run->fatal;
@@ -316,20 +316,20 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
 
 /// Returns the sum of the workers' films; nothing when one of them could not be read.
 std::optional<Film> Session::gather() {
-  const auto run = std::make_shared<Run>(workers_, Shares(layout().window, next_, 0, {}, {}));
+  const auto run = std::make_shared<Run>(workers_, WorkQueue(layout().window, next_, 0, {}, {}));
   run->films.resize(workers_.size());
   const auto lost = [run, patience = options_.patience](std::size_t i, const std::exception_ptr& failure) {
     run->gone.push_back(run->workers[i]);
     run->last_failure = failure;
     if (run->gone.size() < run->workers.size()) warn_of_lost(run->workers[i]->device, failure, patience);
   };
-  const auto crew = std::make_shared<Crew>(workers_.size(), Crew::Calls{[](std::size_t) { return 0; }, lost});
-  const std::weak_ptr<Crew> weak = crew;
-  crew->run(options_.patience, [run, weak](std::size_t i, Crew::Lock& lock) {
+  const auto pool = std::make_shared<WorkerPool>(workers_.size(), WorkerPool::Calls{[](std::size_t) { return 0; }, lost});
+  const std::weak_ptr<WorkerPool> weak = pool;
+  pool->run(options_.patience, [run, weak](std::size_t i, WorkerPool::Lock& lock) {
     Film film;
     if (weak.lock()->attempt(i, lock, [&] { film = run->workers[i]->renderer.film().read(); })) run->films[i] = std::move(film);
   });
-  const Crew::Lock lock(crew->mutex());
+  const WorkerPool::Lock lock(pool->mutex());
   for (const auto& worker : run->gone) again_.insert(again_.end(), worker->had.begin(), worker->had.end());
   part_with(run->gone, run->last_failure);
   if (!run->gone.empty()) return {};

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "lower/identity.h"
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "report/summary.h"
 
 namespace caplet::report {
@@ -84,7 +84,7 @@ std::string crossing_text(const PickRecord& p, const Scene& scene) {
 }
 
 std::string reference_text(const ReferenceCrossing& c, const Scene& scene) {
-  return fmt::format("witness    t {:.9g}, {}, object {}, primitive {}, surface {}, material {}, at ({:.9g}, {:.9g}, {:.9g})\n",
+  return fmt::format("reference    t {:.9g}, {}, object {}, primitive {}, surface {}, material {}, at ({:.9g}, {:.9g}, {:.9g})\n",
                      c.t, side(c.entering), c.name.empty() ? std::to_string(c.object) : c.name, c.primitive, c.surface,
                      material_label(scene, c.material), c.point.x, c.point.y, c.point.z);
 }
@@ -98,12 +98,12 @@ bool is_sheet(const Shape& shape) {
 }  // namespace
 
 std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all) {
-  const reference::SceneWitness witness(scene);
+  const reference::SceneReference reference(scene);
   const reference::Ray asked{dvec3(ray.ox, ray.oy, ray.oz), dvec3(ray.dx, ray.dy, ray.dz), ray.t_min, ray.t_max};
   std::vector<reference::SceneHit> hits;
   if (all)
-    hits = witness.all(asked);
-  else if (const auto hit = witness.closest(asked))
+    hits = reference.all(asked);
+  else if (const auto hit = reference.closest(asked))
     hits = {*hit};
   std::vector<ReferenceCrossing> out;
   for (const reference::SceneHit& hit : hits) {
@@ -135,9 +135,9 @@ std::string plain_text(const PickReport& report, const Scene& scene) {
     if (report.all) out += fmt::format("\ncrossing   {}\n", i);
     if (i < report.crossings.size()) out += crossing_text(report.crossings[i], scene);
     if (i < references) out += reference_text((*report.reference)[i], scene);
-    if (report.reference && i >= references) out += "witness    nothing\n";
+    if (report.reference && i >= references) out += "reference    nothing\n";
   }
-  if (report.reference && report.crossings.empty() && references == 0) out += "witness    nothing\n";
+  if (report.reference && report.crossings.empty() && references == 0) out += "reference    nothing\n";
   return out;
 }
 

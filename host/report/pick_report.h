@@ -14,7 +14,7 @@
 
 namespace caplet::report {
 
-/// A crossing found by the witness (host/reference).
+/// A crossing found by the reference (host/reference).
 struct ReferenceCrossing {
   double t = 0;
   std::string name;          // the shape's name
@@ -33,7 +33,7 @@ struct PickReport {
   std::optional<std::vector<ReferenceCrossing>> reference;
 };
 
-/// Returns the witness's crossings of the same ray, in the device's floats. Time and memory grow with the primitives of the
+/// Returns the reference's crossings of the same ray, in the device's floats. Time and memory grow with the primitives of the
 /// scene.
 std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all);
 

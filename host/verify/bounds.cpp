@@ -61,7 +61,7 @@ struct TiltOf {
     const double length = glm::length(c.p1 - c.p0);
     return length > 0 ? std::min(moved / length, 2 * length / std::max(c.radius0, c.radius1)) : 0;
   }
-  double operator()(const reference::Spool& s) const { return moved / s.length; }
+  double operator()(const reference::Frustum& s) const { return moved / s.length; }
   double operator()(const reference::Triangle& t) const {
     const double extent = glm::length(t.v1 - t.v0) + glm::length(t.v2 - t.v0);
     return (moved + 4 * eps * extent) / altitude(t.v0, t.v1, t.v2);
@@ -95,10 +95,10 @@ double tilt_of(const reference::Primitive& primitive, double moved) { return std
 
 }  // namespace
 
-Bounds::Bounds(const reference::SceneWitness& witness) : witness_(&witness) {
-  places_.reserve(witness.size());
-  for (std::size_t i = 0; i < witness.size(); ++i) {
-    const auto placed = witness.placed(i);
+Bounds::Bounds(const reference::SceneReference& reference) : reference_(&reference) {
+  places_.reserve(reference.size());
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const auto placed = reference.placed(i);
     const dmat4 back = glm::inverse(placed.object_from_world);
     const double world_stretch = stretch_of(back);
     const auto* csg = std::get_if<reference::Csg>(&placed.primitive);
@@ -113,7 +113,7 @@ Bounds::Bounds(const reference::SceneWitness& witness) : witness_(&witness) {
 // multiplied and added (3); the numbers of baked shapes are rounded in the world (1). Six times eps of all terms, as large as
 // they get anywhere on the primitive, is more than both.
 LocalRay Bounds::local(std::size_t primitive, const reference::Ray& ray) const {
-  const auto placed = witness_->placed(primitive);
+  const auto placed = reference_->placed(primitive);
   const Place& place = places_[primitive];
   const dmat4& m = placed.object_from_world;
   LocalRay out{
@@ -132,7 +132,7 @@ double Bounds::rounding(std::size_t primitive) const {
 double Bounds::tilt(std::size_t primitive) const {
   const Place& place = places_[primitive];
   // Both ends of a span move.
-  return condition(primitive) * tilt_of(witness_->placed(primitive).primitive, 2 * rounding(primitive) * place.object_stretch);
+  return condition(primitive) * tilt_of(reference_->placed(primitive).primitive, 2 * rounding(primitive) * place.object_stretch);
 }
 
 }  // namespace caplet::verify

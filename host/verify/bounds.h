@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 
 namespace caplet::verify {
 
@@ -25,7 +25,7 @@ struct LocalRay {
 
 class Bounds {
  public:
-  explicit Bounds(const reference::SceneWitness& witness);
+  explicit Bounds(const reference::SceneReference& reference);
 
   LocalRay local(std::size_t primitive, const reference::Ray& ray) const;
   /// Returns the longest image, in the primitive's space, of a world vector of length 1.
@@ -43,7 +43,7 @@ class Bounds {
     double object_stretch, world_stretch, world_size, object_shift;
     double corner;  // for csg shapes: the greatest distance of a box of their solids from the ball's centre
   };
-  const reference::SceneWitness* witness_;
+  const reference::SceneReference* reference_;
   std::vector<Place> places_;
 };
 

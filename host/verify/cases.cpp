@@ -64,8 +64,8 @@ Json to_json(const Failure& failure) {
   out["nearest"] = failure.nearest.object == CAPLET_NONE ? Json(nullptr) : to_json(failure.nearest);
   out["crossings"] = Json::array();
   for (const PickRecord& pick : failure.list) out["crossings"].push_back(to_json(pick));
-  out["witness"] = Json::array();
-  for (const reference::SceneHit& hit : failure.expected) out["witness"].push_back(to_json(hit));
+  out["reference"] = Json::array();
+  for (const reference::SceneHit& hit : failure.expected) out["reference"].push_back(to_json(hit));
   return out;
 }
 

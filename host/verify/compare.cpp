@@ -32,7 +32,7 @@ double ulp_of(double x) {
 
 /// Recognises open shapes: only their normal, which ReverseOrientation turns, distinguishes entering from leaving.
 bool is_sheet(const reference::Primitive& primitive) {
-  return !reference::is_solid(primitive) && !std::holds_alternative<reference::Spool>(primitive);
+  return !reference::is_solid(primitive) && !std::holds_alternative<reference::Frustum>(primitive);
 }
 
 bool begins_at(const LocalRay& local) { return std::abs(local.value(0)) <= local.bound; }
@@ -108,7 +108,7 @@ struct Solid {
   double stretch;  // from the primitive's space to the solid's
   int surface;     // of the solid
 };
-Solid solid_of(const reference::SceneWitness::PlacedPrimitive& placed, std::uint32_t surface) {
+Solid solid_of(const reference::SceneReference::PlacedPrimitive& placed, std::uint32_t surface) {
   Solid out{&placed.primitive, placed.object_from_world, 1, static_cast<int>(surface)};
   while (const auto* csg = std::get_if<reference::Csg>(out.primitive)) {
     const auto& operands = csg->body->operands;
@@ -140,25 +140,25 @@ struct Comparison::Pair {
   std::vector<const PickRecord*> found;
 };
 
-Comparison::Comparison(const Scene& scene, const reference::SceneWitness& witness)
-    : scene_(scene), witness_(witness), bounds_(witness) {}
+Comparison::Comparison(const Scene& scene, const reference::SceneReference& reference)
+    : scene_(scene), reference_(reference), bounds_(reference) {}
 
 Expected Comparison::expected(const RayRecord& r) const {
   Expected out;
   out.ray = {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max};
-  out.hits = witness_.all(out.ray, out.near);
+  out.hits = reference_.all(out.ray, out.near);
   return out;
 }
 
-/// Returns the witness's index of the device's primitive; no_primitive where the scene has no such primitive.
+/// Returns the reference's index of the device's primitive; no_primitive where the scene has no such primitive.
 std::size_t Comparison::primitive_of(const PickRecord& pick) const {
   const std::size_t in_world = scene_.shapes.size();
   std::optional<std::size_t> index;
   if (pick.object < in_world) {
-    if (pick.shape == pick.object) index = witness_.index_of(reference::no_instance, pick.shape, pick.primitive);
+    if (pick.shape == pick.object) index = reference_.index_of(reference::no_instance, pick.shape, pick.primitive);
   } else if (pick.shape >= in_world) {
     // The numbers of an object's shapes continue those of the world's (lower/identity.h).
-    index = witness_.index_of(static_cast<std::uint32_t>(pick.object - in_world),
+    index = reference_.index_of(static_cast<std::uint32_t>(pick.object - in_world),
                               static_cast<std::uint32_t>(pick.shape - in_world), pick.primitive);
   }
   return index.value_or(no_primitive);
@@ -166,7 +166,7 @@ std::size_t Comparison::primitive_of(const PickRecord& pick) const {
 
 /// Returns the name for messages: "capsule 7 of shape 2 of instance 3: ".
 std::string Comparison::name_of(std::size_t primitive) const {
-  const auto placed = witness_.placed(primitive);
+  const auto placed = reference_.placed(primitive);
   const SceneHit& id = placed.identity;
   std::string out =
       fmt::format("{} {} of shape {}", reference::kind_names[reference::kind_of(placed.primitive)], id.primitive, id.shape);
@@ -175,7 +175,7 @@ std::string Comparison::name_of(std::size_t primitive) const {
 }
 
 Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const {
-  const Solid solid = solid_of(witness_.placed(hit.index), pick.surface);
+  const Solid solid = solid_of(reference_.placed(hit.index), pick.surface);
   const reference::Primitive& primitive = *solid.primitive;
   const double t = pick.t;
   Match out{hit.index, {}};
@@ -217,7 +217,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::normal, off, allowed, 0x1p-23);
 
   const auto uv_there = [&](const dvec3& there) {
-    return witness_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)),
+    return reference_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)),
                        ray.direction);
   };
   const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
@@ -238,7 +238,7 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
 
 void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const {
   const LocalRay local = bounds_.local(pair.primitive, expected.ray);
-  const bool sheet = is_sheet(*local.primitive), turned = sheet && witness_.is_reversed(pair.primitive);
+  const bool sheet = is_sheet(*local.primitive), turned = sheet && reference_.is_reversed(pair.primitive);
   const auto disagree = [&](Fault fault, const std::string& text) {
     out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
@@ -249,7 +249,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
   if (pair.expected.size() != pair.found.size()) {
     different = "crossings at";
     for (const PickRecord* pick : pair.found) different += fmt::format(" {}", pick->t);
-    different += pair.found.empty() ? " no t; the witness says" : "; the witness says";
+    different += pair.found.empty() ? " no t; the reference says" : "; the reference says";
     for (const SceneHit* hit : pair.expected) different += fmt::format(" {}", hit->t);
     if (pair.expected.empty()) different += " none";
   }
@@ -262,14 +262,14 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
                                       [&](const SceneHit* hit) { return is_leaving(hit) == leaving; });
       if (other != pair.expected.end() && apart(local, pair.found[k]->t, (*other)->t) <= 1) std::swap(pair.expected[k], *other);
     }
-    const double t = pair.found[k]->t, by_witness = pair.expected[k]->t, off = apart(local, t, by_witness);
+    const double t = pair.found[k]->t, by_reference = pair.expected[k]->t, off = apart(local, t, by_reference);
     if (!(off <= 1)) {
       fault = Fault::t;
       different =
-          fmt::format("the crossing at {}, at {} by the witness, is off by {:.3g} of what is allowed", t, by_witness, off);
+          fmt::format("the crossing at {}, at {} by the reference, is off by {:.3g} of what is allowed", t, by_reference, off);
     } else if (leaving != is_leaving(pair.expected[k])) {
       fault = Fault::side;
-      different = fmt::format("the crossing at {} is {}, the witness says otherwise", t, leaving ? "leaving" : "entering");
+      different = fmt::format("the crossing at {} is {}, the reference says otherwise", t, leaving ? "leaving" : "entering");
     }
   }
   const bool matched = different.empty();
@@ -285,19 +285,19 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
   for (std::size_t k = 0; k < pair.found.size(); ++k) {
     const PickRecord& pick = *pair.found[k];
     const double t = pick.t;
-    SceneHit hit = matched ? *pair.expected[k] : witness_.placed(pair.primitive).identity;
+    SceneHit hit = matched ? *pair.expected[k] : reference_.placed(pair.primitive).identity;
     if (!matched) hit.t = t;
     if (!matched || pick.surface != hit.surface) {
       const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
                                                            static_cast<int>(pick.surface));
       // A ray along an open surface may hit it beside its edge.
       if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
-        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the witness says {}", pick.surface, t, away,
+        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the reference says {}", pick.surface, t, away,
                                              local.bound, matched ? std::to_string(hit.surface) : "otherwise"));
     }
-    if (const std::uint32_t material = witness_.material(pair.primitive, pick.surface); pick.material != material)
+    if (const std::uint32_t material = reference_.material(pair.primitive, pick.surface); pick.material != material)
       disagree(Fault::material,
-               fmt::format("material {} of surface {} at {}, the witness says {}", pick.material, pick.surface, t, material));
+               fmt::format("material {} of surface {} at {}, the reference says {}", pick.material, pick.surface, t, material));
     Match& match = out.matches.emplace_back(measure(local, hit, pick, expected.ray));
     if (!matched && sheet) match.deviations[0] = {};
     constexpr std::array faults = {Fault::t, Fault::point, Fault::normal, Fault::uv};
@@ -308,7 +308,7 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
   }
 }
 
-/// The nearest crossing must lie where its primitive has one, and earlier crossings of the witness must be within the bounds.
+/// The nearest crossing must lie where its primitive has one, and earlier crossings of the reference must be within the bounds.
 void Comparison::compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const {
   const bool hit = nearest.object != CAPLET_NONE;
   const std::size_t own = hit ? primitive_of(nearest) : no_primitive;
@@ -333,7 +333,7 @@ void Comparison::compare_nearest(const Expected& expected, const PickRecord& nea
       if (!excuse(own)) {
         out.disagreements.push_back(
             {Fault::hit, own,
-             name_of(own) + fmt::format("the nearest hit is at {}, where the witness has no crossing of it", t)});
+             name_of(own) + fmt::format("the nearest hit is at {}, where the reference has no crossing of it", t)});
         return;
       }
     }
@@ -345,7 +345,7 @@ void Comparison::compare_nearest(const Expected& expected, const PickRecord& nea
     if (excuse(other.index)) continue;
     const std::string text = hit ? fmt::format("the nearest hit is at {}", t) : std::string("the ray misses");
     out.disagreements.push_back({hit ? Fault::order : Fault::hit, other.index,
-                                 name_of(other.index) + text + fmt::format("; the witness has a crossing of it at {}", other.t)});
+                                 name_of(other.index) + text + fmt::format("; the reference has a crossing of it at {}", other.t)});
     return;
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Compares one ray on the device with the witness: their disagreements, and the size of the differences where they agree.
+// Compares one ray on the device with the reference: their disagreements, and the size of the differences where they agree.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "scene/scene.h"
 #include "shared/records.h"
 #include "verify/bounds.h"
@@ -33,7 +33,7 @@ struct Deviation {
 
 /// A crossing that both find.
 struct Match {
-  std::size_t primitive = 0;  // witness index
+  std::size_t primitive = 0;  // reference index
   std::array<Deviation, quantity_names.size()> deviations;
 };
 
@@ -43,12 +43,12 @@ inline constexpr std::array fault_names = {"hit", "id", "surface", "order", "sid
 
 struct Disagreement {
   Fault fault = Fault::hit;
-  std::size_t primitive = 0;  // witness index, or no_primitive
+  std::size_t primitive = 0;  // reference index, or no_primitive
   std::string text;
 };
 inline constexpr std::size_t no_primitive = ~std::size_t{0};
 
-/// The witness's answer for a ray, which is the same for all devices.
+/// The reference's answer for a ray, which is the same for all devices.
 struct Expected {
   reference::Ray ray;
   std::vector<reference::SceneHit> hits;  // in order
@@ -70,7 +70,7 @@ struct Outcome {
 class Comparison {
  public:
   /// Both arguments must outlive this.
-  Comparison(const Scene& scene, const reference::SceneWitness& witness);
+  Comparison(const Scene& scene, const reference::SceneReference& reference);
 
   Expected expected(const RayRecord& ray) const;
   Outcome compare(const Expected& expected, const Found& found) const;
@@ -85,7 +85,7 @@ class Comparison {
   Match measure(const LocalRay& local, const reference::SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const;
 
   const Scene& scene_;
-  const reference::SceneWitness& witness_;
+  const reference::SceneReference& reference_;
   Bounds bounds_;
 };
 

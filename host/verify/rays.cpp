@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Finds points on surfaces with the witness, along random lines through a primitive, so that no shape needs code here.
+// Finds points on surfaces with the reference, along random lines through a primitive, so that no shape needs code here.
 #include "verify/rays.h"
 
 #include <algorithm>
@@ -49,9 +49,9 @@ struct RaySource::Point {
   double size;       // of the primitive near the point: the length of a chord, at most the ball's radius
 };
 
-RaySource::RaySource(const Scene& scene, const reference::SceneWitness& witness, std::uint64_t seed)
-    : scene_(scene), witness_(witness), seed_(seed), by_kind_(reference::kind_names.size()) {
-  for (std::size_t i = 0; i < witness.size(); ++i) by_kind_[reference::kind_of(witness.placed(i).primitive)].push_back(i);
+RaySource::RaySource(const Scene& scene, const reference::SceneReference& reference, std::uint64_t seed)
+    : scene_(scene), reference_(reference), seed_(seed), by_kind_(reference::kind_names.size()) {
+  for (std::size_t i = 0; i < reference.size(); ++i) by_kind_[reference::kind_of(reference.placed(i).primitive)].push_back(i);
   std::erase_if(by_kind_, [](const auto& primitives) { return primitives.empty(); });
 }
 
@@ -62,7 +62,7 @@ std::size_t RaySource::primitive(Random& random) const {
 }
 
 RaySource::Point RaySource::surface_point(std::size_t index, Random& random) const {
-  const auto placed = witness_.placed(index);
+  const auto placed = reference_.placed(index);
   const reference::Ball& ball = placed.ball;
   Point out{ball.center, random.direction(), ball.radius};
   for (int attempt = 0; attempt < 12; ++attempt) {
@@ -86,7 +86,7 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
 
 /// Returns a point where two surfaces of a shape meet, or on the boundary of an open shape.
 std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random) const {
-  const auto placed = witness_.placed(index);
+  const auto placed = reference_.placed(index);
   if (const auto curves = reference::boundary(placed.primitive);
       !curves.empty() && (reference::surface_count(placed.primitive) == 1 || random.one_in(2))) {
     const reference::Curve& curve = curves[random.below(curves.size())];
@@ -120,7 +120,7 @@ RayRecord RaySource::camera_ray(Random& random) const {
 
 RayRecord RaySource::chord(Random& random) const {
   const auto point = [&] {
-    const auto placed = witness_.placed(primitive(random));
+    const auto placed = reference_.placed(primitive(random));
     const dvec3 local = placed.ball.center + placed.ball.radius * random.in_ball();
     return dvec3(glm::inverse(placed.object_from_world) * glm::dvec4(local, 1));
   };
@@ -132,10 +132,10 @@ std::optional<RayRecord> RaySource::bounce(Random& random) const {
   const RayRecord first = random.one_in(3) ? camera_ray(random) : chord(random);
   if (!is_usable(first)) return std::nullopt;
   const reference::Ray ray{{first.ox, first.oy, first.oz}, {first.dx, first.dy, first.dz}};
-  const auto hit = witness_.closest(ray);
+  const auto hit = reference_.closest(ray);
   if (!hit) return std::nullopt;
   const dvec3 at = ray.origin + hit->t * ray.direction;
-  dvec3 n = witness_.normal(*hit, at);
+  dvec3 n = reference_.normal(*hit, at);
   if (!std::isfinite(n.x + n.y + n.z)) return std::nullopt;
   if (glm::dot(n, ray.direction) > 0) n = -n;
   const dvec3 d = n + random.direction();
@@ -145,7 +145,7 @@ std::optional<RayRecord> RaySource::bounce(Random& random) const {
 
 std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const {
   const std::size_t index = primitive(random);
-  const auto placed = witness_.placed(index);
+  const auto placed = reference_.placed(index);
   std::optional<Point> p = family == RayFamily::rim ? rim(index, random) : surface_point(index, random);
   if (!p) return std::nullopt;
   const dvec3 tangent = perpendicular(p->normal, random);

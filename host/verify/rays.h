@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "scene/scene.h"
 #include "shared/records.h"
 #include "verify/random.h"
@@ -40,7 +40,7 @@ struct VerifyRay {
 class RaySource {
  public:
   /// Both arguments must outlive this.
-  RaySource(const Scene& scene, const reference::SceneWitness& witness, std::uint64_t seed);
+  RaySource(const Scene& scene, const reference::SceneReference& reference, std::uint64_t seed);
   VerifyRay ray(std::uint64_t index) const;
 
  private:
@@ -54,7 +54,7 @@ class RaySource {
   std::optional<Point> rim(std::size_t primitive, Random& random) const;
 
   const Scene& scene_;
-  const reference::SceneWitness& witness_;
+  const reference::SceneReference& reference_;
   std::uint64_t seed_;
   std::vector<std::vector<std::size_t>> by_kind_;  // the primitives of each existing kind
 };

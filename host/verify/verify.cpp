@@ -61,9 +61,9 @@ void count(Difference& out, const PickRecord& a, const PickRecord& b) {
   out.worst_ulps = std::max(out.worst_ulps, std::abs(static_cast<double>(bits_a) - static_cast<double>(bits_b)));
 }
 
-void count(Statistics& out, const reference::SceneWitness& witness, const Expected& expected, const Found& found,
+void count(Statistics& out, const reference::SceneReference& reference, const Expected& expected, const Found& found,
            const Outcome& outcome, RayFamily family) {
-  const auto kind_of = [&](std::size_t primitive) { return reference::kind_of(witness.placed(primitive).primitive); };
+  const auto kind_of = [&](std::size_t primitive) { return reference::kind_of(reference.placed(primitive).primitive); };
   const auto once_a_kind = [&](const auto& primitives, auto&& add) {
     std::array<bool, reference::kind_names.size()> seen{};
     for (const std::size_t primitive : primitives)
@@ -102,7 +102,7 @@ struct Work {
 }  // namespace
 
 SceneCheck::SceneCheck(const Scene& scene, const std::vector<Device>& devices)
-    : witness_(scene), comparison_(scene, witness_), device_seconds_(devices.size()) {
+    : reference_(scene), comparison_(scene, reference_), device_seconds_(devices.size()) {
   const FlatScene flat = lower(scene);
   for (const Device& device : devices) queries_.push_back(std::make_unique<Query>(flat, device));
 }
@@ -154,11 +154,11 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
     const Scene torture = scene ? Scene{} : torture_scene(options.seed, round);
     const Scene& shown = scene ? *scene : torture;
     SceneCheck check(shown, devices);
-    if (check.witness().size() == 0) {
+    if (check.reference().size() == 0) {
       report.is_empty = true;
       break;
     }
-    const RaySource source(shown, check.witness(), options.seed + (scene ? 0 : round));
+    const RaySource source(shown, check.reference(), options.seed + (scene ? 0 : round));
     const std::uint64_t end = scene ? options.rays : std::min(options.rays, done + rays_a_round);
     while (done < end) {
       if (interrupt_requested()) {
@@ -177,7 +177,7 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
       check.check(rays, [&](const SceneCheck::Checked& ray) {
         Work& own = work.local();
         for (std::size_t d = 0; d < devices.size(); ++d) {
-          count(own.statistics[d], check.witness(), ray.expected, ray.found[d], ray.outcomes[d], families[ray.ray]);
+          count(own.statistics[d], check.reference(), ray.expected, ray.found[d], ray.outcomes[d], families[ray.ray]);
           if (ray.outcomes[d].disagreements.empty()) continue;
           const std::lock_guard lock(mutex);
           failures[d].push_back({ray.ray,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Compares devices with the witness: millions of rays through traversal and hit lists, compared one by one.
+// Compares devices with the reference: millions of rays through traversal and hit lists, compared one by one.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace caplet::verify {
 
-/// A scene on one or more devices and in the witness.
+/// A scene on one or more devices and in the reference.
 class SceneCheck {
  public:
   /// The scene and the devices must outlive this. Throws RunError, InputError.
@@ -36,12 +36,12 @@ class SceneCheck {
   /// Calls visit for every ray, from many threads at once. Throws RunError.
   void check(std::span<const RayRecord> rays, const std::function<void(const Checked&)>& visit);
 
-  const reference::SceneWitness& witness() const { return witness_; }
+  const reference::SceneReference& reference() const { return reference_; }
   /// Returns the seconds in the devices' queries so far, an entry per device.
   const std::vector<double>& device_seconds() const { return device_seconds_; }
 
  private:
-  reference::SceneWitness witness_;
+  reference::SceneReference reference_;
   Comparison comparison_;
   std::vector<std::unique_ptr<Query>> queries_;
   std::vector<double> device_seconds_;
@@ -53,7 +53,7 @@ struct SceneName {
   std::uint64_t seed = 0, round = 0;
 };
 
-/// A ray on which a device and the witness disagree.
+/// A ray on which a device and the reference disagree.
 struct Failure {
   SceneName scene;
   RayRecord ray{};
@@ -71,7 +71,7 @@ struct DeviceReport {
   std::vector<Failure> failures;  // the first failures
 };
 
-/// Compares the nearest hits of two devices. The witness decides which are right; this measures how similar they are.
+/// Compares the nearest hits of two devices. The reference decides which are right; this measures how similar they are.
 struct Difference {
   std::size_t first = 0, second = 0;  // indices into Report::devices
   std::uint64_t same = 0;             // bit for bit

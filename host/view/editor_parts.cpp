@@ -78,7 +78,7 @@ Editor::Step Editor::set(const Set& set) const {
   const Scene& scene = live_.scene();
   const std::uint32_t number = set.part.number;
   switch (set.part.kind) {
-    case Part::Kind::material: {
+    case FormSubject::Kind::material: {
       Material to = at(scene.materials, number, "material");
       const auto displacement = to.displacement;
       const std::string name = to.name;
@@ -88,18 +88,18 @@ Editor::Step Editor::set(const Set& set) const {
       list[number] = std::move(to);
       return replacing<&Scene::materials, Rearrange>(std::move(list));
     }
-    case Part::Kind::texture: {
+    case FormSubject::Kind::texture: {
       auto list = scene.textures;
       (void)at(list, number, "texture");
       set_field(list[number], scene, set);
       return replacing<&Scene::textures, Rearrange>(std::move(list));
     }
-    case Part::Kind::light: {
+    case FormSubject::Kind::light: {
       Light to = at(scene.lights, number, "light");
       set_field(to, scene, set);
       return InPlace{LightEdit{number, std::move(to)}};
     }
-    case Part::Kind::emission: {
+    case FormSubject::Kind::emission: {
       const Shape& shape = scene.shapes[world_shape(scene, number)];
       auto to = shape.emission;
       set_field(to, scene, set);
@@ -108,7 +108,7 @@ Editor::Step Editor::set(const Set& set) const {
       changed.emission = std::move(to);
       return reshaping<Rearrange>(number, std::make_shared<const Shape>(std::move(changed)));
     }
-    case Part::Kind::shape: {
+    case FormSubject::Kind::shape: {
       Shape to = scene.shapes[world_shape(scene, number)];
       set_field(to, scene, set);
       return reshaping<Rearrange>(number, std::make_shared<const Shape>(std::move(to)));
@@ -123,7 +123,7 @@ Editor::Step Editor::set(const Set& set) const {
 
 Editor::Step Editor::add(const Add& add) const {
   const Scene& scene = live_.scene();
-  if (add.what == Part::Kind::shape) {
+  if (add.what == FormSubject::Kind::shape) {
     auto things = std::make_shared<Things>();
     things->shapes.emplace_back(scene.shapes.size(), new_shape(scene, add));
     return addition<Rearrange>(std::move(things));
@@ -132,11 +132,11 @@ Editor::Step Editor::add(const Add& add) const {
     list.push_back(std::move(one));
     return list;
   };
-  if (add.what == Part::Kind::material)
+  if (add.what == FormSubject::Kind::material)
     return replacing<&Scene::materials, Rearrange>(with(scene.materials, new_material(scene, add)));
-  if (add.what == Part::Kind::texture)
+  if (add.what == FormSubject::Kind::texture)
     return replacing<&Scene::textures, Rearrange>(with(scene.textures, new_texture(scene, add)));
-  if (add.what == Part::Kind::light) return replacing<&Scene::lights, Rearrange>(with(scene.lights, new_light(add)));
+  if (add.what == FormSubject::Kind::light) return replacing<&Scene::lights, Rearrange>(with(scene.lights, new_light(add)));
   throw InputError(SourceLocation{"of"}, "is nothing that can be added");
 }
 
@@ -202,9 +202,9 @@ std::vector<std::uint32_t> Editor::made_by(const Change& change) const {
     return out;
   };
   if (const auto* add = std::get_if<Add>(&change)) {
-    if (add->what == Part::Kind::shape) return last(scene.shapes);
-    if (add->what == Part::Kind::material) return last(scene.materials);
-    return add->what == Part::Kind::texture ? last(scene.textures) : last(scene.lights);
+    if (add->what == FormSubject::Kind::shape) return last(scene.shapes);
+    if (add->what == FormSubject::Kind::material) return last(scene.materials);
+    return add->what == FormSubject::Kind::texture ? last(scene.textures) : last(scene.lights);
   }
   if (const auto* hide = std::get_if<Hide>(&change); hide && hide->others) {
     std::vector<std::uint32_t> out(hide->ids.size());

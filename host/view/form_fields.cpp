@@ -476,20 +476,20 @@ void visit_form(FormFields& fields, Shape& shape) {
       shape.geometry);
 }
 
-void visit_form(FormFields& fields, ViewEdit& view, Part::Kind of) {
+void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind of) {
   OptionFields options(fields);
-  if (of == Part::Kind::film) {
+  if (of == FormSubject::Kind::film) {
     FilmSettings& film = view.film;
     const int width = film.width, height = film.height;
     FilmSettings::fields(film, options);
     if (film.width != width || film.height != height) film.crop.reset();  // the crop was part of the old picture
     fields.number("exposure time", film.exposure_time, 0, infinity);
     film.space = options.kind("colorspace", film.space, color_space_names);
-  } else if (of == Part::Kind::filter) {
+  } else if (of == FormSubject::Kind::filter) {
     const auto kind = options.kind(kind_field, view.filter.kind, filter_names);
     if (kind != view.filter.kind) return view.filter.set_kind(kind);
     PixelFilter::fields(view.filter, options);
-  } else if (of == Part::Kind::sampler) {
+  } else if (of == FormSubject::Kind::sampler) {
     SamplerSettings& sampler = view.sampler;
     const auto kind = options.kind(kind_field, sampler.kind, sampler_names);
     const std::array<int, 2> strata = strata_of(sampler);
@@ -504,17 +504,17 @@ void visit_form(FormFields& fields, ViewEdit& view, Part::Kind of) {
   }
 }
 
-std::vector<std::string> new_kinds(Part::Kind what) {
+std::vector<std::string> new_kinds(FormSubject::Kind what) {
   std::vector<std::string> out;
-  if (what == Part::Kind::material)
+  if (what == FormSubject::Kind::material)
     for (std::size_t i = 0; i < material_kinds.size(); ++i)
       if (!bounds_alone(i)) out.push_back(material_kinds[i]);
-  if (what == Part::Kind::shape)
+  if (what == FormSubject::Kind::shape)
     for (const NewShape& each : new_shapes()) out.push_back(each.name);
-  if (what == Part::Kind::light)
+  if (what == FormSubject::Kind::light)
     for (std::size_t i = 0; i < light_kinds.size(); ++i)
       if (stands_alone(model_of<LightModel>(i))) out.push_back(light_kinds[i]);
-  if (what == Part::Kind::texture)
+  if (what == FormSubject::Kind::texture)
     for (std::size_t i = 0; i < texture_kinds.size(); ++i)
       if (const TextureKind kind = texture_kind(model_of<TextureModel>(i)); !kind.has_image && kind.has_more)
         out.push_back(texture_kinds[i]);
@@ -529,7 +529,7 @@ Material new_material(const Scene& scene, const Add& add) {
     out.name = free_name(scene.materials, out.name.empty() ? material_kinds[out.model.index()] : out.name);
     return out;
   }
-  (void)row_of(new_kinds(Part::Kind::material), add.kind);
+  (void)row_of(new_kinds(FormSubject::Kind::material), add.kind);
   const std::size_t kind = row_of(material_kinds, add.kind);
   Material out;
   out.model = default_material(kind, static_cast<std::uint32_t>(scene.materials.size()), scene.materials.size());
@@ -538,7 +538,7 @@ Material new_material(const Scene& scene, const Add& add) {
 }
 
 Texture new_texture(const Scene& scene, const Add& add) {
-  (void)row_of(new_kinds(Part::Kind::texture), add.kind);
+  (void)row_of(new_kinds(FormSubject::Kind::texture), add.kind);
   Texture out;
   out.model = model_of<TextureModel>(row_of(texture_kinds, add.kind));
   out.is_float = texture_kind(out.model).is_float.value_or(add.is_float);
@@ -547,7 +547,7 @@ Texture new_texture(const Scene& scene, const Add& add) {
 }
 
 Light new_light(const Add& add) {
-  (void)row_of(new_kinds(Part::Kind::light), add.kind);
+  (void)row_of(new_kinds(FormSubject::Kind::light), add.kind);
   LightTraits traits;
   traits.at = add.at;
   if (glm::length(add.towards) > 0) traits.towards = glm::normalize(add.towards);
@@ -559,7 +559,7 @@ Light new_light(const Add& add) {
 }
 
 Shape new_shape(const Scene& scene, const Add& add) {
-  const std::size_t row = row_of(new_kinds(Part::Kind::shape), add.kind);
+  const std::size_t row = row_of(new_kinds(FormSubject::Kind::shape), add.kind);
   if (add.material >= scene.materials.size())
     throw InputError(SourceLocation{"material"}, fmt::format("there are {} materials", scene.materials.size()));
   Shape out;

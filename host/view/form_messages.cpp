@@ -36,35 +36,35 @@ Value value(const json& to) {
   return spectrum(to);
 }
 
-Part::Kind kind_of(const std::string& name, const char* field) {
-  for (std::size_t i = 0; i < part_names.size(); ++i)
-    if (name == part_names[i]) return static_cast<Part::Kind>(i);
-  refuse(field, fmt::format("is none of {}", fmt::join(part_names, ", ")));
+FormSubject::Kind kind_of(const std::string& name, const char* field) {
+  for (std::size_t i = 0; i < form_subject_names.size(); ++i)
+    if (name == form_subject_names[i]) return static_cast<FormSubject::Kind>(i);
+  refuse(field, fmt::format("is none of {}", fmt::join(form_subject_names, ", ")));
 }
 
 Add add(const json& of) {
   Add out;
   out.what = kind_of(text(of, "of", longest_name), "of");
-  if (out.what != Part::Kind::material && out.what != Part::Kind::texture && out.what != Part::Kind::light &&
-      out.what != Part::Kind::shape)
+  if (out.what != FormSubject::Kind::material && out.what != FormSubject::Kind::texture && out.what != FormSubject::Kind::light &&
+      out.what != FormSubject::Kind::shape)
     refuse("of", "is none of material, texture, light and shape");
-  if (out.what == Part::Kind::material && of.contains("like")) {
+  if (out.what == FormSubject::Kind::material && of.contains("like")) {
     out.like = id(of, "like");
     return out;
   }
   out.kind = text(of, "kind", longest_name);
-  if (out.what == Part::Kind::texture) out.is_float = truth(of, "of_floats");
-  if (out.what == Part::Kind::shape) out.material = id(of, "material");
-  if (out.what != Part::Kind::shape && out.what != Part::Kind::light) return out;
+  if (out.what == FormSubject::Kind::texture) out.is_float = truth(of, "of_floats");
+  if (out.what == FormSubject::Kind::shape) out.material = id(of, "material");
+  if (out.what != FormSubject::Kind::shape && out.what != FormSubject::Kind::light) return out;
   out.at = point(of, "at");
   out.size = number(field(of, "size"), "size", 1e-30, 1e30);
-  if (out.what == Part::Kind::light) out.towards = point(of, "towards");
+  if (out.what == FormSubject::Kind::light) out.towards = point(of, "towards");
   return out;
 }
 
 }  // namespace
 
-Part part(const json& object) {
+FormSubject part(const json& object) {
   return {kind_of(text(object, "of", longest_name), "of"), object.contains("part") ? id(object, "part") : 0};
 }
 
@@ -73,8 +73,8 @@ std::optional<FormChange> form_change(const json& of) {
   if (what == "set") return Set{part(of), text(of, "field", longest_name), value(field(of, "to"))};
   if (what == "add") return add(of);
   if (what == "remove") {
-    const Part which = part(of);
-    if (which.kind != Part::Kind::light) refuse("of", "is not light");
+    const FormSubject which = part(of);
+    if (which.kind != FormSubject::Kind::light) refuse("of", "is not light");
     return Remove{which};
   }
   if (what == "hide") return Hide{ids(of), truth(of, "others")};

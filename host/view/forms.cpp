@@ -267,28 +267,28 @@ Json swatch(const Scene& scene, const Material& material) {
   return to_json(glm::clamp(out.color.value_or(Swatch::clear), 0.0, 1.0));
 }
 
-template <class Part, class... More>
-Json written(Part part, const More&... more) {
+template <class Model, class... More>
+Json written(Model model, const More&... more) {
   Writer writer;
-  visit_form(writer, part, more...);
+  visit_form(writer, model, more...);
   return std::move(writer.fields);
 }
 
-template <class Part, class... More>
-void set_one(Part& part, const Scene& scene, const Set& set, const More&... more) {
+template <class Model, class... More>
+void set_one(Model& model, const Scene& scene, const Set& set, const More&... more) {
   Setter setter(set, scene);
-  Part changed = part;
+  Model changed = model;
   visit_form(setter, changed, more...);
   setter.finish();
-  part = std::move(changed);
+  model = std::move(changed);
 }
 
 }  // namespace
 
-Json form_text(const Scene& scene, const ViewEdit& view, const Part& part) {
-  using Kind = Part::Kind;
+Json form_text(const Scene& scene, const ViewEdit& view, const FormSubject& part) {
+  using Kind = FormSubject::Kind;
   const auto has = [&](const auto& of) { return part.number < of.size(); };
-  Json out{{"of", part_names[static_cast<std::size_t>(part.kind)]}, {"part", part.number}};
+  Json out{{"of", form_subject_names[static_cast<std::size_t>(part.kind)]}, {"part", part.number}};
   if (part.kind == Kind::material) {
     if (!has(scene.materials)) return nullptr;
     out["fields"] = written(scene.materials[part.number], part.number, scene);
@@ -320,8 +320,8 @@ Json form_text(const Scene& scene, const ViewEdit& view, const Part& part) {
 
 Json lists_text() {
   Json out;
-  for (const Part::Kind kind : {Part::Kind::material, Part::Kind::texture, Part::Kind::light, Part::Kind::shape})
-    out[part_names[static_cast<std::size_t>(kind)]] = new_kinds(kind);
+  for (const FormSubject::Kind kind : {FormSubject::Kind::material, FormSubject::Kind::texture, FormSubject::Kind::light, FormSubject::Kind::shape})
+    out[form_subject_names[static_cast<std::size_t>(kind)]] = new_kinds(kind);
   out["spectra"] = named_spectrum_names();
   return out;
 }

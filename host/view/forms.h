@@ -13,7 +13,7 @@
 namespace caplet::view {
 
 /// Returns a part's fields in order, with name, type, value and range (docs/viewer.md), or null if the part does not exist.
-nlohmann::ordered_json form_text(const Scene& scene, const ViewEdit& view, const Part& part);
+nlohmann::ordered_json form_text(const Scene& scene, const ViewEdit& view, const FormSubject& part);
 
 /// Returns the choices: the kinds of every list, and the named spectra.
 nlohmann::ordered_json lists_text();

@@ -62,7 +62,7 @@ bool Keeping::make_line(const std::string& line) try {
     Json look = *camera;
     look["type"] = "look";
     look["width"] = look["height"] = 1;
-    const Look before = std::exchange(own_, std::get<Look>(parse_message(json_dump(look))));
+    const ShowView before = std::exchange(own_, std::get<ShowView>(parse_message(json_dump(look))));
     own_.width = before.width;
     own_.height = before.height;
     own_is_new_ = true;
@@ -119,16 +119,16 @@ bool Keeping::make(const Message& message, const std::string& text) {
   return true;
 }
 
-Json Keeping::save(const Save& save, const Look& look, const std::function<bool()>& cancelled) {
+Json Keeping::save(const Save& save, const ShowView& look, const std::function<bool()>& cancelled) {
   if (!keeper_) throw InputError("this scene has no file to be saved beside");
   const std::filesystem::path target = keeper_->target(save.name);
   if (const std::string lost = keeper_->lost_with(target); !lost.empty() && !save.replace)
     return {{"type", "save_asks"}, {"name", target.filename().string()}, {"camera", save.camera}, {"why", lost}};
   const bool camera_is_new = save.camera || own_is_new_;
-  const Look own = save.camera ? look : own_;
+  const ShowView own = save.camera ? look : own_;
   Scene scene = editor_.document();
   if (camera_is_new) {
-    Look one_eye = own;
+    ShowView one_eye = own;
     one_eye.separation = 0;
     one_eye.width = scene.film.width;
     one_eye.height = scene.film.height;

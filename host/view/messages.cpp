@@ -19,8 +19,8 @@ using namespace message;
 
 constexpr int deepest = 8;
 
-Look look(const json& of) {
-  Look out;
+ShowView look(const json& of) {
+  ShowView out;
   out.width = whole(of, "width", 1, most_page_pixels);
   out.height = whole(of, "height", 1, most_page_pixels);
   out.world_from_camera = matrix(of, "world_from_camera");

@@ -18,7 +18,7 @@
 namespace caplet::view {
 
 /// The view of the scene and its size in pixels.
-struct Look {
+struct ShowView {
   int width = 0, height = 0;
   glm::dmat4 world_from_camera{1};
   double fov = 0;  // radians, of the shorter side
@@ -98,7 +98,7 @@ struct Kept {
   bool restore = false;  // replay them as far as possible; else forget them
 };
 
-using Message = std::variant<Look, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
+using Message = std::variant<ShowView, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
 
 /// The longest file name, in bytes.
 inline constexpr std::size_t longest_name = 200;

@@ -19,11 +19,11 @@ namespace caplet::view {
 
 /// A material, texture or light by its index in the scene; the emission or the geometry of a shape of the world, by the shape's
 /// number; or a setting.
-struct Part {
+struct FormSubject {
   enum class Kind { material, texture, light, emission, shape, film, filter, sampler, integrator } kind = Kind::material;
   std::uint32_t number = 0;
 };
-inline constexpr std::array<const char*, 9> part_names = {"material", "texture", "light",   "emission",  "shape",
+inline constexpr std::array<const char*, 9> form_subject_names = {"material", "texture", "light",   "emission",  "shape",
                                                           "film",     "filter",  "sampler", "integrator"};
 
 /// A texture that replaces a value, by its index.
@@ -35,13 +35,13 @@ using Value = std::variant<std::monostate, double, bool, std::string, std::vecto
 
 /// Sets a field of a part's form.
 struct Set {
-  Part part;
+  FormSubject part;
   std::string field;
   Value to;
 };
 /// Adds a material, texture, light or shape of the world.
 struct Add {
-  Part::Kind what = Part::Kind::shape;
+  FormSubject::Kind what = FormSubject::Kind::shape;
   std::string kind;                        // as in the list of its kind
   std::optional<std::uint32_t> like = {};  // a material to copy instead
   glm::dvec3 at{0}, towards{0, 0, -1};     // place of lights and shapes; direction of lights
@@ -51,7 +51,7 @@ struct Add {
 };
 /// Removes a light.
 struct Remove {
-  Part part;
+  FormSubject part;
 };
 /// Hides things from the picture and from rays, or (`others`) all things but these.
 struct Hide {
@@ -71,7 +71,7 @@ inline constexpr std::size_t most_chosen = 10000;
 /// Asks for the form of a part.
 struct Form {
   double number = 0;  // returned with the answer
-  Part part;
+  FormSubject part;
 };
 
 }  // namespace caplet::view

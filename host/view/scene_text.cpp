@@ -27,7 +27,7 @@ Json to_json(const Bounds& bounds) { return {view::to_json(bounds.min), view::to
 
 Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-Json camera_text(const Look& look) {
+Json camera_text(const ShowView& look) {
   return {{"world_from_camera", to_json(look.world_from_camera)},
           {"fov", look.fov},
           {"lens_radius", look.lens_radius},

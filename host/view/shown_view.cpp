@@ -15,9 +15,9 @@ constexpr double usual_fov = 0.7;  // used if an orthographic or spherical camer
 
 }  // namespace
 
-Look look_of_scene(const Scene& scene) {
+ShowView look_of_scene(const Scene& scene) {
   const Camera& camera = scene.camera;
-  Look out;
+  ShowView out;
   out.width = scene.film.width;
   out.height = scene.film.height;
   out.world_from_camera = camera.world_from_camera;
@@ -30,7 +30,7 @@ Look look_of_scene(const Scene& scene) {
   return out;
 }
 
-ViewEdit shown_view(const ViewEdit& own, const Look& look, int scale, int eye) {
+ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye) {
   ViewEdit view = own;
   view.camera.world_from_camera = look.world_from_camera;
   view.camera.projection = PerspectiveProjection{look.fov};

@@ -167,18 +167,18 @@ class Viewer::State {
   }
 
   /// Throws InputError for a look that this scene cannot have; such a look is not accepted.
-  void check_look(const Look& look) const {
+  void check_look(const ShowView& look) const {
     for (const int eye : {0, 1}) check_edit(Scene(), shown_view(checked_, look, 1, eye));
   }
 
   void said(ClientId id, const std::string& text) try {
     const Message message = parse_message(text);
-    if (const Look* look = std::get_if<Look>(&message)) check_look(*look);
+    if (const ShowView* look = std::get_if<ShowView>(&message)) check_look(*look);
     std::vector<ClientId> others;
     {
       const std::lock_guard lock(mutex_);
       Client& client = clients_[id];
-      if (const Look* look = std::get_if<Look>(&message)) {
+      if (const ShowView* look = std::get_if<ShowView>(&message)) {
         wanted_ = *look;
         ++wanted_number_;
         for (const auto& [other, of] : clients_)
@@ -205,7 +205,7 @@ class Viewer::State {
     }
     changed_.notify_all();
     if (others.empty()) return;
-    nlohmann::ordered_json looked = camera_text(std::get<Look>(message));
+    nlohmann::ordered_json looked = camera_text(std::get<ShowView>(message));
     looked["type"] = "looked";
     for (const ClientId other : others) server_->send(other, text_of(looked));
   } catch (const InputError& error) {
@@ -245,7 +245,7 @@ class Viewer::State {
       answer_all();
       try {
         const bool edited = edit_all();
-        const std::optional<Look> look = take_wanted();
+        const std::optional<ShowView> look = take_wanted();
         if (edited || look) begin(look.value_or(full_));
         if (is_seen_now() && has_more()) step();
       } catch (const Superseded&) {
@@ -274,7 +274,7 @@ class Viewer::State {
   }
   bool has_more() const { return scale_ != 1 || samples_[eyes() - 1] < target(); }
 
-  std::optional<Look> take_wanted() {
+  std::optional<ShowView> take_wanted() {
     const std::lock_guard lock(mutex_);
     if (wanted_number_ == number_) return {};
     number_ = wanted_number_;
@@ -345,7 +345,7 @@ class Viewer::State {
 
   std::size_t eyes() const { return full_.separation > 0 ? 2 : 1; }
 
-  void look_with(const Look& look, int scale, std::size_t eye) {
+  void look_with(const ShowView& look, int scale, std::size_t eye) {
     ViewEdit own = view_of(live_.scene());
     own.camera = editor_.view().camera;
     live_.edit(shown_view(own, look, scale, static_cast<int>(eye)));
@@ -354,7 +354,7 @@ class Viewer::State {
   }
 
   /// Starts the film of `look` with a pixel for each square of `scale` pixels.
-  void set_film(const Look& look, int scale) {
+  void set_film(const ShowView& look, int scale) {
     look_with(look, scale, 0);
     scale_ = scale;
     samples_ = {0, 0};
@@ -368,7 +368,7 @@ class Viewer::State {
     if (samples_[eye_] > 0) session_->resume(std::move(*films_[eye_]));
   }
 
-  void begin(const Look& look) {
+  void begin(const ShowView& look) {
     scale_ = 0;
     const double pixels = static_cast<double>(look.width) * look.height;
     int scale = 1;
@@ -505,7 +505,7 @@ class Viewer::State {
   std::optional<Server> server_;
 
   // Only the renderer's thread uses these.
-  Look full_;
+  ShowView full_;
   std::uint64_t number_ = 0, version_ = 0;
   std::uint32_t view_ = 1;
   std::array<std::uint32_t, 2> samples_{};  // for both eyes
@@ -516,7 +516,7 @@ class Viewer::State {
 
   std::mutex mutex_;  // guards everything below
   std::condition_variable changed_, failed_;
-  Look wanted_;
+  ShowView wanted_;
   std::uint64_t wanted_number_ = 1;
   std::deque<Wish> edits_;
   std::map<ClientId, Client> clients_;

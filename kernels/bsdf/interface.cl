@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// This BSDF is an invisible surface that separates media (kernels/media/immersion.cl): paths go
+// This BSDF is an invisible surface that separates media (kernels/media/medium_stack.cl): paths go
 // through it without a scattering. As a BSDF it sends light straight on.
 #ifndef CAPLET_BSDF_INTERFACE_CL
 #define CAPLET_BSDF_INTERFACE_CL

@@ -148,20 +148,20 @@
   GROUP_END(Shadows)
 
 // Scenes with media have these.
-#define GROUP_IMMERSION                                                                                     \
-  GROUP_BEGIN(Immersion, immersion)                                                                         \
-  BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/immersion.cl) */ \
+#define GROUP_MEDIUM_STACKS                                                                                     \
+  GROUP_BEGIN(MediumStacks, medium_stacks)                                                                         \
+  BUFFER(path_inside, uint4, STATE_MEDIA) /* solids that hold the ray, and the medium around them (media/medium_stack.cl) */ \
   BUFFER(path_around, uint, STATE_MEDIA)                                                                    \
   BUFFER(path_within, uint, STATE_MEDIA) /* scatterings that do not count: within subsurfaces (stages/within.cl) */ \
   BUFFER(path_near, uint, STATE_MEDIA) /* whether other surfaces are where it comes to: CAPLET_ALONE, ... (kinds.h) */ \
-  /* densities with which scattering, and a light sample, would have made the path at each wavelength, over the mean of the first (media/travel.cl) */ \
+  /* densities with which scattering, and a light sample, would have made the path at each wavelength, over the mean of the first (media/sample_distance.cl) */ \
   BUFFER(path_ratio, float4, STATE_MEDIA)                                                                   \
   BUFFER(path_light_ratio, float4, STATE_MEDIA)                                                             \
   BUFFER(shadow_inside, uint4, STATE_MEDIA)                                                                 \
   BUFFER(shadow_around, uint, STATE_MEDIA)                                                                  \
   BUFFER(shadow_near, uint, STATE_MEDIA)                                                                    \
   BUFFER(shadow_pdfs, float2, STATE_MEDIA) /* of the light sample, and of scattering into its direction (0: a delta light) */ \
-  GROUP_END(Immersion)
+  GROUP_END(MediumStacks)
 
 #define GROUP_QUEUES                                                        \
   GROUP_BEGIN(Queues, queues)                                               \
@@ -213,7 +213,7 @@
 #define SCENE_GROUPS SHADING_GROUPS GROUP_MEDIA
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
-  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_IMMERSION GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
+  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_MEDIUM_STACKS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
 #define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 

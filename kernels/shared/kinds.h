@@ -170,7 +170,7 @@ enum {
 #define CAPLET_BOUNDARY_CLOSED 2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within
 // These limit the boundaries that are told apart at a point, and the numbers of boundaries in a
 // scene.
-#define CAPLET_HELD_BY 4
+#define CAPLET_MEDIUM_STACK_SIZE 4
 #define CAPLET_MOST_BOUNDARIES 0xfffffeu
 // path_near is one of these: the surface is alone; other surfaces are at the same place; the same,
 // plus the number of the largest boundary that is left there; the boundaries that contain the ray
@@ -178,7 +178,7 @@ enum {
 #define CAPLET_ALONE 0u
 #define CAPLET_NEAR 1u
 #define CAPLET_NEAR_LEFT 2u
-#define CAPLET_UNSETTLED 0xffffffffu
+#define CAPLET_RECOUNT 0xffffffffu
 
 // Fields of textures (textures.def) use this to say how colours of an image become spectra.
 #define CAPLET_USE_ALBEDO 0u     // from 0 to 1

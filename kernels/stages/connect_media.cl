@@ -4,7 +4,7 @@
 // Traces shadow rays among media and adds the light that is left when they reach it.
 #include "stages/crossings.cl"
 #include "media/passing.cl"
-#include "media/travel.cl"
+#include "media/sample_distance.cl"
 #include "stages/path.cl"
 #include "trace/alpha.cl"
 #include "trace/shadow.cl"
@@ -13,18 +13,18 @@ static void stage_item(const Stage* g, uint item) {
   const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
   const uint path = g->shadows.queue_shadow[item];
   RayRecord ray = g->shadows.path_shadow[path];
-  Held held = {g->immersion.shadow_inside[path], g->immersion.shadow_around[path]};
+  MediumStack stack = {g->medium_stacks.shadow_inside[path], g->medium_stacks.shadow_around[path]};
   const ShadowTarget target = g->shadows.path_shadow_target[path];
-  const float2 pdfs = g->immersion.shadow_pdfs[path];
+  const float2 pdfs = g->medium_stacks.shadow_pdfs[path];
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {hash_combine(path_hash(at, g->carried.path_flags[path]), 0x5bd1e995u), 0u};
   MediumWeights weights;
   weights.throughput = g->shadows.path_shadow_radiance[path];
-  weights.scattering = weights.light = g->immersion.path_ratio[path];
+  weights.scattering = weights.light = g->medium_stacks.path_ratio[path];
   weights.most = max4(fabs(weights.throughput));
-  if (g->immersion.shadow_near[path] == CAPLET_UNSETTLED) held = held_counted(&g->tree, &g->surfaces, &g->media, ray, held);
+  if (g->medium_stacks.shadow_near[path] == CAPLET_RECOUNT) stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, stack);
   RayCrossings crossings;
   crossings_begin(&crossings, ray);
   HitRecord hit = {ray.t_min, CAPLET_NONE, CAPLET_NONE, 0u};
@@ -38,18 +38,18 @@ static void stage_item(const Stage* g, uint item) {
     const int ends = shadow_is_free(&hit, target);
     const int crosses = !ends && alpha_stops(&scene, &ray, &hit);
     if (crosses && !surface_passes(&g->tree, &g->surfaces, &g->materials, &hit)) return;
-    held = held_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), held);
-    const uint medium = held_medium(&g->media, &held);
+    stack = medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), stack);
+    const uint medium = medium_stack_medium(&g->media, &stack);
     const float to = met ? hit.t : ray.t_max;
     if (medium != CAPLET_NONE && from < to && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers, &weights)) return;
     if (ends) break;
     const uint boundary = crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;
     if (boundary == CAPLET_NONE || crossing_repeats(&g->tree, &g->surfaces, &g->media, &crossings)) continue;
-    held_cross(&g->tree, &g->surfaces, &g->media, &hit, &held);
+    medium_stack_cross(&g->tree, &g->surfaces, &g->media, &hit, &stack);
     if (!boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &hit)) continue;
     left = hit.t - left_at <= crossings_apart(&ray, hit.t) ? min(left, boundary) : boundary;
     left_at = hit.t;
-    held.around = g->media.boundaries[left].outside;
+    stack.around = g->media.boundaries[left].outside;
   }
   const float light = mean4(weights.light), scattering = mean4(weights.scattering);
   if (!(light > 0.0f)) return;

@@ -7,7 +7,7 @@
 #define CAPLET_STAGES_CROSSINGS_CL
 
 #define CAPLET_LIST_SPACE __private
-#include "media/immersion.cl"
+#include "media/medium_stack.cl"
 #include "trace/list.cl"
 
 #define CAPLET_CROSSINGS 16  // that are found at a time; of more at the same t the rest are not told
@@ -72,14 +72,14 @@ static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, c
   return 0;
 }
 
-#define CAPLET_HELD_COUNTED 16  // boundaries that are counted at a time
+#define CAPLET_COUNTED_BOUNDARIES 16  // boundaries that are counted at a time
 
 // Finds the boundaries that contain a ray behind its t_min: the closed solids that it leaves more
 // often than it enters them, and from `before` those that are told by normals alone.
-static inline Held held_counted(const Tree* tree, const Surfaces* surfaces, const Media* media, RayRecord ray, Held before) {
-  uint boundary[CAPLET_HELD_COUNTED];
-  int count[CAPLET_HELD_COUNTED];
-  for (int i = 0; i < CAPLET_HELD_COUNTED; ++i) count[i] = 0;
+static inline MediumStack medium_stack_counted(const Tree* tree, const Surfaces* surfaces, const Media* media, RayRecord ray, MediumStack before) {
+  uint boundary[CAPLET_COUNTED_BOUNDARIES];
+  int count[CAPLET_COUNTED_BOUNDARIES];
+  for (int i = 0; i < CAPLET_COUNTED_BOUNDARIES; ++i) count[i] = 0;
   RayCrossings crossings;
   ray.t_max = INFINITY;
   crossings_begin(&crossings, ray);
@@ -89,7 +89,7 @@ static inline Held held_counted(const Tree* tree, const Surfaces* surfaces, cons
     if (met == CAPLET_NONE || (media->boundaries[met].flags & CAPLET_BOUNDARY_CLOSED) == 0) continue;
     if (crossing_repeats(tree, surfaces, media, &crossings)) continue;
     int place = -1, empty = -1;
-    for (int i = 0; i < CAPLET_HELD_COUNTED; ++i) {
+    for (int i = 0; i < CAPLET_COUNTED_BOUNDARIES; ++i) {
       if (count[i] != 0 && boundary[i] == met) place = i;
       if (count[i] == 0) empty = i;
     }
@@ -98,15 +98,15 @@ static inline Held held_counted(const Tree* tree, const Surfaces* surfaces, cons
     boundary[place] = met;
     count[place] += boundary_is_left(tree, surfaces, media, met, &hit) ? 1 : -1;
   }
-  Held held = {(uint4)(0u), before.around};
-  for (int i = 0; i < CAPLET_HELD_COUNTED; ++i)
-    for (int k = 0; k < count[i]; ++k) held_enter(&held, boundary[i]);
-  uint all[CAPLET_HELD_BY];
+  MediumStack stack = {(uint4)(0u), before.around};
+  for (int i = 0; i < CAPLET_COUNTED_BOUNDARIES; ++i)
+    for (int k = 0; k < count[i]; ++k) medium_stack_enter(&stack, boundary[i]);
+  uint all[CAPLET_MEDIUM_STACK_SIZE];
   vstore4(before.inside, 0, all);
-  for (int i = 0; i < CAPLET_HELD_BY; ++i)
+  for (int i = 0; i < CAPLET_MEDIUM_STACK_SIZE; ++i)
     if (all[i] != 0u && (media->boundaries[(all[i] >> 8) - 1u].flags & CAPLET_BOUNDARY_CLOSED) == 0)
-      for (uint k = 0; k < (all[i] & 255u); ++k) held_enter(&held, (all[i] >> 8) - 1u);
-  return held;
+      for (uint k = 0; k < (all[i] & 255u); ++k) medium_stack_enter(&stack, (all[i] >> 8) - 1u);
+  return stack;
 }
 
 #endif

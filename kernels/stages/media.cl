@@ -5,7 +5,7 @@
 #ifndef CAPLET_STAGES_MEDIA_CL
 #define CAPLET_STAGES_MEDIA_CL
 
-#include "media/immersion.cl"
+#include "media/medium_stack.cl"
 #include "media/passing.cl"
 #include "shapes/surface.cl"
 #include "stages/outbox.cl"
@@ -13,18 +13,18 @@
 #include "stages/sort_key.cl"
 #include "stages/within.cl"
 
-static inline Held path_held(const Stage* g, uint path) {
-  const Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
-  return held;
+static inline MediumStack path_medium_stack(const Stage* g, uint path) {
+  const MediumStack stack = {g->medium_stacks.path_inside[path], g->medium_stacks.path_around[path]};
+  return stack;
 }
-static inline void set_path_held(const Stage* g, uint path, Held held) {
-  g->immersion.path_inside[path] = held.inside;
-  g->immersion.path_around[path] = held.around;
+static inline void set_path_medium_stack(const Stage* g, uint path, MediumStack stack) {
+  g->medium_stacks.path_inside[path] = stack.inside;
+  g->medium_stacks.path_around[path] = stack.around;
 }
-static inline void set_shadow_held(const Stage* g, uint path, Held held, int settled) {
-  g->immersion.shadow_near[path] = settled ? CAPLET_ALONE : CAPLET_UNSETTLED;
-  g->immersion.shadow_inside[path] = held.inside;
-  g->immersion.shadow_around[path] = held.around;
+static inline void set_shadow_medium_stack(const Stage* g, uint path, MediumStack stack, int is_alone) {
+  g->medium_stacks.shadow_near[path] = is_alone ? CAPLET_ALONE : CAPLET_RECOUNT;
+  g->medium_stacks.shadow_inside[path] = stack.inside;
+  g->medium_stacks.shadow_around[path] = stack.around;
 }
 
 // Puts the path, whose next ray is in path_ray, into the queue of the next round. `from`: about
@@ -36,20 +36,20 @@ static inline void media_goes_on(const Stage* g, Outbox* out, uint path, float3 
 
 // Returns the boundaries of a path that goes through its hit. Where other surfaces are at the same
 // place, this is only what this surface tells.
-static inline Held held_behind(const Stage* g, uint path, const HitRecord* hit) {
-  Held held = path_held(g, path);
-  held_cross(&g->tree, &g->surfaces, &g->media, hit, &held);
-  const uint near = g->immersion.path_near[path];
-  if (near >= CAPLET_NEAR_LEFT) held.around = g->media.boundaries[near - CAPLET_NEAR_LEFT].outside;
-  return held;
+static inline MediumStack medium_stack_behind(const Stage* g, uint path, const HitRecord* hit) {
+  MediumStack stack = path_medium_stack(g, path);
+  medium_stack_cross(&g->tree, &g->surfaces, &g->media, hit, &stack);
+  const uint near = g->medium_stacks.path_near[path];
+  if (near >= CAPLET_NEAR_LEFT) stack.around = g->media.boundaries[near - CAPLET_NEAR_LEFT].outside;
+  return stack;
 }
 // These are called for a path that goes on from its hit, or through it.
-static inline void media_settles(const Stage* g, uint path) {
-  if (g->immersion.path_near[path] != CAPLET_ALONE) g->immersion.path_near[path] = CAPLET_UNSETTLED;
+static inline void media_leave_hit(const Stage* g, uint path) {
+  if (g->medium_stacks.path_near[path] != CAPLET_ALONE) g->medium_stacks.path_near[path] = CAPLET_RECOUNT;
 }
 static inline void media_crossed(const Stage* g, uint path, const HitRecord* hit) {
-  set_path_held(g, path, held_behind(g, path, hit));
-  media_settles(g, path);
+  set_path_medium_stack(g, path, medium_stack_behind(g, path, hit));
+  media_leave_hit(g, path);
 }
 
 // Returns 1 if the path goes on behind a surface that lets light pass unchanged. Its ray keeps its
@@ -68,24 +68,24 @@ static inline int media_passes(const Stage* g, Outbox* out, uint path, uint mate
 // and the densities.
 static inline void media_shadow(const Stage* g, uint path, const HitRecord* hit, const Surface* s, float3 wo, const LightSample* light, float bsdf_pdf) {
   const int crosses = dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f;
-  set_shadow_held(g, path, crosses ? held_behind(g, path, hit) : path_held(g, path), g->immersion.path_near[path] == CAPLET_ALONE);
-  g->immersion.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
+  set_shadow_medium_stack(g, path, crosses ? medium_stack_behind(g, path, hit) : path_medium_stack(g, path), g->medium_stacks.path_near[path] == CAPLET_ALONE);
+  g->medium_stacks.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
 }
 
 // Keeps the hero wavelength alone for a direction that no other wavelength could have made.
 static inline void media_hero_alone(const Stage* g, uint path, float4* throughput, float4 wavelengths) {
-  throughput->x /= g->immersion.path_ratio[path].x;
-  g->immersion.path_ratio[path] = (float4)(1.0f);
+  throughput->x /= g->medium_stacks.path_ratio[path].x;
+  g->medium_stacks.path_ratio[path] = (float4)(1.0f);
   g->carried.path_wavelengths[path] = (float4)(wavelengths.x);
 }
 
 // Updates the state for a path that goes on from a scattering at a surface, maybe through it.
 static inline void media_scattered(const Stage* g, uint path, const HitRecord* hit, int crosses) {
-  g->immersion.path_light_ratio[path] = g->immersion.path_ratio[path];
+  g->medium_stacks.path_light_ratio[path] = g->medium_stacks.path_ratio[path];
   if (crosses)
     media_crossed(g, path, hit);
   else
-    media_settles(g, path);
+    media_leave_hit(g, path);
 }
 
 #endif

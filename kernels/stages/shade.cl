@@ -202,7 +202,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
 #ifdef SHADE_IN_MEDIA
   if (hit.slot == CAPLET_SCATTERED) return;
-  scatter.x /= mean4(g->immersion.path_light_ratio[path]);
+  scatter.x /= mean4(g->medium_stacks.path_light_ratio[path]);
 #endif
 
   if (hit.slot == CAPLET_NONE) {
@@ -271,7 +271,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
   if (is_occlusion) return send_occlusion_ray(g, out, path, &hit, &s, wo);
 #ifdef SHADE_IN_MEDIA
-  const uint within = g->immersion.path_within[path];
+  const uint within = g->medium_stacks.path_within[path];
   const int is_within = boundary_is_met_within(g, path, &hit);
   if (!is_within && depth - within >= g->view.view->max_depth) return;
 #else
@@ -322,7 +322,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
 #ifdef SHADE_IN_MEDIA
   if (is_within) {
     if (!within_survives(within, within_number(path_hash(at, depth), within), &throughput)) return;
-    g->immersion.path_within[path] = within + 1u;
+    g->medium_stacks.path_within[path] = within + 1u;
   }
 #endif
 

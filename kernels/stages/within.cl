@@ -8,7 +8,7 @@
 #define CAPLET_STAGES_WITHIN_CL
 
 #include "math/rng.cl"
-#include "media/immersion.cl"
+#include "media/medium_stack.cl"
 
 static inline int medium_is_within(const Media* media, uint medium) {
   return medium != CAPLET_NONE && (media->mediums[medium].flags & CAPLET_MEDIUM_SUBSURFACE) != 0u;
@@ -20,9 +20,9 @@ static inline int boundary_is_met_within(const Stage* g, uint path, const HitRec
   if (boundary == CAPLET_NONE) return 0;
   const uint medium = g->media.boundaries[boundary].inside;
   if (!medium_is_within(&g->media, medium) || !boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, hit)) return 0;
-  const Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
-  const Held here = held_before(&g->tree, &g->surfaces, &g->media, hit, 1, held);
-  return held_medium(&g->media, &here) == medium;
+  const MediumStack stack = {g->medium_stacks.path_inside[path], g->medium_stacks.path_around[path]};
+  const MediumStack here = medium_stack_before(&g->tree, &g->surfaces, &g->media, hit, 1, stack);
+  return medium_stack_medium(&g->media, &here) == medium;
 }
 
 // Returns whether a path goes on, by the random number u, after `within` scatterings that did not

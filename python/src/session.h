@@ -18,8 +18,8 @@ struct HeldSession {
 };
 
 /// Its turn, of a session or a picker. Throws RunError where this process was forked, before it waits.
-template <class Held>
-std::unique_lock<Lock> turn_of(Held& held) {
+template <class Owner>
+std::unique_lock<Lock> turn_of(Owner& held) {
   caplet::check_process();
   return std::unique_lock(held.lock);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Hit lists: every crossing of every primitive as the witness finds it, in order; capacity and overflow; ties.
+// Hit lists: every crossing of every primitive as the reference finds it, in order; capacity and overflow; ties.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -31,7 +31,7 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 
 dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 
-reference::Primitive witness_of(const FlatPrimitive& p) {
+reference::Primitive reference_of(const FlatPrimitive& p) {
   const float* d = p.data;
   switch (p.shape) {
     case shape_sphere:
@@ -64,7 +64,7 @@ std::vector<FlatPrimitive> mixed_primitives(unsigned seed, unsigned count, float
 /// A scene of primitives in the world and, where `placements` are given, of as many instances of all of them.
 struct ListScene {
   std::vector<FlatPrimitive> primitives;
-  std::vector<reference::Primitive> witnesses;
+  std::vector<reference::Primitive> references;
   std::vector<dmat4> object_from_world;  // empty: the world itself
   std::vector<std::uint32_t> slots;
   FlatScene flat;
@@ -72,8 +72,8 @@ struct ListScene {
   explicit ListScene(std::vector<FlatPrimitive> list, const std::vector<dmat4>& placements = {}, uint flags = 0)
       : primitives(std::move(list)) {
     for (FlatPrimitive& p : primitives) {
-      p.id = static_cast<std::uint32_t>(witnesses.size());
-      witnesses.push_back(witness_of(p));
+      p.id = static_cast<std::uint32_t>(references.size());
+      references.push_back(reference_of(p));
       GeometryRecord geometry{};
       geometry.shape = p.shape;
       geometry.primitive_begin = p.id;
@@ -170,34 +170,34 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
       ray.direction = dvec3(m * glm::dvec4(ray.direction, 0));
     }
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
-      const reference::Primitive& witness = scene.witnesses[i];
+      const reference::Primitive& reference = scene.references[i];
       const std::uint32_t instance = scene.object_from_world.empty() ? CAPLET_NONE : static_cast<std::uint32_t>(place);
       const auto found = by_primitive.find({scene.slots[i], instance});
       const std::vector<HitRecord> hits = found == by_primitive.end() ? std::vector<HitRecord>{} : found->second;
       accounted += hits.size();
       std::vector<reference::Crossing> expected;
-      for (const reference::Crossing& c : reference::crossings(witness, ray))
+      for (const reference::Crossing& c : reference::crossings(reference, ray))
         if (c.t > ray.t_min && c.t < ray.t_max) expected.push_back(c);
       if (hits.empty() && expected.empty()) continue;
-      const double distance = glm::length(ray.origin - reference::bounding_ball(witness).center);
-      const double bound = 17 * eps * (distance + size_of(witness)) + rounding;
-      const auto value = [&](double t) { return reference::value(witness, ray.origin + t * ray.direction); };
+      const double distance = glm::length(ray.origin - reference::bounding_ball(reference).center);
+      const double bound = 17 * eps * (distance + size_of(reference)) + rounding;
+      const auto value = [&](double t) { return reference::value(reference, ray.origin + t * ray.direction); };
       bool same = hits.size() == expected.size();
       for (std::size_t k = 0; same && k < hits.size(); ++k) {
         same = is_leaving(hits[k]) == expected[k].leaving;
         // The same crossing: from one parameter to the other the ray stays at the surface.
         if (same && std::abs(value(0.5 * (double(hits[k].t) + expected[k].t))) > 2 * bound)
-          tally.fail(fmt::format("primitive {} is crossed at {}, the witness says {}", i, hits[k].t, expected[k].t), record);
+          tally.fail(fmt::format("primitive {} is crossed at {}, the reference says {}", i, hits[k].t, expected[k].t), record);
       }
       {
         const std::lock_guard lock(tally.mutex);
         tally.crossings += hits.size();
         tally.tangent += !same;
       }
-      if (same || reference::referee(witness, ray, bound) == reference::Verdict::tangent) continue;
+      if (same || reference::referee(reference, ray, bound) == reference::Verdict::tangent) continue;
       // Begins or ends at the surface.
       if (std::abs(value(ray.t_min)) <= bound || (std::isfinite(ray.t_max) && std::abs(value(ray.t_max)) <= bound)) continue;
-      tally.fail(fmt::format("primitive {} (shape {}): {} crossings, the witness has {}", i, scene.primitives[i].shape,
+      tally.fail(fmt::format("primitive {} (shape {}): {} crossings, the reference has {}", i, scene.primitives[i].shape,
                              hits.size(), expected.size()),
                  record);
     }

@@ -283,7 +283,7 @@ TEST(Pick, TooManyCrossingsAreAnErrorThatNamesTheRays) {
   EXPECT_EQ(one.out, "");
 }
 
-TEST(Pick, JsonOfARayBesideTheWitness) {
+TEST(Pick, JsonOfARayBesideTheReference) {
   const auto folder = folder_with_scene();
   const Result result =
       test::run_program({"pick", "scene.pbrt", "--ray", "-0.25,0.125,4,0,0,-2", "--json", "--reference"}, folder);
@@ -307,10 +307,10 @@ TEST(Pick, JsonOfARayBesideTheWitness) {
   EXPECT_NEAR(report.at("normal").at(0).get<double>(), -0.25, bound);
   EXPECT_EQ(report.at("uv").size(), 2u);
   EXPECT_GT(report.at("error").get<double>(), 0);
-  const auto& witness = report.at("reference");
-  EXPECT_NEAR(witness.at("t").get<double>(), (4 - z) / 2, 1e-12);  // bisected in double
-  EXPECT_EQ(witness.at("object"), report.at("object"));
-  EXPECT_EQ(witness.at("entering"), true);
+  const auto& reference = report.at("reference");
+  EXPECT_NEAR(reference.at("t").get<double>(), (4 - z) / 2, 1e-12);  // bisected in double
+  EXPECT_EQ(reference.at("object"), report.at("object"));
+  EXPECT_EQ(reference.at("entering"), true);
 
   const Result all = test::run_program({"pick", "scene.pbrt", "--ray", "5,0,4,0,0,-1", "--json", "--all", "--reference"}, folder);
   ASSERT_EQ(all.code, 0) << all.err;
@@ -361,7 +361,7 @@ TEST(Pick, WordsForPeople) {
   const Result result = test::run_program({"pick", "scene.pbrt", "--pixel", "20,9", "--reference"}, folder);
   ASSERT_EQ(result.code, 0) << result.err;
   for (const char* word : {"pixel ", "ray ", "object ", "primitive ", "surface ", "material ", "t ", "entering", "point ",
-                           "normal ", "uv ", "witness ", "ball, \"big\"", "mat, \xc3\xa9"})
+                           "normal ", "uv ", "reference ", "ball, \"big\"", "mat, \xc3\xa9"})
     EXPECT_THAT(result.out, HasSubstr(word));
   EXPECT_THAT(test::run_program({"pick", "scene.pbrt", "--pixel", "0,0"}, folder).out, HasSubstr("nothing"));
 }

@@ -178,6 +178,8 @@ TEST(Texts, ManPageHasAllOptions) {
     for (const std::string& option : options)
       EXPECT_TRUE(of_command.find("\\fB" + in_roff(option) + "\\fR") != std::string::npos) << option << " of " << command;
   }
+  // Literal values are bold; what stands for a value is in italics.
+  EXPECT_THAT(page, testing::AllOf(HasSubstr("\\fBfront\\fR|"), HasSubstr("|\\:\\fBorthographic\\fR"), HasSubstr("|\\:\\fIX,Y,Z\\fR")));
 }
 
 TEST(Texts, CompletionsHaveAllOptions) {

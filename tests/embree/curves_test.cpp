@@ -34,7 +34,7 @@ using glm::dvec3;
 dvec3 origin_of(const RayRecord& ray) { return {ray.ox, ray.oy, ray.oz}; }
 dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
 
-/// A curve in the three ways that it is traced, and what the witness has of it.
+/// A curve in the three ways that it is traced, and what the reference has of it.
 class Curve {
  public:
   explicit Curve(const RoundCurves& curves) : peer_(curves, PeerMode::robust), tracer_(test_device(), test_width()) {
@@ -44,7 +44,7 @@ class Curve {
       const std::array<float, 3> p0{a[0], a[1], a[2]}, p1{b[0], b[1], b[2]};
       segments_.push_back(a[3] == b[3] ? make_capsule(p0, p1, a[3]) : make_tapered(p0, p1, a[3], b[3]));
       segments_.back().id = static_cast<std::uint32_t>(segments_.size() - 1);
-      segment_witnesses_.push_back(witness_of(segments_.back()));
+      segment_references_.push_back(reference_of(segments_.back()));
       auto operand = std::make_shared<Shape>();
       operand->geometry = CapsulesShape{{{a[0], a[1], a[2]}}, {{b[0], b[1], b[2]}}, {a[3]}, {b[3]}, {}};
       csg.operands.push_back(operand);
@@ -53,12 +53,12 @@ class Curve {
     root_ = tree.root;
     if (csg.operands.size() == 1) {
       union_.push_back(segments_[0]);
-      union_witness_.push_back(segment_witnesses_[0]);
+      union_reference_.push_back(segment_references_[0]);
     } else {
       union_.push_back(flat_primitive(csg, glm::dmat4(1), union_leaves_));
       Shape shape;
       shape.geometry = csg;
-      union_witness_ = reference::primitives_of(shape);
+      union_reference_ = reference::primitives_of(shape);
     }
     probe_.emplace(test_device(), test_width(), union_, union_leaves_);
   }
@@ -76,7 +76,7 @@ class Curve {
     const auto united = probe_->trace(std::vector<std::uint32_t>(rays.size(), 0), rays);
     std::mutex mutex;
     tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
-      const Judge whole(union_, union_witness_, rays[i]);
+      const Judge whole(union_, union_reference_, rays[i]);
       if (whole.begins_at_surface()) {
         const std::lock_guard lock(mutex);
         ++out.outside.left_out;
@@ -96,7 +96,7 @@ class Curve {
         out.not_neighbour += hit && embree.wrong() && inside_another(theirs[i], rays[i]);
         return;
       }
-      const Judge each(segments_, segment_witnesses_, rays[i]);
+      const Judge each(segments_, segment_references_, rays[i]);
       const std::uint32_t id = ours[i].slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves_[ours[i].slot]);
       out.segments.add(each, each.judge(id, ours[i].t), each.judge_point(hit, theirs[i].t), {}, where(ours[i].t));
       const std::lock_guard lock(mutex);
@@ -112,7 +112,7 @@ class Curve {
     CaseMaker random(seed);
     std::vector<dvec3> points;
     for (const RayRecord& ray : rays)
-      for (const reference::Crossing& c : reference::crossings(union_witness_[0], witness_ray(ray)))
+      for (const reference::Crossing& c : reference::crossings(union_reference_[0], reference_ray(ray)))
         if (c.t > 0) points.push_back(origin_of(ray) + c.t * direction_of(ray));
     while (!points.empty() && out.size() < count) {
       const dvec3 x = points[static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(points.size()))];
@@ -136,10 +136,10 @@ class Curve {
 
  private:
   double value(std::size_t segment, const RayRecord& ray, double t) const {
-    return reference::value(segment_witnesses_[segment], origin_of(ray) + t * direction_of(ray));
+    return reference::value(segment_references_[segment], origin_of(ray) + t * direction_of(ray));
   }
   double bound(std::size_t segment, const RayRecord& ray) const {
-    return surface_bound(segments_[segment], segment_witnesses_[segment], ray);
+    return surface_bound(segments_[segment], segment_references_[segment], ray);
   }
   /// Several segments have their surface within both bounds of the point.
   bool shared(float t, const RayRecord& ray) const {
@@ -156,7 +156,7 @@ class Curve {
   Peer peer_;
   DeviceTracer tracer_;
   std::vector<FlatPrimitive> segments_, union_;
-  std::vector<reference::Primitive> segment_witnesses_, union_witness_;
+  std::vector<reference::Primitive> segment_references_, union_reference_;
   std::vector<float> nodes_, leaves_, union_leaves_;
   std::uint32_t root_ = 0;
   std::optional<Probe> probe_;

@@ -11,12 +11,12 @@
 
 namespace caplet::test {
 
-Judge::Judge(std::span<const FlatPrimitive> primitives, std::span<const reference::Primitive> witnesses, const RayRecord& ray)
-    : primitives_(primitives), witnesses_(witnesses), record_(ray), ray_(witness_ray(ray)) {
-  for (std::uint32_t id = 0; id < witnesses.size(); ++id) {
-    const auto crossings = reference::crossings(witnesses[id], ray_);
+Judge::Judge(std::span<const FlatPrimitive> primitives, std::span<const reference::Primitive> references, const RayRecord& ray)
+    : primitives_(primitives), references_(references), record_(ray), ray_(reference_ray(ray)) {
+  for (std::uint32_t id = 0; id < references.size(); ++id) {
+    const auto crossings = reference::crossings(references[id], ray_);
     // A ray along a triangle may begin in it and not cross it; one that begins at a solid and misses it touches it.
-    if (crossings.empty() && reference::is_solid(witnesses[id])) continue;
+    if (crossings.empty() && reference::is_solid(references[id])) continue;
     bool thin = false;
     for (std::size_t i = 0; i < crossings.size(); ++i) {
       const bool thin_before = std::exchange(
@@ -31,7 +31,7 @@ Judge::Judge(std::span<const FlatPrimitive> primitives, std::span<const referenc
 }
 
 double Judge::value(std::uint32_t id, double t) const {
-  return reference::value(witnesses_[id], ray_.origin + t * ray_.direction);
+  return reference::value(references_[id], ray_.origin + t * ray_.direction);
 }
 
 // docs/numerics.md, "CSG": the sum of the bounds of both sides.
@@ -41,11 +41,11 @@ bool Judge::is_thin(std::uint32_t id, double from, double to) const {
   return deepest <= 2 * bound(id);
 }
 
-double Judge::bound(std::uint32_t id) const { return surface_bound(primitives_[id], witnesses_[id], record_); }
+double Judge::bound(std::uint32_t id) const { return surface_bound(primitives_[id], references_[id], record_); }
 
 bool Judge::touches(std::uint32_t id) const {
   if (!touched_ || touched_->first != id)
-    touched_ = {id, reference::referee(witnesses_[id], ray_, bound(id)) == reference::Verdict::tangent};
+    touched_ = {id, reference::referee(references_[id], ray_, bound(id)) == reference::Verdict::tangent};
   return touched_->second;
 }
 
@@ -86,10 +86,10 @@ Judgement Judge::judge(std::uint32_t id, double t) const {
     if (!on_it || !found) {
       // Edge-on, triangles are met beside themselves.
       const bool edge_on =
-          primitives_[id].shape == shape_triangle && std::abs(value(id, t)) <= reference::bounding_ball(witnesses_[id]).radius;
+          primitives_[id].shape == shape_triangle && std::abs(value(id, t)) <= reference::bounding_ball(references_[id]).radius;
       const bool csg_passed_by = primitives_[id].shape == shape_csg && on_it && passes_by(id, t);
       if (!(t > 0) || !(on_it || edge_on) || !(csg_passed_by || touches(id))) {
-        const double margin = reference::margin(witnesses_[id], ray_);
+        const double margin = reference::margin(references_[id], ray_);
         if (margin < -bound(id)) return {Verdict::false_hit, id, -margin, HUGE_VAL, std::abs(value(id, t)), false, false};
         return displaced(id, t);
       }
@@ -103,7 +103,7 @@ Judgement Judge::judge(std::uint32_t id, double t) const {
       continue;
     }
     if (e.id == id) return displaced(id, t);
-    return {Verdict::missed, e.id, std::abs(reference::margin(witnesses_[e.id], ray_)), HUGE_VAL, 0, false, false};
+    return {Verdict::missed, e.id, std::abs(reference::margin(references_[e.id], ray_)), HUGE_VAL, 0, false, false};
   }
   return {touching ? Verdict::touching : Verdict::right, 0, 0, 0, 0, false, false};
 }
@@ -112,7 +112,7 @@ Judgement Judge::judge_point(bool hit, double t) const {
   if (!hit) return judge(CAPLET_NONE, t);
   // The primitive whose surface is nearest to the reported point.
   std::uint32_t best = 0;
-  for (std::uint32_t id = 1; id < witnesses_.size(); ++id)
+  for (std::uint32_t id = 1; id < references_.size(); ++id)
     if (std::abs(value(id, t)) < std::abs(value(best, t))) best = id;
   return judge(best, t);
 }

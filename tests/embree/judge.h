@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Says of an answer to "what does this ray hit first?" whether it is right, by the witness and the referee, within the bounds of
+// Says of an answer to "what does this ray hit first?" whether it is right, by the reference and the referee, within the bounds of
 // docs/numerics.md.
 #pragma once
 
@@ -38,11 +38,11 @@ struct Judgement {
 /// One ray among primitives. Holds references to them. For one thread.
 class Judge {
  public:
-  Judge(std::span<const FlatPrimitive> primitives, std::span<const reference::Primitive> witnesses, const RayRecord& ray);
+  Judge(std::span<const FlatPrimitive> primitives, std::span<const reference::Primitive> references, const RayRecord& ray);
   /// Where the ray begins: within the bound of a surface, inside a solid, or neither.
   bool begins_at_surface() const { return begins_at_surface_; }
   bool begins_inside() const { return begins_inside_; }
-  /// The witness's nearest crossing.
+  /// The reference's nearest crossing.
   bool hit() const { return !expected_.empty(); }
   /// `id`: which primitive; CAPLET_NONE: nothing is hit.
   Judgement judge(std::uint32_t id, double t) const;
@@ -64,7 +64,7 @@ class Judge {
   Judgement displaced(std::uint32_t id, double t) const;
 
   std::span<const FlatPrimitive> primitives_;
-  std::span<const reference::Primitive> witnesses_;
+  std::span<const reference::Primitive> references_;
   RayRecord record_;
   reference::Ray ray_;
   std::vector<Expected> expected_;  // t > 0, in order

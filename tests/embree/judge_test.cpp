@@ -11,9 +11,9 @@ namespace caplet::test {
 namespace {
 
 const FlatPrimitive capsule = make_capsule({0, 0, 0}, {0, 0, 4}, 1);
-const reference::Primitive witness = witness_of(capsule);
+const reference::Primitive reference = reference_of(capsule);
 
-Judge judge_at(double y) { return Judge({&capsule, 1}, {&witness, 1}, make_ray({-5, y, 2}, {1, 0, 0})); }
+Judge judge_at(double y) { return Judge({&capsule, 1}, {&reference, 1}, make_ray({-5, y, 2}, {1, 0, 0})); }
 
 TEST(Judge, KnowsHitsAndMisses) {
   EXPECT_EQ(judge_at(0).judge(0, 4).verdict, Verdict::right);
@@ -52,14 +52,14 @@ TEST(Judge, LetsTouchingRaysBe) {
 
 TEST(Judge, KnowsWhereRaysBegin) {
   EXPECT_FALSE(judge_at(0).begins_inside() || judge_at(0).begins_at_surface());
-  EXPECT_TRUE(Judge({&capsule, 1}, {&witness, 1}, make_ray({0, 0, 2}, {1, 0, 0})).begins_inside());
-  EXPECT_TRUE(Judge({&capsule, 1}, {&witness, 1}, make_ray({1, 0, 2}, {1, 0, 0})).begins_at_surface());
+  EXPECT_TRUE(Judge({&capsule, 1}, {&reference, 1}, make_ray({0, 0, 2}, {1, 0, 0})).begins_inside());
+  EXPECT_TRUE(Judge({&capsule, 1}, {&reference, 1}, make_ray({1, 0, 2}, {1, 0, 0})).begins_at_surface());
 }
 
 TEST(Judge, TellsPrimitivesApart) {
   const FlatPrimitive both[] = {make_sphere({0, 0, 0}, 1), make_sphere({3, 0, 0}, 1)};
-  const reference::Primitive witnesses[] = {witness_of(both[0]), witness_of(both[1])};
-  const Judge judge(both, witnesses, make_ray({-5, 0, 0}, {1, 0, 0}));
+  const reference::Primitive references[] = {reference_of(both[0]), reference_of(both[1])};
+  const Judge judge(both, references, make_ray({-5, 0, 0}, {1, 0, 0}));
   EXPECT_EQ(judge.judge(0, 4).verdict, Verdict::right);
   EXPECT_EQ(judge.judge(1, 7).verdict, Verdict::missed);
   EXPECT_EQ(judge.judge(1, 4).verdict, Verdict::displaced);

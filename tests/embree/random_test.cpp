@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Capsules, tapered capsules, spheres and triangles by themselves and in scenes: our kernels and Embree, judged by the witness.
+// Capsules, tapered capsules, spheres and triangles by themselves and in scenes: our kernels and Embree, judged by the reference.
 // 20,000 rays a test; CAPLET_TEST_SCALE=50 makes it a million.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -41,10 +41,10 @@ const Kind kinds[] = {{shape_capsule, "capsule", 0.94, 0.6, 0.999},
 
 bool is_capsule(int shape) { return shape == shape_capsule || shape == shape_tapered_capsule; }
 
-CaseFacts facts_of(const FlatPrimitive& p, const reference::Primitive& witness, const RayRecord& ray) {
-  const reference::Ball ball = reference::bounding_ball(witness);
+CaseFacts facts_of(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray) {
+  const reference::Ball ball = reference::bounding_ball(reference);
   // The bound, with coordinates in place of their differences: 16 eps (|o| + |c| + size) on top.
-  const double world = surface_bound(p, witness, ray) +
+  const double world = surface_bound(p, reference, ray) +
                        16 * 0x1p-24 * (glm::length(dvec3(ray.ox, ray.oy, ray.oz)) + glm::length(ball.center) + ball.radius);
   if (p.shape == shape_sphere) return {p.data[3], false, world};
   if (p.shape == shape_triangle) return {ball.radius, false, world};
@@ -149,10 +149,10 @@ void compare_singles(const Kind& kind, bool hard, double least) {
     }
     tbb::parallel_for(std::size_t{0}, cases.rays.size(), [&](std::size_t i) {
       const FlatPrimitive& primitive = cases.primitive(i);
-      const Judge judge({&primitive, 1}, {&cases.witness(i), 1}, cases.rays[i]);
+      const Judge judge({&primitive, 1}, {&cases.reference(i), 1}, cases.rays[i]);
       const HitRecord& hit = ours[i].hit;
       const Judgement embree = judge.judge(theirs[i].id == CAPLET_NONE ? CAPLET_NONE : 0, theirs[i].t);
-      const CaseFacts facts = facts_of(primitive, cases.witness(i), cases.rays[i]);
+      const CaseFacts facts = facts_of(primitive, cases.reference(i), cases.rays[i]);
       tallies.add(judge, judge.judge(hit.slot == CAPLET_NONE ? CAPLET_NONE : 0, hit.t), embree, facts, [&] {
         return fmt::format("  t {} ours {} Embree\n  ", hit.t, theirs[i].t) + described(primitive, cases.rays[i]);
       });
@@ -198,11 +198,11 @@ TEST_P(ThirdOpinion, OnScenes) {
   for (int part = 0; part < test_scale(); ++part) {
     CaseMaker maker(8000 + static_cast<std::uint32_t>(part));
     std::vector<FlatPrimitive> primitives;
-    std::vector<reference::Primitive> witnesses;
+    std::vector<reference::Primitive> references;
     for (std::uint32_t i = 0; i < 500; ++i) {
       primitives.push_back(scattered(maker, GetParam().shape));
       primitives.back().id = i;
-      witnesses.push_back(witness_of(primitives.back()));
+      references.push_back(reference_of(primitives.back()));
     }
     std::vector<RayRecord> rays;
     for (int i = 0; i < 20000; ++i) {
@@ -219,11 +219,11 @@ TEST_P(ThirdOpinion, OnScenes) {
     const std::vector<HitRecord> ours = tracer.closest(rays);
     const std::vector<PeerHit> theirs = Peer(primitives, PeerMode::robust).closest(rays);
     tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) {
-      const Judge judge(primitives, witnesses, rays[i]);
+      const Judge judge(primitives, references, rays[i]);
       const std::uint32_t id = ours[i].slot == CAPLET_NONE ? CAPLET_NONE : id_of[ours[i].slot];
       const Judgement embree = judge.judge(theirs[i].id, theirs[i].t);
       tallies.add(judge, judge.judge(id, ours[i].t), embree,
-                  facts_of(primitives[embree.primitive], witnesses[embree.primitive], rays[i]), [&] {
+                  facts_of(primitives[embree.primitive], references[embree.primitive], rays[i]), [&] {
                     return fmt::format("  t {} ours {} Embree\n  ", ours[i].t, theirs[i].t) +
                            described(primitives[embree.primitive], rays[i]);
                   });

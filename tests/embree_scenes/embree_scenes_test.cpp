@@ -424,10 +424,15 @@ TEST(BadEmbreeScenes, AreRefused) {
     doubled += "<assign type=\"scene\" id=\"" + std::to_string(i) + "\"><Group><ref id=\"" + std::to_string(i - 1) +
                "\"/><ref id=\"" + std::to_string(i - 1) + "\"/></Group></assign>\n";
   EXPECT_THAT(said(doubled + "<ref id=\"40\"/>"), HasSubstr("more than"));
-  std::string deep;
-  for (int i = 0; i < 600; ++i) deep += "<Group>";
-  for (int i = 0; i < 600; ++i) deep += "</Group>";
-  EXPECT_THAT(said(deep), HasSubstr("lies within 500 others"));
+  const auto nested = [](int groups) {
+    std::string text;
+    for (int i = 0; i < groups; ++i) text += "<Group>";
+    text += kTriangle;
+    for (int i = 0; i < groups; ++i) text += "</Group>";
+    return text;
+  };
+  EXPECT_EQ(scene_of(nested(499)).shapes.size(), 1U);
+  EXPECT_THAT(said(nested(500)), HasSubstr("lies within 500 others"));
   std::string chain = "<Group id=\"0\"/>";
   for (int i = 1; i < 6000; ++i)
     chain += "<Group id=\"" + std::to_string(i) + "\"><ref id=\"" + std::to_string(i - 1) + "\"/></Group>";

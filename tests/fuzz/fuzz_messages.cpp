@@ -29,7 +29,7 @@ void check_ids(const std::vector<std::uint32_t>& ids) {
 }
 
 void check(const Message& message) {
-  if (const auto* look = std::get_if<Look>(&message)) {
+  if (const auto* look = std::get_if<ShowView>(&message)) {
     require(look->width >= 1 && look->width <= most_page_pixels && look->height >= 1 && look->height <= most_page_pixels);
     require(is_finite(look->world_from_camera) && look->fov > 0 && look->fov < 3.1416);
     require(look->lens_radius >= 0 && look->focal_distance > 0 && std::isfinite(look->lens_radius + look->focal_distance));
@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Message again = parse_message(line);
     require(again.index() == message.index());
     if (const auto* edit = std::get_if<Edit>(&message)) require(std::get<Edit>(again).change.index() == edit->change.index());
-    if (const auto* look = std::get_if<Look>(&message))
-      require(std::get<Look>(again).world_from_camera == look->world_from_camera);
+    if (const auto* look = std::get_if<ShowView>(&message))
+      require(std::get<ShowView>(again).world_from_camera == look->world_from_camera);
   });
 }

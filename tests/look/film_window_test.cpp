@@ -13,9 +13,9 @@
 #include <numbers>
 #include <random>
 
-#include "import/look.h"
+#include "import/picture_options.h"
 #include "present/lights.h"
-#include "present/look.h"
+#include "present/picture_options.h"
 #include "present/present.h"
 #include "present/turntable.h"
 #include "support/import_files.h"
@@ -82,7 +82,7 @@ Scene scene_of(std::vector<Shape> shapes, std::map<std::string, std::string> loo
   scene.film.height = 200;
   scene.has_no_up = has_no_up;
   add_presentation(scene);
-  if (!look.empty()) apply_look(scene, test::NoImages(), ImportOptions(std::move(look)), false);
+  if (!look.empty()) apply_picture_options(scene, test::NoImages(), ImportOptions(std::move(look)), false);
   return scene;
 }
 

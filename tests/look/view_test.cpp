@@ -9,11 +9,11 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "import/look.h"
+#include "import/picture_options.h"
 #include "lower/camera.h"
 #include "present/film_window.h"
 #include "present/lights.h"
-#include "present/look.h"
+#include "present/picture_options.h"
 #include "present/present.h"
 #include "support/import_files.h"
 
@@ -45,7 +45,7 @@ Scene three_balls(int width = 200, int height = 100) {
 }
 
 void look(Scene& scene, std::map<std::string, std::string> options, bool is_turned = false) {
-  apply_look(scene, test::NoImages(), ImportOptions(std::move(options)), is_turned);
+  apply_picture_options(scene, test::NoImages(), ImportOptions(std::move(options)), is_turned);
 }
 
 glm::dvec3 axis_of(const Scene& scene, int column) { return glm::dvec3(scene.camera.world_from_camera[column]); }

@@ -125,6 +125,14 @@ TEST(VertexColors, OfObj) {
       scene_of("b.obj", "v 0 0 0 255 0 0\nv 1 0 0 51 102 153\nv 1 1 0 0 0 255\nv 0 1 0 1\no a\nf 1 2 3\no b\nf 2 3 4\n");
   EXPECT_LT(glm::length(color_at(bytes, bytes.shapes.at(0), 0, {0, 1, 0}) - decoded({0.2F, 0.4F, 0.6F})), kClose);
   EXPECT_EQ(color_at(bytes, bytes.shapes.at(1), 0, {1, 0, 0}), vec3(-1));
+  // Any channel above 1 shows that the file counts to 255.
+  for (int channel = 0; channel < 3; ++channel) {
+    const std::string bright[3] = {"255 0 0", "0 255 0", "0 0 255"};
+    const Scene one = scene_of("c.obj", "v 0 0 0 " + bright[channel] + "\nv 1 0 0 0 0 0\nv 1 1 0 0 0 0\nf 1 2 3\n");
+    vec3 expected(0);
+    expected[channel] = 1;
+    EXPECT_LT(glm::length(color_at(one, one.shapes.at(0), 0, {1, 0, 0}) - expected), kClose) << channel;
+  }
   // Times the material's.
   const std::filesystem::path folder = test::write_file("half.mtl", "newmtl half\nKd 0.5 0.5 0.25\n").parent_path();
   std::ofstream(folder / "h.obj") << "mtllib half.mtl\nusemtl half\n" << square << "f 1 2 3\n";

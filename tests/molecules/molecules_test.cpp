@@ -415,6 +415,11 @@ TEST(Drawing, ColoursTellBFactors) {
   EXPECT_EQ(scene.materials[tube.materials.back()].name, "bfactor 50");
   ASSERT_FALSE(tube.radius1.empty());
   EXPECT_LT(tube.radius0.front(), tube.radius1.back());
+  ASSERT_TRUE(scene.legend);
+  EXPECT_EQ(scene.legend->title, "B factor");
+  EXPECT_EQ(scene.legend->low, 5);
+  EXPECT_EQ(scene.legend->high, 50);
+  EXPECT_FALSE(scene_of_text("b.pdb", text, {{{"color", "chain"}, {"style", "trace"}}}).legend);
 }
 
 // Where all are the same each has the middle of the map, (33, 145, 140) of matplotlib's, but for half a step of 63; the tube has

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Queries against the witness: which crossing, where, of what; batches, capacities and camera rays.
+// Queries against the reference: which crossing, where, of what; batches, capacities and camera rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include "lower/camera.h"
 #include "lower/identity.h"
 #include "lower/lower.h"
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "render/query.h"
 #include "render_scene.h"
 #include "support/data.h"
@@ -74,14 +74,14 @@ bool is_on(const Scene& scene, const PickRecord& pick, const reference::SceneHit
   const bool placed = hit.instance != reference::no_instance;
   const Identity identity = identity_of(scene, pick);
   const Shape& shape = placed ? scene.objects[hit.object].shapes[hit.shape] : scene.shapes[hit.shape];
-  // The witness knows the normal of an open shape as stored, without ReverseOrientation.
+  // The reference knows the normal of an open shape as stored, without ReverseOrientation.
   const bool leaving = hit.leaving != (is_sheet(shape) && shape.reverse_orientation);
   return identity.shape == &shape && identity.instance == (placed ? std::optional(hit.instance) : std::nullopt) &&
          pick.primitive == hit.primitive && pick.surface == hit.surface && pick.material == hit.material &&
          (pick.leaving != 0) == leaving;
 }
 
-/// How far device and witness may be apart along the surface's normal: `error` for the point and as much for the parameter, which
+/// How far device and reference may be apart along the surface's normal: `error` for the point and as much for the parameter, which
 /// the same bound covers (docs/numerics.md), 16 eps of the origin's distance, and the rounding of the shape's own numbers to
 /// floats, 8 eps of their size.
 double bound_of(const RayRecord& ray, const PickRecord& pick) {
@@ -94,7 +94,7 @@ double cosine_of(const RayRecord& ray, const PickRecord& pick) {
   return std::abs(glm::dot(to_dvec3(pick.normal), direction_of(ray))) / glm::length(direction_of(ray));
 }
 
-/// The same crossing on the device and by the witness, in the same place. A surface seen at an angle stretches the bound by 1 /
+/// The same crossing on the device and by the reference, in the same place. A surface seen at an angle stretches the bound by 1 /
 /// cos; within 3 degrees of grazing, where its curvature would count too, only the identity is compared.
 void expect_same(const Scene& scene, const RayRecord& ray, const PickRecord& pick, const reference::SceneHit& hit, Tally& tally) {
   EXPECT_TRUE(is_on(scene, pick, hit));
@@ -112,7 +112,7 @@ void expect_same(const Scene& scene, const RayRecord& ray, const PickRecord& pic
   EXPECT_LE(glm::length(p - (o + hit.t * d)) * cosine, bound);
 }
 
-/// The witness's crossing of the same surface nearest to the device's; the end when there is none.
+/// The reference's crossing of the same surface nearest to the device's; the end when there is none.
 std::vector<reference::SceneHit>::iterator counterpart_of(const Scene& scene, const PickRecord& pick,
                                                           std::vector<reference::SceneHit>& hits) {
   auto out = hits.end();
@@ -126,9 +126,9 @@ INSTANTIATE_TEST_SUITE_P(Files, QueryOfScene,
                          testing::Values("scenes/capsules.pbrt", "scenes/instances.pbrt", "scenes/gallery.pbrt",
                                          "tests/query/solids.pbrt", "tests/render/everything.pbrt"));
 
-TEST_P(QueryOfScene, NearestCrossingsAreTheWitnesss) {
+TEST_P(QueryOfScene, NearestCrossingsAreTheReferences) {
   const Scene scene = scene_file(GetParam());
-  const reference::SceneWitness witness(scene);
+  const reference::SceneReference reference(scene);
   const FlatScene flat = lower(scene);
   std::vector<RayRecord> rays = pixel_rays(scene, 200, 1);
   const auto more = random_rays(scene, 1000, 2);
@@ -141,12 +141,12 @@ TEST_P(QueryOfScene, NearestCrossingsAreTheWitnesss) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       SCOPED_TRACE(i);
       const reference::Ray ray{origin_of(rays[i]), direction_of(rays[i])};
-      const auto hit = witness.closest(ray);
+      const auto hit = reference.closest(ray);
       ASSERT_EQ(picks[i].object != CAPLET_NONE, hit.has_value());
       EXPECT_EQ(std::isfinite(picks[i].t), hit.has_value());
       if (!hit) continue;
       // Where surfaces lie on each other, either is the nearest.
-      std::vector<reference::SceneHit> hits = witness.all(ray);
+      std::vector<reference::SceneHit> hits = reference.all(ray);
       const auto counterpart = counterpart_of(scene, picks[i], hits);
       ASSERT_NE(counterpart, hits.end());
       EXPECT_LE((counterpart->t - hit->t) * glm::length(ray.direction) * cosine_of(rays[i], picks[i]),
@@ -158,9 +158,9 @@ TEST_P(QueryOfScene, NearestCrossingsAreTheWitnesss) {
   }
 }
 
-TEST_P(QueryOfScene, ListsAreTheWitnesss) {
+TEST_P(QueryOfScene, ListsAreTheReferences) {
   const Scene scene = scene_file(GetParam());
-  const reference::SceneWitness witness(scene);
+  const reference::SceneReference reference(scene);
   const FlatScene flat = lower(scene);
   const std::vector<RayRecord> rays = random_rays(scene, 500, 3);
   for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
@@ -173,7 +173,7 @@ TEST_P(QueryOfScene, ListsAreTheWitnesss) {
     std::size_t longest = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       SCOPED_TRACE(i);
-      std::vector<reference::SceneHit> expected = witness.all({origin_of(rays[i]), direction_of(rays[i])});
+      std::vector<reference::SceneHit> expected = reference.all({origin_of(rays[i]), direction_of(rays[i])});
       const auto begin = lists.begin[i], end = lists.begin[i + 1];
       longest = std::max(longest, end - begin);
       ASSERT_EQ(end - begin, expected.size());
@@ -182,7 +182,7 @@ TEST_P(QueryOfScene, ListsAreTheWitnesss) {
         EXPECT_LE(k > begin ? lists.crossings[k - 1].t : 0, pick.t);
         // Where surfaces lie on each other the order is the device's own: each crossing has its own counterpart.
         const auto counterpart = counterpart_of(scene, pick, expected);
-        ASSERT_NE(counterpart, expected.end()) << "the witness has no such crossing near " << pick.t;
+        ASSERT_NE(counterpart, expected.end()) << "the reference has no such crossing near " << pick.t;
         expect_same(scene, rays[i], pick, *counterpart, tally);
         expected.erase(counterpart);
       }

@@ -25,7 +25,7 @@ constexpr std::pair<Stage, const char*> stages[] = {
 
 // Stages of scenes with media carry what paths are within, and all that shading takes.
 bool is_of_media(Stage stage) {
-  return stage == Stage::immerse || stage == Stage::settle || stage == Stage::travel || stage == Stage::shade_media ||
+  return stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance || stage == Stage::shade_media ||
          stage == Stage::connect_media;
 }
 
@@ -38,7 +38,7 @@ TEST(Kernels, TakeWhatTheyUse) {
     ++count;
   }
   EXPECT_LE(sum / count, 14);
-  EXPECT_LE(buffer_count(Stage::travel), 66u);
+  EXPECT_LE(buffer_count(Stage::sample_distance), 66u);
   EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
 }
 

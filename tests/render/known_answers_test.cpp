@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The known answers are the witness's too; kernels that are right give them, and a fault in any shape, side or stage is seen.
+// The known answers are the reference's too; kernels that are right give them, and a fault in any shape, side or stage is seen.
 #include "render/known_answers.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 #include <set>
 
 #include "lower/lower.h"
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "render/detail/known_rays.h"
 #include "render_scene.h"
 #include "shared/shapes.h"
@@ -80,16 +80,16 @@ TEST(KnownRays, AreOfEveryShape) {
   }
 }
 
-TEST(KnownRays, CrossingsAreTheWitnesss) {
+TEST(KnownRays, CrossingsAreTheReferences) {
   const KnownScene known = known_scene(every_shape);
-  const reference::SceneWitness witness(known.scene);
+  const reference::SceneReference reference(known.scene);
   std::size_t crossings = 0;
   for (std::size_t i = 0; i < known.rays.size(); ++i) {
     const KnownRay& ray = known.rays[i];
     SCOPED_TRACE(testing::Message() << i << ": " << shape_name(ray.kind));
     std::vector<reference::SceneHit> found;
     for (const reference::SceneHit& hit :
-         witness.all({{ray.ray.ox, ray.ray.oy, ray.ray.oz}, {ray.ray.dx, ray.ray.dy, ray.ray.dz}}))
+         reference.all({{ray.ray.ox, ray.ray.oy, ray.ray.oz}, {ray.ray.dx, ray.ray.dy, ray.ray.dz}}))
       if (hit.t < static_cast<double>(ray.ray.t_max)) found.push_back(hit);
     ASSERT_EQ(found.size(), ray.crossings.size());
     for (std::size_t k = 0; k < found.size(); ++k) {

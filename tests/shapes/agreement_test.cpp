@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Nearest hit, any hit and the full hit list of every kind of shape against the witness, by themselves and under random affine
+// Nearest hit, any hit and the full hit list of every kind of shape against the reference, by themselves and under random affine
 // maps, ray by ray. 20,000 rays a test; CAPLET_TEST_SCALE=50 makes it a million.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST_P(Agreement, OfLists) {
         Probe(test_device(), test_width(), cases.primitives, cases.leaves).list(cases.which, cases.rays, capacity);
     tbb::parallel_for(std::size_t{0}, listed.size(), [&](std::size_t i) {
       const RayRecord& ray = cases.rays[i];
-      check(make_case(cases.primitive(i), cases.witness(i), ray), listed[i], described(cases.primitive(i), ray), tally);
+      check(make_case(cases.primitive(i), cases.reference(i), ray), listed[i], described(cases.primitive(i), ray), tally);
     });
   }
   report(GetParam().name, tally);
@@ -71,7 +71,7 @@ TEST_P(Agreement, OfListsUnderAffineMaps) {
       const PlacedPrimitive& primitive = placed.placed[cases.which[i]];
       std::string where = described(primitive.primitive, cases.rays[i]) + "\nobject from world:";
       for (const float x : primitive.object_from_world) where += fmt::format(" {:a}", x);
-      check(make_case(primitive, cases.witness(i), cases.rays[i]), listed[i], where, tally);
+      check(make_case(primitive, cases.reference(i), cases.rays[i]), listed[i], where, tally);
     });
   }
   report(GetParam().name, tally);

@@ -37,8 +37,8 @@ dvec3 any_perpendicular(const dvec3& n) {
 
 }  // namespace
 
-void CaseSet::renew_witnesses() {
-  for (std::size_t i = 0; i < primitives.size(); ++i) witnesses[i] = witness_of(primitives[i], leaves);
+void CaseSet::renew_references() {
+  for (std::size_t i = 0; i < primitives.size(); ++i) references[i] = reference_of(primitives[i], leaves);
 }
 
 dvec3 CaseMaker::direction() {
@@ -174,15 +174,15 @@ FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at,
     // Unbounded ones are left out: some direction sees no plane.
     const std::size_t before = leaves.size();
     const FlatPrimitive p = flat_primitive(shape, glm::dmat4(1), leaves);
-    const auto witness = std::get<reference::Polyhedron>(witness_of(p, leaves));
-    bool bounded = !witness.corners.empty() && witness.ball_radius < 30 * at.r * std::max(stretch, 1.0);
+    const auto reference = std::get<reference::Polyhedron>(reference_of(p, leaves));
+    bool bounded = !reference.corners.empty() && reference.ball_radius < 30 * at.r * std::max(stretch, 1.0);
     for (int i = 0; i < 50 && bounded; ++i) {
-      const dvec3 far = witness.ball_center + 1e3 * witness.ball_radius * direction();
-      bounded = reference::value(witness, far) > 0;
+      const dvec3 far = reference.ball_center + 1e3 * reference.ball_radius * direction();
+      bounded = reference::value(reference, far) > 0;
     }
-    for (const dvec3& corner : witness.corners)
+    for (const dvec3& corner : reference.corners)
       for (int i = 0; i < 4 && bounded; ++i)
-        bounded = reference::value(witness, corner + 0.1 * at.r * glm::normalize(corner - witness.ball_center)) > 0;
+        bounded = reference::value(reference, corner + 0.1 * at.r * glm::normalize(corner - reference.ball_center)) > 0;
     if (bounded) return p;
     leaves.resize(before);
   }
@@ -275,15 +275,15 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
       const auto m = glm::scale(glm::translate(glm::dmat4(1), at.center), dvec3(at.r));
       const CsgShape placed = placed_csg(std::get<CsgShape>(csg.geometry), m);
       csg.geometry = placed;
-      const reference::Primitive witness = reference::primitives_of(csg).at(0);
+      const reference::Primitive reference = reference::primitives_of(csg).at(0);
       // Differences that leave nothing cannot be hit.
-      const reference::Ball ball = reference::bounding_ball(witness);
+      const reference::Ball ball = reference::bounding_ball(reference);
       bool something = false;
       for (int i = 0; i < 30 && !something; ++i)
-        something = !reference::crossings(witness, {ball.center + 0.5 * ball.radius * direction(), direction()}).empty();
+        something = !reference::crossings(reference, {ball.center + 0.5 * ball.radius * direction(), direction()}).empty();
       if (!something) continue;
       out.primitives.push_back(flat_primitive(placed, glm::dmat4(1), out.leaves));
-      out.witnesses.push_back(witness);
+      out.references.push_back(reference);
       return;
     }
   }
@@ -294,7 +294,7 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
   } else {
     out.primitives.push_back(primitive(shape, hard));
   }
-  out.witnesses.push_back(witness_of(out.primitives.back(), out.leaves));
+  out.references.push_back(reference_of(out.primitives.back(), out.leaves));
 }
 
 namespace {
@@ -328,15 +328,15 @@ double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_oute
 
 }  // namespace
 
-Extent extent_of(const FlatPrimitive& p, const reference::Primitive& witness) {
-  const reference::Ball ball = reference::bounding_ball(witness);
+Extent extent_of(const FlatPrimitive& p, const reference::Primitive& reference) {
+  const reference::Ball ball = reference::bounding_ball(reference);
   double reach = 2 * ball.radius;
   if (p.shape == shape_triangle)
     reach = glm::length(point(p.data + 3) - point(p.data)) + glm::length(point(p.data + 6) - point(p.data));
   return {ball.center, ball.radius, reach};
 }
 
-double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness, const RayRecord& ray) {
+double surface_bound(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray) {
   const float* d = p.data;
   const dvec3 o(ray.ox, ray.oy, ray.oz);
   const auto from = [&](const dvec3& c) { return glm::length(o - c); };
@@ -358,7 +358,7 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness
     case shape_box:
       return 8 * eps * (from(0.5 * (point(d) + point(d + 3))) + axis);
     case shape_polyhedron: {
-      const auto& polyhedron = std::get<reference::Polyhedron>(witness);
+      const auto& polyhedron = std::get<reference::Polyhedron>(reference);
       double radius = 0;
       for (const dvec3& corner : polyhedron.corners) radius = std::max(radius, glm::length(corner - polyhedron.center));
       return 16 * eps * (from(polyhedron.center) + radius);
@@ -376,12 +376,12 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness
       return 24 * eps * (from(point(d)) + diameter);
     }
     case shape_csg: {
-      const reference::Ball ball = reference::bounding_ball(witness);
-      return operands_bound(std::get<reference::Csg>(witness), glm::dmat4(1), ball.center, ball.radius) +
+      const reference::Ball ball = reference::bounding_ball(reference);
+      return operands_bound(std::get<reference::Csg>(reference), glm::dmat4(1), ball.center, ball.radius) +
              3 * eps * from(ball.center);
     }
     default: {
-      const reference::Ball ball = reference::bounding_ball(witness);
+      const reference::Ball ball = reference::bounding_ball(reference);
       return 16 * eps * (from(ball.center) + 2 * ball.radius);
     }
   }
@@ -389,7 +389,7 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& witness
 
 // --- Points on them ---
 
-dvec3 CaseMaker::point_of(const reference::Spool& s, dvec3* normal) {
+dvec3 CaseMaker::point_of(const reference::Frustum& s, dvec3* normal) {
   const dvec3 u = any_perpendicular(s.axis), v = glm::cross(s.axis, u);
   const double phi = uniform(0, full_turn);
   const dvec3 outward = std::cos(phi) * u + std::sin(phi) * v;
@@ -520,7 +520,7 @@ dvec3 CaseMaker::point_of(const reference::Csg& csg, dvec3* normal) {
   return ball.center;
 }
 
-dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitive& witness, dvec3* normal) {
+dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitive& reference, dvec3* normal) {
   const float* d = p.data;
   if (p.shape > shape_disk)
     return std::visit(
@@ -530,7 +530,7 @@ dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitiv
           else
             return dvec3(0);
         },
-        witness);
+        reference);
   *normal = direction();
   switch (p.shape) {
     case shape_sphere:
@@ -567,7 +567,7 @@ dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitiv
   }
 }
 
-dvec3 CaseMaker::own_axis(const FlatPrimitive& p, const reference::Primitive& witness) {
+dvec3 CaseMaker::own_axis(const FlatPrimitive& p, const reference::Primitive& reference) {
   const float* d = p.data;
   switch (p.shape) {
     case shape_capsule:
@@ -582,21 +582,21 @@ dvec3 CaseMaker::own_axis(const FlatPrimitive& p, const reference::Primitive& wi
     case shape_box:
       return {double(d[3]) - double(d[0]), 0, 0};
     case shape_polyhedron: {  // edges come as pairs of corners
-      const auto& corners = std::get<reference::Polyhedron>(witness).corners;
+      const auto& corners = std::get<reference::Polyhedron>(reference).corners;
       const auto i = static_cast<std::size_t>(below(static_cast<int>(corners.size()) / 2));
       const dvec3 edge = corners[2 * i + 1] - corners[2 * i];
-      if (glm::length(edge) > 1e-6 * reference::bounding_ball(witness).radius) return edge;
-      return std::get<reference::Polyhedron>(witness).normals[0];
+      if (glm::length(edge) > 1e-6 * reference::bounding_ball(reference).radius) return edge;
+      return std::get<reference::Polyhedron>(reference).normals[0];
     }
     default:
-      return reference::bounding_ball(witness).radius * dvec3(0, 0, 1);
+      return reference::bounding_ball(reference).radius * dvec3(0, 0, 1);
   }
 }
 
-RayRecord CaseMaker::ray(const FlatPrimitive& p, const reference::Primitive& witness) {
-  const Extent extent = extent_of(p, witness);
+RayRecord CaseMaker::ray(const FlatPrimitive& p, const reference::Primitive& reference) {
+  const Extent extent = extent_of(p, reference);
   dvec3 n;
-  const dvec3 on = surface_point(p, witness, &n);
+  const dvec3 on = surface_point(p, reference, &n);
   const double size = std::max(extent.radius, 1e-30);
   // Shapes are thin: aim near a surface point, within the local radius or so.
   const dvec3 aim = on + (below(2) == 0 ? 0.0 : std::pow(10.0, uniform(-6, 0))) * 0.3 * size * direction();
@@ -634,12 +634,12 @@ RayRecord CaseMaker::ray(const FlatPrimitive& p, const reference::Primitive& wit
       break;
     }
     case 6:  // along the shape's own axis
-      d = own_axis(p, witness);
+      d = own_axis(p, reference);
       o = aim - uniform(0, 4) * d;
       break;
     case 7: {  // from surface to surface: through rims and edges
       dvec3 other_normal;
-      const dvec3 other = surface_point(p, witness, &other_normal);
+      const dvec3 other = surface_point(p, reference, &other_normal);
       d = on - other;
       o = other - uniform(-0.5, 3) * d;
       break;
@@ -658,7 +658,7 @@ CaseSet CaseMaker::set(int shape, bool hard, int primitives, int rays_each) {
     add_primitive(shape, hard, out);
     for (int j = 0; j < rays_each; ++j) {
       out.which.push_back(static_cast<std::uint32_t>(i));
-      out.rays.push_back(ray(out.primitives.back(), out.witnesses.back()));
+      out.rays.push_back(ray(out.primitives.back(), out.references.back()));
     }
   }
   return out;

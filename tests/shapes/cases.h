@@ -22,13 +22,13 @@ namespace caplet::test {
 
 struct CaseSet {
   std::vector<FlatPrimitive> primitives;
-  std::vector<reference::Primitive> witnesses;  // of each primitive
+  std::vector<reference::Primitive> references;  // of each primitive
   std::vector<float> leaves;                    // for Probe
   std::vector<std::uint32_t> which;             // of each ray
   std::vector<RayRecord> rays;
-  const reference::Primitive& witness(std::size_t ray) const { return witnesses[which[ray]]; }
+  const reference::Primitive& reference(std::size_t ray) const { return references[which[ray]]; }
   const FlatPrimitive& primitive(std::size_t ray) const { return primitives[which[ray]]; }
-  void renew_witnesses();  // after changes to the primitives; not for csg shapes
+  void renew_references();  // after changes to the primitives; not for csg shapes
 };
 
 class CaseMaker {
@@ -38,13 +38,13 @@ class CaseMaker {
   void add_primitive(int shape, bool hard, CaseSet& out);
   /// A primitive of a kind that needs no `leaves`.
   FlatPrimitive primitive(int shape, bool hard);
-  RayRecord ray(const FlatPrimitive& primitive, const reference::Primitive& witness);
+  RayRecord ray(const FlatPrimitive& primitive, const reference::Primitive& reference);
   CaseSet set(int shape, bool hard, int primitives, int rays_each);
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   glm::dvec3 direction();  // uniform over the sphere
   /// A point of the surface, every other one on a rim, edge or end, and its outward (or stored) unit normal.
-  glm::dvec3 surface_point(const FlatPrimitive& primitive, const reference::Primitive& witness, glm::dvec3* normal);
+  glm::dvec3 surface_point(const FlatPrimitive& primitive, const reference::Primitive& reference, glm::dvec3* normal);
   /// Where a primitive is to be, and how large.
   struct Frame {
     double r;
@@ -54,7 +54,7 @@ class CaseMaker {
   /// A bounded polyhedron of `planes` planes that touch the ball of `at`, stretched along its axis.
   FlatPrimitive polyhedron(int planes, double stretch, const Frame& at, std::vector<float>& leaves);
   /// Along the shape's axis, or an edge.
-  glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& witness);
+  glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& reference);
 
  private:
   Frame frame(bool hard);
@@ -63,7 +63,7 @@ class CaseMaker {
   FlatPrimitive open(int shape, bool hard, const Frame& at);
   FlatPrimitive faced(int shape, bool hard, const Frame& at);
   Shape csg_shape(int depth);
-  glm::dvec3 point_of(const reference::Spool& spool, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::Frustum& frustum, glm::dvec3* normal);
   glm::dvec3 box_point(const BoxShape& box, glm::dvec3* normal);
   template <class Model>
   glm::dvec3 point_of(const reference::Solid<Model>& solid, glm::dvec3* normal);
@@ -86,11 +86,11 @@ struct Extent {
   double radius;  // of the bounding ball
   double reach;   // L + r0 + r1, or the edge lengths: what kernel errors grow with
 };
-Extent extent_of(const FlatPrimitive& primitive, const reference::Primitive& witness);
+Extent extent_of(const FlatPrimitive& primitive, const reference::Primitive& reference);
 
 /// Bound on the distance of o + t d from the surface, as the table of docs/numerics.md ("Traversal") states it; what else stands
 /// there about csg shapes.
-double surface_bound(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray);
+double surface_bound(const FlatPrimitive& primitive, const reference::Primitive& reference, const RayRecord& ray);
 
 /// The primitives placed by random affine maps (turned, stretched by 0.2 to 3 along each axis, every other one mirrored, moved),
 /// the rays with them.

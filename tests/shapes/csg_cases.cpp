@@ -22,10 +22,10 @@ constexpr double eps = 0x1p-24;
 
 dvec3 apply(const dmat4& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
 
-reference::Spool::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
+reference::Frustum::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
 
 /// In the shape's own space.
-struct WitnessOf {
+struct ReferenceOf {
   using Primitive = reference::Primitive;
   Primitive operator()(const SphereShape& s) const { return reference::Sphere{dvec3(0), s.radius}; }
   Primitive operator()(const CapsulesShape& c) const {
@@ -33,10 +33,10 @@ struct WitnessOf {
     return reference::Capsule{dvec3(c.p0[0]), dvec3(c.p1[0]), r0, r1};
   }
   Primitive operator()(const CylinderShape& c) const {
-    return reference::make_spool(c.p0, c.p1, end_of(c.radius, c.caps[0]), end_of(c.radius, c.caps[1]));
+    return reference::make_frustum(c.p0, c.p1, end_of(c.radius, c.caps[0]), end_of(c.radius, c.caps[1]));
   }
   Primitive operator()(const ConeShape& c) const {
-    return reference::make_spool(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]));
+    return reference::make_frustum(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]));
   }
   Primitive operator()(const BoxShape& b) const { return reference::Box{{glm::min(b.p0, b.p1), glm::max(b.p0, b.p1)}}; }
   Primitive operator()(const PolyhedronShape& p) const {
@@ -50,7 +50,7 @@ struct WitnessOf {
   }
   Primitive operator()(const CsgShape& c) const {
     std::vector<reference::CsgPart> parts;
-    for (const auto& one : c.operands) parts.push_back({std::visit(WitnessOf{}, one->geometry), one->world_from_object});
+    for (const auto& one : c.operands) parts.push_back({std::visit(ReferenceOf{}, one->geometry), one->world_from_object});
     return reference::make_csg(static_cast<reference::Csg::Operation>(c.operation), parts);
   }
   template <class Open>
@@ -86,8 +86,8 @@ Shape csg_shape(Operation operation, std::vector<std::shared_ptr<const Shape>> o
   return out;
 }
 
-reference::Primitive witness_of_shape(const Shape& shape) {
-  const reference::CsgPart part{std::visit(WitnessOf{}, shape.geometry), shape.world_from_object};
+reference::Primitive reference_of_shape(const Shape& shape) {
+  const reference::CsgPart part{std::visit(ReferenceOf{}, shape.geometry), shape.world_from_object};
   return reference::make_csg(reference::Csg::Operation::set_union, std::span(&part, 1));
 }
 
@@ -255,7 +255,7 @@ CsgBound::CsgBound(const Shape& shape) {
 // The way to the centre.
 double CsgBound::operator()(const dvec3& origin) const { return fixed_ + 16 * eps * glm::length(origin - center_); }
 
-std::string csg_disagreement(const Shape& shape, const reference::Primitive& witness, const CsgBound& allowed,
+std::string csg_disagreement(const Shape& shape, const reference::Primitive& reference, const CsgBound& allowed,
                              const RayRecord& record, const RayList& list) {
   const reference::Ray ray{{record.ox, record.oy, record.oz}, {record.dx, record.dy, record.dz}, double(record.t_min), HUGE_VAL};
   const auto at = [&](double t) { return ray.origin + t * ray.direction; };
@@ -269,7 +269,7 @@ std::string csg_disagreement(const Shape& shape, const reference::Primitive& wit
   bool inside = !list.hits.empty() && is_leaving(list.hits[0]);
   double last = 0;
   const auto claims = [&](double t, bool in) {
-    const double f = reference::value(witness, at(t));
+    const double f = reference::value(reference, at(t));
     return in ? f <= bound : f >= -bound;
   };
   const std::vector<PlacedSolid> solids = solids_of(shape);
@@ -279,13 +279,13 @@ std::string csg_disagreement(const Shape& shape, const reference::Primitive& wit
     for (int k = 1; k < 16; ++k)
       if (const double t = last + (next - last) * k / 16; !claims(t, inside))
         return fmt::format("{} said to be {} at t {}, the value is {}, the bound {}", i, inside ? "inside" : "outside", t,
-                           reference::value(witness, at(t)), bound);
+                           reference::value(reference, at(t)), bound);
     if (i == list.hits.size()) break;
     const HitRecord& hit = list.hits[i];
     if (is_leaving(hit) != inside) return fmt::format("crossing {} does not take turns", i);
     inside = !inside;
     last = next;
-    if (const double f = reference::value(witness, at(next)); std::abs(f) > bound)
+    if (const double f = reference::value(reference, at(next)); std::abs(f) > bound)
       return fmt::format("crossing {} is {} off the shape, the bound is {}", i, f, bound);
 
     // The surface: of the operand it names, at a point of it, its normal out of the whole.
@@ -297,7 +297,7 @@ std::string csg_disagreement(const Shape& shape, const reference::Primitive& wit
     const CrossingSurface& s = list.surfaces[i];
     const dvec3 p(s.p[0], s.p[1], s.p[2]), n(s.ng[0], s.ng[1], s.ng[2]);
     const dmat4& m = solids[solid].world_from_solid;
-    const reference::Primitive own = std::visit(WitnessOf{}, solids[solid].shape->geometry);
+    const reference::Primitive own = std::visit(ReferenceOf{}, solids[solid].shape->geometry);
     const dvec3 local = apply(glm::inverse(m), p);
     const reference::CsgPart placed{own, m};
     const reference::Primitive in_world = reference::make_csg(reference::Csg::Operation::set_union, std::span(&placed, 1));
@@ -307,12 +307,12 @@ std::string csg_disagreement(const Shape& shape, const reference::Primitive& wit
     const reference::SurfaceAt named = reference::surface_at(own, local);
     const double stretch = glm::length(dvec3(m[0])) + glm::length(dvec3(m[1])) + glm::length(dvec3(m[2]));
     if (named.surface != static_cast<int>(number) && named.margin > 4 * bound * stretch)
-      return fmt::format("crossing {} names surface {} of its operand, the witness {} (margin {})", i, number, named.surface,
+      return fmt::format("crossing {} names surface {} of its operand, the reference {} (margin {})", i, number, named.surface,
                          named.margin);
     // Away from rims the solid lies behind the surface and air before it.
     const double step = std::max(1e-4, 8 * bound);
-    if (reference::surface_at(witness, p).margin > 2 * step &&
-        !(reference::value(witness, p - step * n) < 0 && reference::value(witness, p + step * n) > 0))
+    if (reference::surface_at(reference, p).margin > 2 * step &&
+        !(reference::value(reference, p - step * n) < 0 && reference::value(reference, p + step * n) > 0))
       return fmt::format("the normal of crossing {} does not point out of the solid", i);
   }
   return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Random csg shapes and rays, and what a device's hit list says checked against the witness's values along the ray.
+// Random csg shapes and rays, and what a device's hit list says checked against the reference's values along the ray.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -24,8 +24,8 @@ std::shared_ptr<const Shape> operand(decltype(Shape::geometry) geometry, const g
 Shape csg_shape(Operation operation, std::vector<std::shared_ptr<const Shape>> operands,
                 const glm::dmat4& placed = glm::dmat4(1));
 
-/// The witness of a closed shape, its transform included.
-reference::Primitive witness_of_shape(const Shape& shape);
+/// The reference of a closed shape, its transform included.
+reference::Primitive reference_of_shape(const Shape& shape);
 /// A shape's solids with their transforms, in the order of their surfaces.
 struct PlacedSolid {
   const Shape* shape;
@@ -70,9 +70,9 @@ class CsgBound {
 };
 
 /// What is wrong with the list of one ray, empty if nothing: crossings must be in order, enter and leave in turn, lie on the
-/// named surface, and between them the witness's value must have the right sign wherever it is further from 0 than the bound; the
+/// named surface, and between them the reference's value must have the right sign wherever it is further from 0 than the bound; the
 /// surface points must lie on the shape with normals that point out of it.
-std::string csg_disagreement(const Shape& shape, const reference::Primitive& witness, const CsgBound& allowed,
+std::string csg_disagreement(const Shape& shape, const reference::Primitive& reference, const CsgBound& allowed,
                              const RayRecord& ray, const RayList& list);
 
 }  // namespace caplet::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Csg shapes: hit lists and surfaces on the device against the witness, and identities between shapes.
+// Csg shapes: hit lists and surfaces on the device against the reference, and identities between shapes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -34,13 +34,13 @@ struct Counts {
 };
 
 Counts check(const Shape& shape, std::span<const RayRecord> rays, int width, const std::string& what) {
-  const reference::Primitive witness = witness_of_shape(shape);
+  const reference::Primitive reference = reference_of_shape(shape);
   const CsgBound bound(shape);
   const std::vector<RayList> lists = list_tracer(width).trace(flat_scene(shape), rays, capacity);
   Counts counts;
   std::mutex mutex;
   tbb::parallel_for(std::size_t(0), rays.size(), [&](std::size_t i) {
-    const std::string wrong = csg_disagreement(shape, witness, bound, rays[i], lists[i]);
+    const std::string wrong = csg_disagreement(shape, reference, bound, rays[i], lists[i]);
     const std::lock_guard lock(mutex);
     ++counts.rays;
     counts.hits += lists[i].hits.size();
@@ -90,7 +90,7 @@ std::vector<RayList> lists_of(const Shape& shape, std::span<const RayRecord> ray
 /// apart.
 void expect_same_solid(const Shape& a, const Shape& b, std::span<const RayRecord> rays, const std::string& what) {
   const auto first = lists_of(a, rays), second = lists_of(b, rays);
-  const reference::Primitive witness = witness_of_shape(a);
+  const reference::Primitive reference = reference_of_shape(a);
   const CsgBound bound_a(a), bound_b(b);
   std::size_t crossings = 0, failures = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -100,13 +100,13 @@ void expect_same_solid(const Shape& a, const Shape& b, std::span<const RayRecord
     for (std::size_t k = 0; same && k < first[i].hits.size(); ++k) {
       const HitRecord &x = first[i].hits[k], &y = second[i].hits[k];
       const double between = 0.5 * (double(x.t) + double(y.t));
-      same = is_leaving(x) == is_leaving(y) && std::abs(reference::value(witness, ray.origin + between * ray.direction)) <= bound;
+      same = is_leaving(x) == is_leaving(y) && std::abs(reference::value(reference, ray.origin + between * ray.direction)) <= bound;
       ++crossings;
     }
     // Where one sees what the other does not, the shape is grazed: each answer holds within its bound (csg_disagreement).
     if (!same)
-      same = csg_disagreement(a, witness, bound_a, rays[i], first[i]).empty() &&
-             csg_disagreement(a, witness, bound_a, rays[i], second[i]).empty();
+      same = csg_disagreement(a, reference, bound_a, rays[i], first[i]).empty() &&
+             csg_disagreement(a, reference, bound_a, rays[i], second[i]).empty();
     if (!same && failures++ < 3) ADD_FAILURE() << what << ", ray " << i << ": " << text_of(rays[i]);
   }
   EXPECT_EQ(failures, 0u) << what;
@@ -127,16 +127,16 @@ TEST(CsgIdentities, DifferenceIsIntersectionWithTheComplement) {
     const Shape intersection = csg_shape(Operation::set_intersection, {a, below}, placed);
     const std::vector<RayRecord> rays = maker.rays(csg_shape(Operation::set_union, {a}, placed), 200);
     const auto first = lists_of(difference, rays), second = lists_of(intersection, rays);
-    const reference::Primitive witness = witness_of_shape(difference);
+    const reference::Primitive reference = reference_of_shape(difference);
     const CsgBound bound(difference);
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      EXPECT_EQ(csg_disagreement(difference, witness, bound, rays[k], first[k]), "") << i << " " << text_of(rays[k]);
+      EXPECT_EQ(csg_disagreement(difference, reference, bound, rays[k], first[k]), "") << i << " " << text_of(rays[k]);
       ASSERT_EQ(first[k].hits.size(), second[k].hits.size()) << i << " " << text_of(rays[k]);
       for (std::size_t n = 0; n < first[k].hits.size(); ++n) {
         // Their boxes, and with them the roundings, differ.
         const double t = 0.5 * (double(first[k].hits[n].t) + double(second[k].hits[n].t));
         const dvec3 o(rays[k].ox, rays[k].oy, rays[k].oz), d(rays[k].dx, rays[k].dy, rays[k].dz);
-        EXPECT_LE(std::abs(reference::value(witness, o + t * d)), bound(o));
+        EXPECT_LE(std::abs(reference::value(reference, o + t * d)), bound(o));
         EXPECT_EQ(is_leaving(first[k].hits[n]), is_leaving(second[k].hits[n]));
         // The cut is the lower face of the box taken away and the upper one of the box kept.
         const std::uint32_t own = static_cast<std::uint32_t>(surface_count(*a));
@@ -180,9 +180,9 @@ TEST(CsgIdentities, OrderOfUnionAndIntersectionDoesNotMatter) {
 
 // --- Solids that touch ---
 
-/// No gap that the witness does not see: between leaving and entering again it must be outside somewhere.
+/// No gap that the reference does not see: between leaving and entering again it must be outside somewhere.
 std::size_t false_gaps(const Shape& shape, std::span<const RayRecord> rays, const std::vector<RayList>& lists) {
-  const reference::Primitive witness = witness_of_shape(shape);
+  const reference::Primitive reference = reference_of_shape(shape);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const reference::Ray ray{{rays[i].ox, rays[i].oy, rays[i].oz}, {rays[i].dx, rays[i].dy, rays[i].dz}, 0, HUGE_VAL};
@@ -191,7 +191,7 @@ std::size_t false_gaps(const Shape& shape, std::span<const RayRecord> rays, cons
       bool gap = false;
       for (int n = 0; n <= 32 && !gap; ++n) {
         const double t = double(lists[i].hits[k].t) + (double(lists[i].hits[k + 1].t) - double(lists[i].hits[k].t)) * n / 32;
-        gap = reference::value(witness, ray.origin + t * ray.direction) > 0;
+        gap = reference::value(reference, ray.origin + t * ray.direction) > 0;
       }
       if (!gap && wrong++ < 3) ADD_FAILURE() << "an inner surface, ray " << i << ": " << text_of(rays[i]);
     }
@@ -209,12 +209,12 @@ TEST(CsgTouching, RowOfBoxesIsOneBox) {
     const Shape one = csg_shape(Operation::set_union, {operand(box(dvec3(0), dvec3(1, 0.4, 0.3)))}, placed);
     const std::vector<RayRecord> rays = maker.rays(one, 600);
     const auto lists = lists_of(row, rays), whole = lists_of(one, rays);
-    const reference::Primitive row_witness = witness_of_shape(row), one_witness = witness_of_shape(one);
+    const reference::Primitive row_reference = reference_of_shape(row), one_reference = reference_of_shape(one);
     const CsgBound row_bound(row), one_bound(one);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       EXPECT_LE(lists[k].hits.size(), 2u) << i << ", " << text_of(rays[k]);
-      EXPECT_EQ(csg_disagreement(row, row_witness, row_bound, rays[k], lists[k]), "") << text_of(rays[k]);
-      EXPECT_EQ(csg_disagreement(one, one_witness, one_bound, rays[k], whole[k]), "") << text_of(rays[k]);
+      EXPECT_EQ(csg_disagreement(row, row_reference, row_bound, rays[k], lists[k]), "") << text_of(rays[k]);
+      EXPECT_EQ(csg_disagreement(one, one_reference, one_bound, rays[k], whole[k]), "") << text_of(rays[k]);
     }
   }
 }
@@ -271,10 +271,10 @@ TEST(CsgTouching, ChainOfCapsules) {
     const std::vector<RayRecord> rays = maker.rays(chain, 500);
     const auto lists = lists_of(chain, rays);
     EXPECT_EQ(false_gaps(chain, rays, lists), 0u);
-    const reference::Primitive witness = witness_of_shape(chain);
+    const reference::Primitive reference = reference_of_shape(chain);
     const CsgBound bound(chain);
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      EXPECT_EQ(csg_disagreement(chain, witness, bound, rays[k], lists[k]), "") << text_of(rays[k]);
+      EXPECT_EQ(csg_disagreement(chain, reference, bound, rays[k], lists[k]), "") << text_of(rays[k]);
       if (straight && !tapered) {
         EXPECT_LE(lists[k].hits.size(), 2u) << text_of(rays[k]);
       }
@@ -338,7 +338,7 @@ TEST(Csg, RaysFromTheSurfaceBeginOnTheirSide) {
   for (int i = 0; i < 150; ++i) {
     Shape shape = *maker.csg(2, 8, i % 2 == 0);
     shape.world_from_object = maker.placement(i % 3 == 0 ? 100 : 1, i % 2 == 0) * shape.world_from_object;
-    const reference::Primitive witness = witness_of_shape(shape);
+    const reference::Primitive reference = reference_of_shape(shape);
     const CsgBound bound(shape);
     const std::vector<RayRecord> rays = maker.rays(shape, 200);
     std::vector<RayRecord> next;
@@ -351,7 +351,7 @@ TEST(Csg, RaysFromTheSurfaceBeginOnTheirSide) {
         if ((glm::dot(d, n) > 0) != out) d = -d;
         // Within the bound of another surface that one may be taken for this; the ray stays within it of this one for bound /
         // cosine.
-        if (!(reference::surface_at(witness, p).margin * std::abs(glm::dot(d, n)) > bound(p))) continue;
+        if (!(reference::surface_at(reference, p).margin * std::abs(glm::dot(d, n)) > bound(p))) continue;
         const dvec3 o = p + (out ? 1.0 : -1.0) * double(s.error) * n;
         RayRecord r = make_ray(o, d);
         float* to[] = {&r.ox, &r.oy, &r.oz};
@@ -366,7 +366,7 @@ TEST(Csg, RaysFromTheSurfaceBeginOnTheirSide) {
       const bool begins_inside = !lists[k].hits.empty() && is_leaving(lists[k].hits[0]);
       if (begins_inside == outward[k] && wrong++ < 5)
         ADD_FAILURE() << "shape " << i << (outward[k] ? " outward " : " inward ") << text_of(next[k]) << " value "
-                      << reference::value(witness, dvec3(next[k].ox, next[k].oy, next[k].oz));
+                      << reference::value(reference, dvec3(next[k].ox, next[k].oy, next[k].oz));
     }
   }
   std::printf("%zu rays from surfaces, %zu on the wrong side\n", left, wrong);

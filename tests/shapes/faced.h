@@ -59,7 +59,7 @@ CountFields count_fields() {
 }
 
 template <class Type>
-reference::Primitive faced_witness(const float* data) {
+reference::Primitive faced_reference(const float* data) {
   Type shape;
   FromData each(data);
   fields(shape, each);

@@ -28,27 +28,27 @@ std::string wrong_place(const Case& c, const HitRecord& hit, double* ratio) {
     // Edge-on, triangles and patches are met beside themselves.
     const bool sheet = c.primitive->shape == shape_triangle || c.primitive->shape == shape_bilinear;
     *ratio = 0;
-    if (!(sheet && off <= reference::bounding_ball(*c.witness).radius && c.touches()))
+    if (!(sheet && off <= reference::bounding_ball(*c.reference).radius && c.touches()))
       return fmt::format("the hit at {} is {} off the surface, allowed {}", hit.t, off, c.bound);
     return {};
   }
   const auto surface = static_cast<int>(hit.surface & CAPLET_SURFACE_MASK);
-  if (const double away = reference::distance_from_surface(*c.witness, c.at(hit.t), surface);
-      reference::surface_count(*c.witness) > 1 && !(away <= 2 * c.bound))
+  if (const double away = reference::distance_from_surface(*c.reference, c.at(hit.t), surface);
+      reference::surface_count(*c.reference) > 1 && !(away <= 2 * c.bound))
     return fmt::format("the hit at {} is {} from surface {}, allowed {}", hit.t, away, surface, 2 * c.bound);
   return {};
 }
 
-/// Crossings of witness and device side by side: the same number, each between the same sides, at the same place of the surface.
+/// Crossings of reference and device side by side: the same number, each between the same sides, at the same place of the surface.
 std::string different(const Case& c, const std::vector<reference::Crossing>& expected, const std::vector<HitRecord>& list) {
-  if (expected.size() != list.size()) return fmt::format("{} crossings, the witness says {}", list.size(), expected.size());
+  if (expected.size() != list.size()) return fmt::format("{} crossings, the reference says {}", list.size(), expected.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (expected[i].leaving != is_leaving(list[i]))
-      return fmt::format("crossing {} at {} leaving {}, the witness says {} at {}", i, list[i].t, is_leaving(list[i]),
+      return fmt::format("crossing {} at {} leaving {}, the reference says {} at {}", i, list[i].t, is_leaving(list[i]),
                          expected[i].leaving, expected[i].t);
     // Between both parameters the ray stays near the surface.
     if (!(std::abs(c.value(0.5 * (expected[i].t + double(list[i].t)))) <= 2 * c.bound))
-      return fmt::format("crossing {} at {}, the witness says {}", i, list[i].t, expected[i].t);
+      return fmt::format("crossing {} at {}, the reference says {}", i, list[i].t, expected[i].t);
   }
   return {};
 }
@@ -56,17 +56,17 @@ std::string different(const Case& c, const std::vector<reference::Crossing>& exp
 }  // namespace
 
 std::string wrong_way(const Case& c, const std::vector<HitRecord>& list, double slack) {
-  const auto crossings = reference::crossings(*c.witness, c.ray);
+  const auto crossings = reference::crossings(*c.reference, c.ray);
   bool inside = !list.empty() && is_leaving(list[0]);
   for (std::size_t i = 0; i < list.size(); ++i)
     if (is_leaving(list[i]) != (inside == (i % 2 == 0))) return fmt::format("crossing {} does not take turns", i);
   double last = 0;
   for (std::size_t i = 0; i <= list.size(); ++i, inside = !inside) {
     const double end = i < list.size() ? double(list[i].t) : HUGE_VAL;
-    // Stretches between crossings of the witness, with what lies before the first and behind the last, on the other side.
+    // Stretches between crossings of the reference, with what lies before the first and behind the last, on the other side.
     for (std::size_t k = 0; k <= crossings.size(); ++k) {
-      const bool witness_inside = k > 0 && !crossings[k - 1].leaving;
-      if (witness_inside == inside) continue;
+      const bool reference_inside = k > 0 && !crossings[k - 1].leaving;
+      if (reference_inside == inside) continue;
       double low = k > 0 ? crossings[k - 1].t : -HUGE_VAL, high = k < crossings.size() ? crossings[k].t : HUGE_VAL;
       low = std::max(low, last);
       high = std::min(high, end);
@@ -83,14 +83,14 @@ std::string wrong_way(const Case& c, const std::vector<HitRecord>& list, double 
   return {};
 }
 
-Case make_case(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray) {
-  return {&primitive, &witness, witness_ray(ray), surface_bound(primitive, witness, ray)};
+Case make_case(const FlatPrimitive& primitive, const reference::Primitive& reference, const RayRecord& ray) {
+  return {&primitive, &reference, reference_ray(ray), surface_bound(primitive, reference, ray)};
 }
 
-Case make_case(const PlacedPrimitive& placed, const reference::Primitive& witness, const RayRecord& world_ray) {
-  const reference::Ray world = witness_ray(world_ray);
+Case make_case(const PlacedPrimitive& placed, const reference::Primitive& reference, const RayRecord& world_ray) {
+  const reference::Ray world = reference_ray(world_ray);
   const std::array<float, 12>& m = placed.object_from_world;
-  Case c{&placed.primitive, &witness, {}, 0};
+  Case c{&placed.primitive, &reference, {}, 0};
   dvec3 terms{0}, slopes{0};
   for (int r = 0; r < 3; ++r) {
     const auto row = static_cast<std::size_t>(4 * r);
@@ -105,10 +105,10 @@ Case make_case(const PlacedPrimitive& placed, const reference::Primitive& witnes
       slopes[r] += std::abs(entry * world.direction[k]);
     }
   }
-  const reference::Ball ball = reference::bounding_ball(witness);
+  const reference::Ball ball = reference::bounding_ball(reference);
   // docs/numerics.md, "Instances": 4 eps of the terms of the origin, and as much of those of t d where the shape is.
   const double t = (glm::length(c.ray.origin - ball.center) + ball.radius) / glm::length(c.ray.direction);
-  c.bound = surface_bound(placed.primitive, witness, make_ray(c.ray.origin, c.ray.direction)) +
+  c.bound = surface_bound(placed.primitive, reference, make_ray(c.ray.origin, c.ray.direction)) +
             4 * eps * (glm::length(terms) + t * glm::length(slopes));
   return c;
 }
@@ -140,11 +140,11 @@ Judgement judge(const Case& c, const Listed& listed, std::uint32_t capacity) {
     out.worst = std::max(out.worst, ratio);
     if (!(listed.all[i].t > 0) || (i > 0 && !(listed.all[i].t >= listed.all[i - 1].t))) note("the list is not in order");
   }
-  if (std::holds_alternative<reference::Csg>(*c.witness)) {
+  if (std::holds_alternative<reference::Csg>(*c.reference)) {
     note(wrong_way(c, listed.all, 2 * c.bound));
   } else {
     std::vector<reference::Crossing> expected;
-    for (const reference::Crossing& crossing : reference::crossings(*c.witness, c.ray))
+    for (const reference::Crossing& crossing : reference::crossings(*c.reference, c.ray))
       if (crossing.t > 0) expected.push_back(crossing);
     if (const std::string text = different(c, expected, listed.all); !text.empty()) {
       // Where the ray begins at the surface, which side it begins on is rounding; else the referee has to say that the line

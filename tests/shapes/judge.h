@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Nearest hit, any hit and hit list of one ray against the witness, within the bound that docs/numerics.md states.
+// Nearest hit, any hit and hit list of one ray against the reference, within the bound that docs/numerics.md states.
 #pragma once
 
 #include <string>
@@ -13,18 +13,18 @@ namespace caplet::test {
 /// One ray in the space of its primitive, and the bound that holds there.
 struct Case {
   const FlatPrimitive* primitive;
-  const reference::Primitive* witness;
+  const reference::Primitive* reference;
   reference::Ray ray;
   double bound;
   glm::dvec3 at(double t) const { return ray.origin + t * ray.direction; }
-  double value(double t) const { return reference::value(*witness, at(t)); }
+  double value(double t) const { return reference::value(*reference, at(t)); }
   /// Whether the line comes within the bound of touching, or of a rim.
-  bool touches() const { return reference::referee(*witness, ray, bound) == reference::Verdict::tangent; }
+  bool touches() const { return reference::referee(*reference, ray, bound) == reference::Verdict::tangent; }
 };
 
-Case make_case(const FlatPrimitive& primitive, const reference::Primitive& witness, const RayRecord& ray);
+Case make_case(const FlatPrimitive& primitive, const reference::Primitive& reference, const RayRecord& ray);
 /// For a placed primitive, the kernel's ray in object space comes from the rounded float matrix; the case's ray is exact.
-Case make_case(const PlacedPrimitive& placed, const reference::Primitive& witness, const RayRecord& world_ray);
+Case make_case(const PlacedPrimitive& placed, const reference::Primitive& reference, const RayRecord& world_ray);
 
 struct Judgement {
   std::string wrong;     // what is wrong, or empty

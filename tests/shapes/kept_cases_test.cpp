@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Rays on which device and witness once disagreed, bit by bit.
+// Rays on which device and reference once disagreed, bit by bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,9 +29,9 @@ const KeptCase cases[] = {
 
 class Kept : public testing::TestWithParam<KeptCase> {};
 
-TEST_P(Kept, DeviceAndWitnessAgree) {
+TEST_P(Kept, DeviceAndReferenceAgree) {
   const KeptCase& kept = GetParam();
-  const auto expected = reference::crossings(witness_of(kept.primitive), witness_ray(kept.ray));
+  const auto expected = reference::crossings(reference_of(kept.primitive), reference_ray(kept.ray));
   ASSERT_FALSE(expected.empty());
   for (const int width : {1, 8}) {
     const Listed listed = Probe(test_device(), width, {kept.primitive}).list({0}, {kept.ray}, 8)[0];

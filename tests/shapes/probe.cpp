@@ -123,10 +123,10 @@ FlatPrimitive make(int shape, std::initializer_list<float> values) {
 
 }  // namespace
 
-reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
+reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
   const float* d = p.data;
   const auto end = [](float radius, float cap) {
-    return reference::Spool::End{radius, cap == CAPLET_CAP_ROUND, cap == CAPLET_CAP_OPEN};
+    return reference::Frustum::End{radius, cap == CAPLET_CAP_ROUND, cap == CAPLET_CAP_OPEN};
   };
   switch (p.shape) {
     case shape_sphere:
@@ -140,9 +140,9 @@ reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>
     case shape_disk:
       return reference::Disk{point(d), point(d + 3), d[6]};
     case shape_cylinder:
-      return reference::make_spool(point(d), point(d + 3), end(d[6], d[7]), end(d[6], d[8]));
+      return reference::make_frustum(point(d), point(d + 3), end(d[6], d[7]), end(d[6], d[8]));
     case shape_cone:
-      return reference::make_spool(point(d), point(d + 3), end(d[6], d[8]), end(d[7], d[9]));
+      return reference::make_frustum(point(d), point(d + 3), end(d[6], d[8]), end(d[7], d[9]));
     case shape_polyhedron: {
       const std::size_t begin = std::bit_cast<std::uint32_t>(d[0]), count = std::bit_cast<std::uint32_t>(leaves.at(begin + 3));
       std::vector<glm::dvec3> normals;
@@ -163,8 +163,8 @@ reference::Primitive witness_of(const FlatPrimitive& p, const std::vector<float>
       return reference::Bilinear{point(d), point(d + 3), point(d + 6), point(d + 9)};
     default: {
       reference::Primitive out;
-      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = faced_witness<Type>(d); }))
-        throw std::logic_error("no witness of this shape from its data");
+      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = faced_reference<Type>(d); }))
+        throw std::logic_error("no reference of this shape from its data");
       return out;
     }
   }
@@ -387,6 +387,6 @@ std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const st
   return out;
 }
 
-reference::Ray witness_ray(const RayRecord& r) { return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max}; }
+reference::Ray reference_ray(const RayRecord& r) { return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max}; }
 
 }  // namespace caplet::test

@@ -18,9 +18,9 @@
 
 namespace caplet::test {
 
-/// A primitive as the device gets it. The witness is made from the same bits. `leaves`: where polyhedra keep their planes. Not
+/// A primitive as the device gets it. The reference is made from the same bits. `leaves`: where polyhedra keep their planes. Not
 /// for csg shapes.
-reference::Primitive witness_of(const FlatPrimitive& primitive, const std::vector<float>& leaves = {});
+reference::Primitive reference_of(const FlatPrimitive& primitive, const std::vector<float>& leaves = {});
 FlatPrimitive make_sphere(std::array<float, 3> c, float r);
 FlatPrimitive make_capsule(std::array<float, 3> p0, std::array<float, 3> p1, float r);
 FlatPrimitive make_tapered(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1);
@@ -102,6 +102,6 @@ class Probe {
   std::vector<std::uint32_t> roots_;
 };
 
-reference::Ray witness_ray(const RayRecord& ray);
+reference::Ray reference_ray(const RayRecord& ray);
 
 }  // namespace caplet::test

@@ -20,7 +20,7 @@ namespace caplet::test {
 namespace {
 
 using glm::dvec3;
-using reference::Spool;
+using reference::Frustum;
 
 constexpr double eps = 0x1p-24;
 constexpr float flat = CAPLET_CAP_FLAT, rounded = CAPLET_CAP_ROUND, open = CAPLET_CAP_OPEN;
@@ -57,9 +57,9 @@ FlatPrimitive quadric(int shape, const Ends& e) {
   return p;
 }
 
-reference::Primitive spool_of(const FlatPrimitive& p) {
+reference::Primitive frustum_of(const FlatPrimitive& p) {
   const Ends e = ends_of(p);
-  return reference::make_spool(e.p0, e.p1, {e.r0, e.cap0 == rounded, e.cap0 == open}, {e.r1, e.cap1 == rounded, e.cap1 == open});
+  return reference::make_frustum(e.p0, e.p1, {e.r0, e.cap0 == rounded, e.cap0 == open}, {e.r1, e.cap1 == rounded, e.cap1 == open});
 }
 
 // docs/numerics.md, "Traversal", and one rounding of t.
@@ -145,11 +145,11 @@ int expect_watertight(const Cases& cases, int width) {
   std::atomic<int> hits = 0, deep = 0, slipped = 0, off = 0;
   tbb::parallel_for(std::size_t{0}, probed.size(), [&](std::size_t i) {
     const FlatPrimitive& p = cases.primitives[cases.which[i]];
-    const reference::Primitive witness = spool_of(p);
-    const reference::Ray ray = witness_ray(cases.rays[i]);
+    const reference::Primitive reference = frustum_of(p);
+    const reference::Ray ray = reference_ray(cases.rays[i]);
     const double bound = bound_of(p, cases.rays[i]);
-    const double depth = reference::margin(witness, ray);
-    const auto expected = reference::closest(witness, ray);
+    const double depth = reference::margin(reference, ray);
+    const auto expected = reference::closest(reference, ray);
     if (depth > bound && expected && expected->t * glm::length(ray.direction) > bound) {
       ++deep;
       if (!is_hit(probed[i]) && slipped++ < 3)
@@ -157,7 +157,7 @@ int expect_watertight(const Cases& cases, int width) {
     }
     if (!is_hit(probed[i])) return;
     ++hits;
-    const double distance = std::abs(reference::value(witness, ray.origin + double(probed[i].hit.t) * ray.direction));
+    const double distance = std::abs(reference::value(reference, ray.origin + double(probed[i].hit.t) * ray.direction));
     if (distance > bound && off++ < 3) ADD_FAILURE() << distance << " off, > " << bound << "\n" << text_of(p, cases.rays[i]);
   });
   std::printf("%zu rays, %d hits, %d deeper than the bound, %d slipped through\n", probed.size(), hits.load(), deep.load(),
@@ -241,31 +241,31 @@ void expect_same(const Cases& a, const std::vector<FlatPrimitive>& b, const Name
   int hits = 0, named = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const FlatPrimitive& p = a.primitives[a.which[i]];
-    const reference::Primitive witness = spool_of(p);
-    const reference::Ray ray = witness_ray(a.rays[i]);
+    const reference::Primitive reference = frustum_of(p);
+    const reference::Ray ray = reference_ray(a.rays[i]);
     const double bound = 2 * bound_of(p, a.rays[i]);
     if (is_hit(first[i]) != is_hit(second[i]) || leaves(first[i]) != leaves(second[i])) {
-      ASSERT_TRUE(std::abs(reference::value(witness, ray.origin)) <= bound ||
-                  reference::referee(witness, ray, bound) == reference::Verdict::tangent)
+      ASSERT_TRUE(std::abs(reference::value(reference, ray.origin)) <= bound ||
+                  reference::referee(reference, ray, bound) == reference::Verdict::tangent)
           << text_of(p, a.rays[i]);
       continue;
     }
     if (!is_hit(first[i])) continue;
     ++hits;
     const double t0 = first[i].hit.t, t1 = second[i].hit.t;
-    ASSERT_LE(std::abs(reference::value(witness, ray.origin + 0.5 * (t0 + t1) * ray.direction)), bound) << text_of(p, a.rays[i]);
+    ASSERT_LE(std::abs(reference::value(reference, ray.origin + 0.5 * (t0 + t1) * ray.direction)), bound) << text_of(p, a.rays[i]);
     const std::uint32_t expected = name(surface_number(first[i]));
     if (expected == any_surface) continue;
     ++named;
     if (expected == surface_number(second[i])) continue;
-    const auto exact = reference::closest(witness, ray);
+    const auto exact = reference::closest(reference, ray);
     if (!exact) continue;
     // A shallow ray that is displaced by the bound meets the surface that much further along it.
     const dvec3 on = ray.origin + exact->t * ray.direction;
-    const double slope = std::abs(glm::dot(reference::normal_at(witness, on, bound), glm::normalize(ray.direction)));
+    const double slope = std::abs(glm::dot(reference::normal_at(reference, on, bound), glm::normalize(ray.direction)));
     const double apart = std::max(std::abs(t0 - exact->t), std::abs(t1 - exact->t)) * glm::length(ray.direction);
     ASSERT_LE(exact->surface_margin, apart + bound / slope)
-        << fmt::format("surfaces {} and {}, witness {}; t {} {} {}, bound {}\n", surface_number(first[i]),
+        << fmt::format("surfaces {} and {}, reference {}; t {} {} {}, bound {}\n", surface_number(first[i]),
                        surface_number(second[i]), exact->surface, t0, t1, exact->t, bound)
         << text_of(p, a.rays[i]);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Whole scenes of all shapes, lowered, against the scene witness: what is hit, in which order, named by which object, primitive,
+// Whole scenes of all shapes, lowered, against the scene reference: what is hit, in which order, named by which object, primitive,
 // surface and material. CAPLET_TEST_SCALE=N tries N times as many scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ void compare(const Scene& scene, const std::vector<RayRecord>& rays, Tally& tall
     tally.crossings += outcome.matches.size();
     tally.grazing += !outcome.grazed.empty();
     for (const verify::Match& match : outcome.matches)
-      ++tally.kinds[reference::kind_of(check.witness().placed(match.primitive).primitive)];
+      ++tally.kinds[reference::kind_of(check.reference().placed(match.primitive).primitive)];
     for (const verify::Disagreement& wrong : outcome.disagreements)
       if (++tally.failures <= 5) {
         const RayRecord& r = rays[ray.ray];
@@ -76,7 +76,7 @@ void report(const Tally& tally) {
   EXPECT_LT(tally.grazing, tally.rays / 50);
 }
 
-TEST(Scenes, OfAllShapesAgreeWithTheWitness) {
+TEST(Scenes, OfAllShapesAgreeWithTheReference) {
   Tally tally;
   for (int i = 0; i < 6 * test_scale(); ++i)
     compare(random_scene(100 + static_cast<std::uint32_t>(i)), random_rays(200 + static_cast<std::uint32_t>(i), 2000), tally);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The shape kernels against the witness, which gets the same float bits.
+// The shape kernels against the reference, which gets the same float bits.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -58,13 +58,13 @@ void check_way(const auto& f, const std::vector<reference::Crossing>& crossings,
     fail(crossings[0].t, f(0.5 * std::min(end, crossings[0].t)) / slack);
 }
 
-void check_ray(const FlatPrimitive& p, const reference::Primitive& witness, const RayRecord& ray, const Probed& probed,
+void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray, const Probed& probed,
                Tally& tally) {
-  const reference::Ray exact = witness_ray(ray);
-  const double bound = surface_bound(p, witness, ray);
+  const reference::Ray exact = reference_ray(ray);
+  const double bound = surface_bound(p, reference, ray);
   const double speed = glm::length(exact.direction);
-  const auto f = [&](double t) { return reference::value(witness, exact.origin + t * exact.direction); };
-  const auto expected = reference::closest(witness, exact);
+  const auto f = [&](double t) { return reference::value(reference, exact.origin + t * exact.direction); };
+  const auto expected = reference::closest(reference, exact);
   const bool hit = probed.hit.slot != CAPLET_NONE;
   if (probed.any != hit) tally.fail("any hit is not the existence of a closest one", p, ray);
   // Where the ray begins at the surface, which side it begins on is rounding.
@@ -82,19 +82,19 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& witness, cons
     }
     if (!(t > 0)) tally.fail(fmt::format("t = {}", t), p, ray);
     // Within the bound of its plane a triangle is seen edge-on: the kernel then reports a point of the ray beside it.
-    if (!(distance <= bound) && !(p.shape == shape_triangle && distance <= extent_of(p, witness).reach &&
-                                  reference::referee(witness, exact, bound) == reference::Verdict::tangent))
+    if (!(distance <= bound) && !(p.shape == shape_triangle && distance <= extent_of(p, reference).reach &&
+                                  reference::referee(reference, exact, bound) == reference::Verdict::tangent))
       tally.fail(fmt::format("the hit is {} off the surface, allowed {}", distance, bound), p, ray);
   }
-  if (hit && surface_count(witness) > 1) {
+  if (hit && surface_count(reference) > 1) {
     const auto number = static_cast<int>(probed.hit.surface & CAPLET_SURFACE_MASK);
-    const double off = reference::distance_from_surface(witness, f_point(exact, probed.hit.t), number);
+    const double off = reference::distance_from_surface(reference, f_point(exact, probed.hit.t), number);
     if (!(off <= 2 * bound))
       tally.fail(fmt::format("the hit is said to be on surface {}, {} away; bound {}", number, off, bound), p, ray);
   }
-  if (std::holds_alternative<reference::Csg>(witness)) {
+  if (std::holds_alternative<reference::Csg>(reference)) {
     check_way(
-        f, reference::crossings(witness, exact), hit ? double(probed.hit.t) : HUGE_VAL, hit && leaving, 2 * bound,
+        f, reference::crossings(reference, exact), hit ? double(probed.hit.t) : HUGE_VAL, hit && leaving, 2 * bound,
         [&](double t, double excess) {
           tally.fail(
               fmt::format(
@@ -110,8 +110,8 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& witness, cons
     const double middle = f(0.5 * (expected->t + probed.hit.t));
     // A patch that is seen edge-on has crossings without number.
     if (!(std::abs(middle) <= 2 * bound) &&
-        !(p.shape == shape_bilinear && reference::referee(witness, exact, bound) == reference::Verdict::tangent))
-      tally.fail(fmt::format("t = {}, the witness says {} (lengths of {})", probed.hit.t, expected->t, speed), p, ray);
+        !(p.shape == shape_bilinear && reference::referee(reference, exact, bound) == reference::Verdict::tangent))
+      tally.fail(fmt::format("t = {}, the reference says {} (lengths of {})", probed.hit.t, expected->t, speed), p, ray);
   }
   if (!same) {
     {
@@ -119,16 +119,16 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& witness, cons
       tally.disagreements++;
     }
     if (begins_there) return;
-    const reference::Verdict verdict = reference::referee(witness, exact, bound);
+    const reference::Verdict verdict = reference::referee(reference, exact, bound);
     if (verdict != reference::Verdict::tangent)
-      tally.fail(fmt::format("hit {} leaving {}, the witness says hit {} leaving {}, the referee {}; margin {} bound {}", hit,
+      tally.fail(fmt::format("hit {} leaving {}, the reference says hit {} leaving {}, the referee {}; margin {} bound {}", hit,
                              leaving, expected.has_value(), expected && expected->leaving,
-                             verdict == reference::Verdict::hit ? "hit" : "miss", reference::margin(witness, exact), bound),
+                             verdict == reference::Verdict::hit ? "hit" : "miss", reference::margin(reference, exact), bound),
                  p, ray);
   }
 }
 
-class ShapeAgainstWitness : public testing::TestWithParam<ShapeKind> {};
+class ShapeAgainstReference : public testing::TestWithParam<ShapeKind> {};
 
 void compare(const ShapeKind& kind, int width, bool hard, int primitives, int rays, std::uint32_t seed) {
   CaseMaker maker(seed);
@@ -137,12 +137,12 @@ void compare(const ShapeKind& kind, int width, bool hard, int primitives, int ra
   const std::vector<Probed> probed = probe.trace(cases.which, cases.rays);
   Tally tally;
   tbb::parallel_for(std::size_t{0}, cases.rays.size(),
-                    [&](std::size_t i) { check_ray(cases.primitive(i), cases.witness(i), cases.rays[i], probed[i], tally); });
+                    [&](std::size_t i) { check_ray(cases.primitive(i), cases.reference(i), cases.rays[i], probed[i], tally); });
   std::printf("%zu rays, %d hits, %d leaving, %d disagreements, %d failures, worst %.3f of the bound\n", cases.rays.size(),
               tally.hits, tally.leaving, tally.disagreements, tally.failures, tally.worst);
   EXPECT_EQ(tally.failures, 0);
   EXPECT_GT(tally.hits, static_cast<int>(cases.rays.size() / 5));
-  if (reference::is_solid(cases.witnesses[0])) {
+  if (reference::is_solid(cases.references[0])) {
     EXPECT_GT(tally.leaving, static_cast<int>(cases.rays.size() / 50));
   }
 }
@@ -156,12 +156,12 @@ void scale_polyhedron(FlatPrimitive& p, float scale, std::vector<float>& leaves)
   for (int i = 0; i < 6; ++i) p.kept_box()[i] *= scale;
 }
 
-TEST_P(ShapeAgainstWitness, OrdinaryScales) { compare(GetParam(), 8, false, 1000, 60, 11); }
-TEST_P(ShapeAgainstWitness, AllScales) { compare(GetParam(), 8, true, 1000, 60, 12); }
-TEST_P(ShapeAgainstWitness, OneAtATime) { compare(GetParam(), 1, true, 200, 50, 13); }
+TEST_P(ShapeAgainstReference, OrdinaryScales) { compare(GetParam(), 8, false, 1000, 60, 11); }
+TEST_P(ShapeAgainstReference, AllScales) { compare(GetParam(), 8, true, 1000, 60, 12); }
+TEST_P(ShapeAgainstReference, OneAtATime) { compare(GetParam(), 1, true, 200, 50, 13); }
 
 // Scaling by a power of two scales every intermediate result exactly.
-TEST_P(ShapeAgainstWitness, ScaledByPowersOfTwo) {
+TEST_P(ShapeAgainstReference, ScaledByPowersOfTwo) {
   if (GetParam().shape == shape_csg) GTEST_SKIP() << "bounds inside are rounded outward, which does not scale";
   CaseMaker maker(21);
   CaseSet cases = maker.set(GetParam().shape, false, 200, 50);
@@ -181,7 +181,7 @@ TEST_P(ShapeAgainstWitness, ScaledByPowersOfTwo) {
           << fmt::format(" ray {} {} {} {} {} {}", cases.rays[i].ox, cases.rays[i].oy, cases.rays[i].oz, cases.rays[i].dx,
                          cases.rays[i].dy, cases.rays[i].dz)
           << " t " << first[i].hit.t << " or " << second[i].hit.t << " scale " << scale << " distance "
-          << reference::value(cases.witness(i), witness_ray(cases.rays[i]).origin);
+          << reference::value(cases.reference(i), reference_ray(cases.rays[i]).origin);
       ASSERT_EQ(first[i].hit.surface, second[i].hit.surface) << i;
       if (first[i].hit.slot != CAPLET_NONE) {
         ASSERT_EQ(first[i].hit.t * scale, second[i].hit.t) << i;
@@ -191,7 +191,7 @@ TEST_P(ShapeAgainstWitness, ScaledByPowersOfTwo) {
 }
 
 // Coordinates on a grid of 2^-9, shifted by whole numbers: differences are exact, so hits are the same bits.
-TEST_P(ShapeAgainstWitness, Shifted) {
+TEST_P(ShapeAgainstReference, Shifted) {
   CaseMaker maker(22);
   CaseSet cases = maker.set(GetParam().shape, false, 200, 50);
   const int coordinates = coordinate_count(cases.primitives[0]);
@@ -216,11 +216,11 @@ TEST_P(ShapeAgainstWitness, Shifted) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST_P(ShapeAgainstWitness, UselessRaysMiss) {
+TEST_P(ShapeAgainstReference, UselessRaysMiss) {
   CaseMaker maker(23);
   const float nan = std::nanf(""), inf = HUGE_VALF;
   const CaseSet cases = maker.set(GetParam().shape, false, 1, 0);
-  const Extent extent = extent_of(cases.primitives[0], cases.witnesses[0]);
+  const Extent extent = extent_of(cases.primitives[0], cases.references[0]);
   std::vector<RayRecord> rays;
   for (const float bad : {nan, inf, -inf})
     for (int i = 0; i < 6; ++i) {
@@ -244,7 +244,7 @@ TEST_P(ShapeAgainstWitness, UselessRaysMiss) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ShapeAgainstWitness, testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
+INSTANTIATE_TEST_SUITE_P(Kinds, ShapeAgainstReference, testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(ShapeKinds, EveryShapeIsOnTrial) {
@@ -265,18 +265,18 @@ void expect_same(const CaseSet& a, const CaseSet& b) {
   int hits = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const FlatPrimitive& p = a.primitives[a.which[i]];
-    const reference::Primitive& witness = a.witness(i);
-    const reference::Ray exact = witness_ray(a.rays[i]);
-    const double bound = surface_bound(p, witness, a.rays[i]) + surface_bound(b.primitive(i), b.witness(i), b.rays[i]);
+    const reference::Primitive& reference = a.reference(i);
+    const reference::Ray exact = reference_ray(a.rays[i]);
+    const double bound = surface_bound(p, reference, a.rays[i]) + surface_bound(b.primitive(i), b.reference(i), b.rays[i]);
     const bool hit = first[i].hit.slot != CAPLET_NONE, other = second[i].hit.slot != CAPLET_NONE;
     if (hit != other || first[i].hit.surface != second[i].hit.surface) {
-      ASSERT_TRUE(std::abs(reference::value(witness, exact.origin)) <= bound ||
-                  reference::referee(witness, exact, bound) == reference::Verdict::tangent)
+      ASSERT_TRUE(std::abs(reference::value(reference, exact.origin)) <= bound ||
+                  reference::referee(reference, exact, bound) == reference::Verdict::tangent)
           << i;
     } else if (hit) {
       // Between both parameters the ray stays near the surface: the same crossing.
       const double middle = 0.5 * (double(first[i].hit.t) + double(second[i].hit.t));
-      EXPECT_LE(std::abs(reference::value(witness, exact.origin + middle * exact.direction)), bound) << i;
+      EXPECT_LE(std::abs(reference::value(reference, exact.origin + middle * exact.direction)), bound) << i;
       ++hits;
     }
   }
@@ -292,7 +292,7 @@ TEST(ShapeRelations, EndsOfACapsuleAreInterchangeable) {
       std::swap_ranges(p.data, p.data + 3, p.data + 3);
       if (p.shape == shape_tapered_capsule) std::swap(p.data[6], p.data[7]);
     }
-    swapped.renew_witnesses();
+    swapped.renew_references();
     expect_same(cases, swapped);
   }
 }
@@ -306,8 +306,8 @@ TEST(ShapeRelations, EqualEndsMakeASphere) {
     capsules.primitives[i] = make_capsule({d[0], d[1], d[2]}, {d[0], d[1], d[2]}, d[3]);
     tapered.primitives[i] = make_tapered({d[0], d[1], d[2]}, {d[0], d[1], d[2]}, d[3], 0.5f * d[3]);
   }
-  capsules.renew_witnesses();
-  tapered.renew_witnesses();
+  capsules.renew_references();
+  tapered.renew_references();
   expect_same(spheres, capsules);
   expect_same(spheres, tapered);
 }
@@ -320,7 +320,7 @@ TEST(ShapeRelations, EqualRadiiMakeACapsule) {
     p.shape = shape_tapered_capsule;
     p.data[7] = p.data[6];
   }
-  tapered.renew_witnesses();
+  tapered.renew_references();
   expect_same(capsules, tapered);
 }
 
@@ -330,29 +330,29 @@ void expect_same_but_named(const CaseSet& a, CaseSet b, const auto& renamed) {
   const auto second = Probe(test_device(), test_width(), b.primitives, b.leaves).trace(b.which, b.rays);
   int hits = 0, odd = 0, wrong = 0, misnamed = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const reference::Ray exact = witness_ray(a.rays[i]);
-    const double bound = surface_bound(a.primitive(i), a.witness(i), a.rays[i]);
+    const reference::Ray exact = reference_ray(a.rays[i]);
+    const double bound = surface_bound(a.primitive(i), a.reference(i), a.rays[i]);
     const bool hit = first[i].hit.slot != CAPLET_NONE, other = second[i].hit.slot != CAPLET_NONE;
     const auto at = [&](const Probed& probed) { return exact.origin + double(probed.hit.t) * exact.direction; };
     if (!hit || !other || (first[i].hit.surface ^ second[i].hit.surface) > CAPLET_SURFACE_MASK) {
       if (hit == other && !hit) continue;
       ++odd;
-      const bool may_be = std::abs(reference::value(a.witness(i), exact.origin)) <= bound ||
-                          reference::referee(a.witness(i), exact, bound) == reference::Verdict::tangent;
+      const bool may_be = std::abs(reference::value(a.reference(i), exact.origin)) <= bound ||
+                          reference::referee(a.reference(i), exact, bound) == reference::Verdict::tangent;
       if (!may_be && ++wrong <= 5)
         ADD_FAILURE() << "ray " << i << ": hit " << hit << " and " << other << ": " << described(a.primitive(i), a.rays[i]);
       continue;
     }
     ++hits;
     // Between both parameters the ray stays near the surface: the same crossing.
-    if (std::abs(reference::value(a.witness(i), 0.5 * (at(first[i]) + at(second[i])))) > 2 * bound && ++wrong <= 5)
+    if (std::abs(reference::value(a.reference(i), 0.5 * (at(first[i]) + at(second[i])))) > 2 * bound && ++wrong <= 5)
       ADD_FAILURE() << "ray " << i << ": t " << first[i].hit.t << " and " << second[i].hit.t;
     // Both names have to do, each for the other's point.
     const auto number = static_cast<int>(first[i].hit.surface & CAPLET_SURFACE_MASK);
     const auto other_number = static_cast<int>(second[i].hit.surface & CAPLET_SURFACE_MASK);
     if (other_number == renamed(number)) continue;
-    const double off = reference::distance_from_surface(b.witness(i), at(first[i]), renamed(number));
-    const double other_off = reference::distance_from_surface(b.witness(i), at(second[i]), other_number);
+    const double off = reference::distance_from_surface(b.reference(i), at(first[i]), renamed(number));
+    const double other_off = reference::distance_from_surface(b.reference(i), at(second[i]), other_number);
     if (std::max(off, other_off) > 2 * bound && ++misnamed <= 5)
       ADD_FAILURE() << "ray " << i << ": surfaces " << number << " and " << other_number;
   }
@@ -372,7 +372,7 @@ TEST(ShapeRelations, EndsOfCylindersAndConesAreInterchangeable) {
       if (shape == shape_cone) std::swap(p.data[6], p.data[7]);
       std::swap(p.data[shape == shape_cone ? 8 : 7], p.data[shape == shape_cone ? 9 : 8]);
     }
-    swapped.renew_witnesses();
+    swapped.renew_references();
     expect_same_but_named(cases, swapped, [](int n) { return n == 0 ? 0 : 3 - n; });
   }
 }
@@ -387,7 +387,7 @@ TEST(ShapeRelations, ConesOfEqualRadiiAreCylinders) {
     p.data[8] = p.data[7];
     p.data[7] = p.data[6];
   }
-  cones.renew_witnesses();
+  cones.renew_references();
   expect_same_but_named(cylinders, cones, [](int n) { return n; });
 }
 
@@ -407,8 +407,8 @@ TEST(ShapeRelations, RoundCylindersAreCapsules) {
     p.shape = shape_cone;
     p.data[8] = p.data[9] = CAPLET_CAP_ROUND;
   }
-  cylinders.renew_witnesses();
-  cones.renew_witnesses();
+  cylinders.renew_references();
+  cones.renew_references();
   expect_same_but_named(cylinders, capsules, [](int) { return 0; });
   expect_same_but_named(cones, tapered, [](int) { return 0; });
 }
@@ -428,7 +428,7 @@ TEST(ShapeRelations, ABoxIsThePolyhedronOfItsSixPlanes) {
       }
     p = flat_primitive(six, glm::dmat4(1), polyhedra.leaves);
   }
-  polyhedra.renew_witnesses();
+  polyhedra.renew_references();
   expect_same_but_named(boxes, polyhedra, [](int n) { return n; });
 }
 
@@ -440,14 +440,14 @@ TEST(ShapeRelations, PartsThatAreAllAreTheWhole) {
     p.data[0] = p.data[1] = p.data[2] = 0;
     parts.primitives.push_back(make_partial_sphere(p.data[3], -p.data[3], p.data[3], 7));
   }
-  spheres.renew_witnesses();
+  spheres.renew_references();
   for (std::uint32_t i = 0; i < 200; ++i)
     for (int j = 0; j < 50; ++j) {
       spheres.which.push_back(i);
-      spheres.rays.push_back(maker.ray(spheres.primitives[i], spheres.witnesses[i]));
+      spheres.rays.push_back(maker.ray(spheres.primitives[i], spheres.references[i]));
     }
-  parts.witnesses.resize(200);
-  parts.renew_witnesses();
+  parts.references.resize(200);
+  parts.renew_references();
   parts.which = spheres.which;
   parts.rays = spheres.rays;
   expect_same_but_named(spheres, parts, [](int) { return 0; });
@@ -457,14 +457,14 @@ TEST(ShapeRelations, PartsThatAreAllAreTheWhole) {
     p = make_disk({0, 0, p.data[2]}, {0, 0, 1}, p.data[6]);
     rings.primitives.push_back(make_partial_disk(p.data[2], p.data[6], 0, 7));
   }
-  disks.renew_witnesses();
+  disks.renew_references();
   for (std::uint32_t i = 0; i < 200; ++i)
     for (int j = 0; j < 50; ++j) {
       disks.which.push_back(i);
-      disks.rays.push_back(maker.ray(disks.primitives[i], disks.witnesses[i]));
+      disks.rays.push_back(maker.ray(disks.primitives[i], disks.references[i]));
     }
-  rings.witnesses.resize(200);
-  rings.renew_witnesses();
+  rings.references.resize(200);
+  rings.renew_references();
   rings.which = disks.which;
   rings.rays = disks.rays;
   expect_same_but_named(disks, rings, [](int) { return 0; });

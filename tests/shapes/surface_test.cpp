@@ -31,19 +31,19 @@ class SurfacePoints : public testing::TestWithParam<ShapeKind> {};
 
 // How far (about) one may go from a surface point of a solid or of a curved open shape before the normal turns by a radian: the
 // least radius of curvature, the distance from a cone's axis, the distance from an edge.
-double feature_size(const reference::Primitive& witness, const dvec3& x) {
-  const double ball = reference::bounding_ball(witness).radius;
-  if (const auto* sphere = std::get_if<reference::Sphere>(&witness)) return sphere->radius;
-  if (const auto* sphere = std::get_if<reference::PartialSphere>(&witness)) return sphere->radius;
-  if (const auto* cylinder = std::get_if<reference::OpenCylinder>(&witness)) return cylinder->radius;
-  if (const auto* capsule = std::get_if<reference::Capsule>(&witness)) return std::min(capsule->radius0, capsule->radius1);
-  const reference::SurfaceAt at = reference::surface_at(witness, x);
-  if (const auto* s = std::get_if<reference::Spool>(&witness)) {
+double feature_size(const reference::Primitive& reference, const dvec3& x) {
+  const double ball = reference::bounding_ball(reference).radius;
+  if (const auto* sphere = std::get_if<reference::Sphere>(&reference)) return sphere->radius;
+  if (const auto* sphere = std::get_if<reference::PartialSphere>(&reference)) return sphere->radius;
+  if (const auto* cylinder = std::get_if<reference::OpenCylinder>(&reference)) return cylinder->radius;
+  if (const auto* capsule = std::get_if<reference::Capsule>(&reference)) return std::min(capsule->radius0, capsule->radius1);
+  const reference::SurfaceAt at = reference::surface_at(reference, x);
+  if (const auto* s = std::get_if<reference::Frustum>(&reference)) {
     const double across = glm::length(glm::cross(x - s->p0, s->axis));
     const auto end = static_cast<std::size_t>(std::max(at.surface - 1, 0));
     return std::min(at.margin, at.surface == 0 ? across : s->ends[end].round ? s->ends[end].radius : ball);
   }
-  if (const auto* csg = std::get_if<reference::Csg>(&witness))
+  if (const auto* csg = std::get_if<reference::Csg>(&reference))
     for (const reference::CsgOperand& operand : csg->body->operands) {
       const int surface = at.surface - operand.surface_begin;
       if (surface < 0 || surface >= reference::surface_count(operand.primitive)) continue;
@@ -96,9 +96,9 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
     ++hits;
     const SurfaceOut& s = probed[i].surface;
     const FlatPrimitive& p = cases.primitive(i);
-    const reference::Primitive& witness = cases.witness(i);
+    const reference::Primitive& reference = cases.reference(i);
     const dvec3 x = point(s.p), ng = point(s.ng);
-    const double distance = std::abs(reference::value(witness, x));
+    const double distance = std::abs(reference::value(reference, x));
     ASSERT_LE(distance, s.error) << i;
     worst = std::max(worst, distance / double(s.error));
     for (int k = 0; k < 3; ++k) {
@@ -110,7 +110,7 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
     ASSERT_EQ(s.geometry, cases.which[i]);
     ASSERT_EQ(s.leaving, probed[i].hit.surface >> 16);
     ASSERT_EQ(s.surface, probed[i].hit.surface & CAPLET_SURFACE_MASK);
-    ASSERT_LT(static_cast<int>(s.surface), reference::surface_count(witness));
+    ASSERT_LT(static_cast<int>(s.surface), reference::surface_count(reference));
     ASSERT_EQ(s.light, cases.which[i] % 2 == 0 ? CAPLET_NONE : cases.which[i]);
     ASSERT_TRUE(s.u >= 0 && s.u <= 1 && s.v >= 0 && s.v <= 1) << s.u << " " << s.v;
     if (is_flat(p)) {
@@ -120,9 +120,9 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
         const dvec3 e1 = point(p.data + 3) - point(p.data), e2 = point(p.data + 6) - point(p.data);
         limit = 8 * eps * glm::length(e1) * glm::length(e2) / glm::length(glm::cross(e1, e2));
       }
-      ASSERT_LE(glm::length(ng - reference::normal_at(witness, x, 1)), limit) << i;
-    } else if (const auto* patch = std::get_if<reference::Bilinear>(&witness)) {
-      const dvec3 expected = reference::normal_at(witness, x, 1);
+      ASSERT_LE(glm::length(ng - reference::normal_at(reference, x, 1)), limit) << i;
+    } else if (const auto* patch = std::get_if<reference::Bilinear>(&reference)) {
+      const dvec3 expected = reference::normal_at(reference, x, 1);
       const double limit = bilinear_normal_limit(*patch, expected, double(s.error));
       if (!(limit < 0.1)) continue;
       ASSERT_LE(glm::length(ng - expected), limit)
@@ -130,11 +130,11 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
     } else {
       // A point that is off by `error` turns the normal by error / radius; central differences over 1e-4 radius have an error of
       // 1e-8.
-      const double radius = feature_size(witness, x);
+      const double radius = feature_size(reference, x);
       if (!(double(s.error) <= 0.01 * radius)) continue;
       // On another surface than the hit's the normal is another one.
-      if (static_cast<int>(s.surface) != reference::surface_at(witness, x).surface) continue;
-      const dvec3 expected = reference::normal_at(witness, x, 1e-4 * radius);
+      if (static_cast<int>(s.surface) != reference::surface_at(reference, x).surface) continue;
+      const dvec3 expected = reference::normal_at(reference, x, 1e-4 * radius);
       // The differences themselves are rounded: 2^-52 of the coordinates over the step.
       ASSERT_LE(glm::length(ng - expected), 4 * double(s.error) / radius + 3e-5 + 0x1p-50 * glm::length(x) / (1e-4 * radius))
           << i;
@@ -163,9 +163,9 @@ std::array<float, 3> leaving_direction(CaseMaker& maker, const dvec3& n, bool ma
 // What a ray that leaves may meet again.
 enum class Meets { nothing, itself_elsewhere, its_other_side };
 Meets outward_of(int shape) { return shape == shape_bilinear || shape == shape_csg ? Meets::itself_elsewhere : Meets::nothing; }
-Meets inward_of(int shape, const reference::Primitive& witness) {
+Meets inward_of(int shape, const reference::Primitive& reference) {
   if (shape == shape_csg) return Meets::itself_elsewhere;
-  if (reference::is_solid(witness)) return Meets::its_other_side;
+  if (reference::is_solid(reference)) return Meets::its_other_side;
   const bool flat = shape == shape_triangle || shape == shape_disk || shape == shape_partial_disk;
   return flat ? Meets::nothing : Meets::itself_elsewhere;
 }
@@ -193,23 +193,23 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
   std::vector<std::array<float, 3>> outward, inward;
   for (std::size_t i = 0; i < probed.size(); ++i) {
     if (!is_hit(probed[i])) continue;
-    const reference::Primitive& witness = cases.witness(i);
+    const reference::Primitive& reference = cases.reference(i);
     const int shape = static_cast<int>(cases.primitive(i).shape);
     // Close to an edge a csg shape may lie on both sides.
     if (shape == shape_csg &&
-        reference::surface_at(witness, point(probed[i].surface.p)).margin < 1e4 * double(probed[i].surface.error))
+        reference::surface_at(reference, point(probed[i].surface.p)).margin < 1e4 * double(probed[i].surface.error))
       continue;
     which.push_back(cases.which[i]);
     from.push_back(probed[i]);
     outward.push_back(leaving_direction(maker, point(probed[i].surface.ng), outward_of(shape) == Meets::nothing));
     inward.push_back(
-        leaving_direction(maker, -point(probed[i].surface.ng), inward_of(shape, witness) != Meets::itself_elsewhere));
+        leaving_direction(maker, -point(probed[i].surface.ng), inward_of(shape, reference) != Meets::itself_elsewhere));
   }
   const auto out = probe.leave(which, from, outward), in = probe.leave(which, from, inward);
   int again = 0, lost = 0, thick = 0, shown = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const int before = again + lost;
-    const reference::Primitive& witness = cases.witnesses[which[i]];
+    const reference::Primitive& reference = cases.references[which[i]];
     const int shape = static_cast<int>(cases.primitives[which[i]].shape);
     const double error = from[i].surface.error;
     // Surfaces that bend towards the ray are met again, but not at once: it leaves them at 1e-3 or more. Asked where the normal
@@ -217,14 +217,14 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
     const double sharper = object_from_world.empty() ? 1 : 225;
     const dvec3 p = point(from[i].surface.p);
     const dvec3 local = object_from_world.empty() ? p : dvec3(object_from_world[which[i]] * glm::dvec4(p, 1));
-    const auto* patch = std::get_if<reference::Bilinear>(&witness);
-    const double turn = patch ? bilinear_normal_limit(*patch, reference::normal_at(witness, local, 1), 16 * error)
-                              : 16 * error / feature_size(witness, local);
+    const auto* patch = std::get_if<reference::Bilinear>(&reference);
+    const double turn = patch ? bilinear_normal_limit(*patch, reference::normal_at(reference, local, 1), 16 * error)
+                              : 16 * error / feature_size(reference, local);
     const auto again_at_once = [&](const Left& left) {
       return sharper * turn < 1e-3 && left.hit.slot != CAPLET_NONE && double(left.hit.t) < 16 * error;
     };
     again += outward_of(shape) == Meets::nothing ? out[i].hit.slot != CAPLET_NONE : again_at_once(out[i]);
-    const Meets meets = inward_of(shape, witness);
+    const Meets meets = inward_of(shape, reference);
     if (meets != Meets::its_other_side) {
       again += meets == Meets::nothing ? in[i].hit.slot != CAPLET_NONE : again_at_once(in[i]);
       show_if(again > before && ++shown <= 5, cases.primitives[which[i]], from[i], out[i], outward[i], in[i], inward[i]);
@@ -232,11 +232,11 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
     }
     // Where the solid is thick enough, from inside the other side of it is the next hit.
     const auto depth = [&](const dvec3& x) {
-      if (object_from_world.empty()) return -reference::value(witness, x);
+      if (object_from_world.empty()) return -reference::value(reference, x);
       const glm::dmat4& m = object_from_world[which[i]];
       double stretch = 0;
       for (int c = 0; c < 3; ++c) stretch += glm::dot(dvec3(m[c]), dvec3(m[c]));
-      return -reference::value(witness, dvec3(m * glm::dvec4(x, 1))) / std::sqrt(stretch);
+      return -reference::value(reference, dvec3(m * glm::dvec4(x, 1))) / std::sqrt(stretch);
     };
     if (depth(point(from[i].surface.p) - 100 * error * point(from[i].surface.ng)) > 50 * error) {
       ++thick;
@@ -280,11 +280,11 @@ TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
     EXPECT_EQ(a.error, b.error);
     EXPECT_EQ(a.leaving, b.leaving);
     // The implicit function still grows outward of the solid.
-    if (reference::is_solid(cases.witness(i))) {
-      const reference::Primitive& witness = cases.witness(i);
+    if (reference::is_solid(cases.reference(i))) {
+      const reference::Primitive& reference = cases.reference(i);
       const double step = 100 * double(a.error);
-      if (!(step < 0.5 * feature_size(witness, point(b.p)))) continue;  // not through to the other side
-      EXPECT_LT(reference::value(witness, point(b.p) + step * point(b.ng)), reference::value(witness, point(b.p)));
+      if (!(step < 0.5 * feature_size(reference, point(b.p)))) continue;  // not through to the other side
+      EXPECT_LT(reference::value(reference, point(b.p) + step * point(b.ng)), reference::value(reference, point(b.p)));
     }
   }
   EXPECT_GT(hits, 400);
@@ -301,19 +301,19 @@ TEST_P(SurfacePoints, OfInstances) {
     ++hits;
     const SurfaceOut& s = probed[i].surface;
     const std::uint32_t which = placed.cases.which[i];
-    const reference::Primitive& witness = placed.cases.witnesses[which];
+    const reference::Primitive& reference = placed.cases.references[which];
     const glm::dmat4 object_from_world = glm::inverse(placed.world_from_object[which]);
     const dvec3 x = dvec3(object_from_world * glm::dvec4(point(s.p), 1));
     // An object-space distance f along the normal is f |M^T n| in the world.
     const dvec3 n = point(s.ng);
     const double stretch = glm::length(glm::transpose(glm::dmat3(placed.world_from_object[which])) * n);
-    ASSERT_LE(std::abs(reference::value(witness, x)) * stretch, double(s.error)) << i;
+    ASSERT_LE(std::abs(reference::value(reference, x)) * stretch, double(s.error)) << i;
     ASSERT_EQ(s.light, which % 2 == 0 ? CAPLET_NONE : 100 + which + 3);
     // The normal is that of the implicit function of the world point; open shapes' winding is that of object space.
-    if (std::holds_alternative<reference::Bilinear>(witness)) continue;  // far from its object-space normal where it is sharp
-    const double radius = is_flat(placed.cases.primitives[which]) ? 1 : feature_size(witness, x);
-    if (!(double(s.error) <= 0.01 * radius) || static_cast<int>(s.surface) != reference::surface_at(witness, x).surface) continue;
-    const dvec3 gradient = reference::normal_at(witness, x, 1e-4 * radius);
+    if (std::holds_alternative<reference::Bilinear>(reference)) continue;  // far from its object-space normal where it is sharp
+    const double radius = is_flat(placed.cases.primitives[which]) ? 1 : feature_size(reference, x);
+    if (!(double(s.error) <= 0.01 * radius) || static_cast<int>(s.surface) != reference::surface_at(reference, x).surface) continue;
+    const dvec3 gradient = reference::normal_at(reference, x, 1e-4 * radius);
     const dvec3 expected = glm::normalize(glm::transpose(glm::dmat3(object_from_world)) * gradient);
     // Condition of the matrices (3 / 0.2) on top of the world-space case.
     ASSERT_LE(glm::length(n - expected), 60 * double(s.error) / radius + 1e-4) << i;
@@ -350,7 +350,7 @@ TEST_P(SurfacePoints, DerivativesMatchDifferences) {
     }
     const auto shape = static_cast<int>(cases.primitive(i).shape);
     const bool flat = is_flat(cases.primitive(i)) || shape == shape_box || shape == shape_polyhedron;
-    const double step = (flat ? 0.05 : 0.03) * std::min({feature_size(cases.witness(i), p), u_length / 4, v_length / 4});
+    const double step = (flat ? 0.05 : 0.03) * std::min({feature_size(cases.reference(i), p), u_length / 4, v_length / 4});
     for (const dvec3& along : {dpdu, dpdv}) {
       which.push_back(cases.which[i]);
       // From close by, so that no other part of the shape is in the way.
@@ -374,7 +374,7 @@ TEST_P(SurfacePoints, DerivativesMatchDifferences) {
     // what floats leave of it.
     const double curvature = 2 / (33 * step) + two_pi / glm::length(dpdu) + two_pi / glm::length(dpdv);
     double twist = 0;
-    if (const auto* patch = std::get_if<reference::Bilinear>(&cases.witnesses[which[i]]))
+    if (const auto* patch = std::get_if<reference::Bilinear>(&cases.references[which[i]]))
       twist = std::abs(du * dv) * glm::length(patch->p11 - patch->p01 - patch->p10 + patch->p00);
     const double limit =
         step * step * curvature + 4 * double(a.error + b.error) + 16 * eps * (glm::length(dpdu) + glm::length(dpdv)) + twist;
@@ -417,7 +417,7 @@ TEST(SurfaceParameters, MatchDifferences) {
     CaseMaker maker(46);
     int checked = 0;
     for (int i = 0; i < 60; ++i) {
-      const Probed here = probe.trace({0}, {maker.ray(shape.primitive, witness_of(shape.primitive))})[0];
+      const Probed here = probe.trace({0}, {maker.ray(shape.primitive, reference_of(shape.primitive))})[0];
       if (!is_hit(here)) continue;
       const dvec3 x = point(here.surface.p), n = point(here.surface.ng), dpdu = point(here.surface.dpdu);
       const double speed = glm::length(dpdu);

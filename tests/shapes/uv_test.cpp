@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness's texture coordinates at points whose (u, v) follows from docs/shapes.md by hand.
+// The reference's texture coordinates at points whose (u, v) follows from docs/shapes.md by hand.
 #include "reference/detail/uv.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 
 namespace {
 
@@ -78,16 +78,16 @@ TEST(Uv, AnglesBeginWhereTheShortWayTakesThem) {
 }
 
 TEST(Uv, CylindersAndCones) {
-  const Spool cylinder = make_spool({0, 0, 0}, {0, 0, 4}, {1, false, false}, {1, true, false});
+  const Frustum cylinder = make_frustum({0, 0, 0}, {0, 0, 4}, {1, false, false}, {1, true, false});
   expect_uv(cylinder, {0, 1, 1}, 0, {0.25, 0.25});
   expect_uv(cylinder, {0, 0.5, 0}, 1, {0.25, 0.5});
   expect_uv(cylinder, {0, std::sqrt(0.5), 4 + std::sqrt(0.5)}, 2, {0.25, 0.5});
-  const Spool cone = make_spool({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
+  const Frustum cone = make_frustum({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
   expect_uv(cone, {1.5, 0, 1.5}, 0, {0, 0.5});
   expect_uv(cone, {0.25, 0, 3}, 2, {0, 0.75});
   // A ball of radius 5 at a distance of 4 through a disk of radius 5: a second part of the side, which ends at the rim; the ball
   // is whole.
-  const Spool pierced = make_spool({0, 0, 0}, {0, 0, 4}, {5, true, false}, {5, false, false});
+  const Frustum pierced = make_frustum({0, 0, 0}, {0, 0, 4}, {5, true, false}, {5, false, false});
   ASSERT_EQ(pierced.side_count, 2);
   expect_uv(pierced, {5, 0, 4}, 0, {0, 1});
   expect_uv(pierced, {5, 0, 0}, 0, {0, 0});
@@ -172,11 +172,11 @@ TEST(Uv, OfScenes) {
   ball.geometry = SphereShape{1};
   ball.world_from_object = glm::rotate(glm::translate(glm::dmat4(1), dvec3(0, 0, 5)), pi / 2, dvec3(1, 0, 0));
   scene.shapes = {mesh, patch, ball};
-  const SceneWitness witness(scene);
+  const SceneReference reference(scene);
   SceneHit hit;
   const auto expect = [&](std::size_t index, const dvec3& point, const dvec2& expected) {
     hit.index = index;
-    const dvec2 found = witness.uv(hit, point, {});
+    const dvec2 found = reference.uv(hit, point, {});
     EXPECT_NEAR(found.x, expected.x, 1e-12);
     EXPECT_NEAR(found.y, expected.y, 1e-12);
   };
@@ -184,7 +184,7 @@ TEST(Uv, OfScenes) {
   expect(1, {0.5, 0.25, 0}, {1.5, 1.25});
   expect(2, {0, 0, 6}, {0.25, 0.5});  // its y axis is up, its z axis is -y
   hit.index = 2;
-  EXPECT_NEAR(witness.uv(hit, {0, -1, 5}, {}).y, 1, 1e-12);
+  EXPECT_NEAR(reference.uv(hit, {0, -1, 5}, {}).y, 1, 1e-12);
 }
 
 }  // namespace

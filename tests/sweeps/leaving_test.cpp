@@ -30,13 +30,13 @@ enum class Side { outward, inward };
 enum class Expected {
   nothing,   // a convex solid or a part of its boundary from outside; a plane from either side
   one_exit,  // a convex solid from inside
-  witness    // whatever the witness says
+  reference    // whatever the reference says
 };
-Expected expected_of(int shape, const reference::Primitive& witness, Side side) {
+Expected expected_of(int shape, const reference::Primitive& reference, Side side) {
   if (shape == shape_triangle || shape == shape_disk || shape == shape_partial_disk) return Expected::nothing;
-  if (shape == shape_csg || shape == shape_bilinear) return Expected::witness;
+  if (shape == shape_csg || shape == shape_bilinear) return Expected::reference;
   if (side == Side::outward) return Expected::nothing;
-  return reference::is_solid(witness) ? Expected::one_exit : Expected::witness;
+  return reference::is_solid(reference) ? Expected::one_exit : Expected::reference;
 }
 
 struct Tally {
@@ -73,10 +73,10 @@ double stretch_of(const PlacedPrimitive& placed, const Probed& from) {
 }
 
 void check(const SweepCases& all, const Path& path, const Listed& listed, const RayRecord& ray, Tally& tally) {
-  const reference::Primitive& witness = all.cases.witnesses[path.which];
+  const reference::Primitive& reference = all.cases.references[path.which];
   const PlacedPrimitive& placed = all.placed[path.which];
   const auto shape = static_cast<int>(placed.primitive.shape);
-  const Expected expected = expected_of(shape, witness, path.side);
+  const Expected expected = expected_of(shape, reference, path.side);
   // In the primitive's space.
   const double error = double(path.from.surface.error) * (placed.placed ? stretch_of(placed, path.from) : 1.0);
   const bool hit = listed.nearest.slot != CAPLET_NONE;
@@ -84,8 +84,8 @@ void check(const SweepCases& all, const Path& path, const Listed& listed, const 
   if (expected == Expected::nothing) {
     again = hit || listed.any || listed.count > 0;
   } else {
-    const Case c = placed.placed ? make_case(placed, witness, ray) : make_case(placed.primitive, witness, ray);
-    if (expected == Expected::witness) {
+    const Case c = placed.placed ? make_case(placed, reference, ray) : make_case(placed.primitive, reference, ray);
+    if (expected == Expected::reference) {
       const Judgement judgement = judge(c, listed, capacity);
       different = !judgement.wrong.empty();
       thin = judgement.excused;
@@ -108,7 +108,7 @@ void check(const SweepCases& all, const Path& path, const Listed& listed, const 
     const SurfaceOut& s = path.from.surface;
     ADD_FAILURE() << (again  ? "met again"
                       : lost ? "no exit"
-                             : "not what the witness says")
+                             : "not what the reference says")
                   << " at " << listed.nearest.t << ", " << listed.count << " crossings, "
                   << (path.side == Side::outward ? "outward" : "inward") << "; error " << s.error << " surface " << s.surface
                   << "\n"

@@ -135,7 +135,7 @@ void add_shape(int shape, const Setting& s, CaseMaker& maker, SweepCases& out) {
   if (maker.below(8) == 0) at.axis = dvec3(0, 0, 1);
   if (shape == shape_instance) {
     out.cases.primitives.push_back(make_sphere({0, 0, 0}, 1));
-    out.cases.witnesses.push_back(witness_of(out.cases.primitives.back()));
+    out.cases.references.push_back(reference_of(out.cases.primitives.back()));
     const dvec3 scale(s.radius, maker.below(2) == 0 ? s.radius : -s.radius, 0.5 * std::max(2.0, s.aspect) * s.radius);
     out.placed.push_back(placed_by(out.cases.primitives.back(), glm::scale(turned(maker, at.center), scale)));
     out.radius.push_back(1);
@@ -149,17 +149,17 @@ void add_shape(int shape, const Setting& s, CaseMaker& maker, SweepCases& out) {
       whole.geometry = csg;
       // Intersections may be empty: tried where the second operand is.
       const dvec3 center = csg.operands[1]->world_from_object[3];
-      const reference::Primitive witness = reference::primitives_of(whole).at(0);
+      const reference::Primitive reference = reference::primitives_of(whole).at(0);
       bool something = false;
       for (int i = 0; i < 20 && !something; ++i)
-        something = reference::value(witness, center + s.radius * maker.uniform(0, 1) * maker.direction()) < -0.05 * s.radius;
+        something = reference::value(reference, center + s.radius * maker.uniform(0, 1) * maker.direction()) < -0.05 * s.radius;
       if (something) break;
     } while (true);
     out.cases.primitives.push_back(flat_primitive(csg, glm::dmat4(1), out.cases.leaves));
-    out.cases.witnesses.push_back(reference::primitives_of(whole).at(0));
+    out.cases.references.push_back(reference::primitives_of(whole).at(0));
   } else {
     out.cases.primitives.push_back(flat(shape, s, at, maker, out.cases.leaves));
-    out.cases.witnesses.push_back(witness_of(out.cases.primitives.back(), out.cases.leaves));
+    out.cases.references.push_back(reference_of(out.cases.primitives.back(), out.cases.leaves));
   }
   const FlatPrimitive& p = out.cases.primitives.back();
   out.placed.push_back(is_local(shape) ? placed_by(p, turned(maker, at.center)) : PlacedPrimitive{p, false, {}, {}});
@@ -174,14 +174,14 @@ glm::dmat4 world_from_object(const PlacedPrimitive& placed) {
   return m;
 }
 
-RayRecord ray_of(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& witness, CaseMaker& maker,
+RayRecord ray_of(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& reference, CaseMaker& maker,
                  const PlacedPrimitive& placed) {
   // In object space, where r is the radius; `scale`: of the map, so that distances are the world's.
-  const double scale = s.radius / r, size = reference::bounding_ball(witness).radius;
+  const double scale = s.radius / r, size = reference::bounding_ball(reference).radius;
   dvec3 n;
-  const dvec3 on = maker.surface_point(p, witness, &n);
+  const dvec3 on = maker.surface_point(p, reference, &n);
   const dvec3 aim = on + (maker.below(2) == 0 ? 0.0 : std::pow(10.0, maker.uniform(-6, 0))) * 0.3 * r * maker.direction();
-  const dvec3 towards = maker.below(10) == 0 ? glm::normalize(maker.own_axis(p, witness)) : maker.direction();
+  const dvec3 towards = maker.below(10) == 0 ? glm::normalize(maker.own_axis(p, reference)) : maker.direction();
   double distance = s.away * r;
   if (s.away < 0) distance = maker.below(2) == 0 ? r * std::pow(10.0, maker.uniform(0, 1)) : size * maker.uniform(1, 4);
   if (s.least_away > 0) distance = std::max(s.least_away, s.radius) / scale * maker.uniform(1, 10);
@@ -196,10 +196,10 @@ RayRecord ray_of(const Setting& s, double r, const FlatPrimitive& p, const refer
 }
 
 // Past the silhouette of a curved surface, inside or outside by `graze` radii, or past an edge of a flat one.
-RayRecord passing_ray(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& witness, CaseMaker& maker,
+RayRecord passing_ray(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& reference, CaseMaker& maker,
                       const PlacedPrimitive& placed) {
   const double off = (maker.below(2) == 0 ? s.graze : -s.graze) * r;
-  const auto rim = reference::boundary(witness);
+  const auto rim = reference::boundary(reference);
   dvec3 o, d;
   if (!rim.empty() && (!is_local(static_cast<int>(p.shape)) || maker.below(2) == 0)) {
     const reference::Curve& curve = rim[static_cast<std::size_t>(maker.below(static_cast<int>(rim.size())))];
@@ -207,7 +207,7 @@ RayRecord passing_ray(const Setting& s, double r, const FlatPrimitive& p, const 
     o = curve.at(maker.uniform(0, 1)) + off * perpendicular(d, maker);
   } else {
     dvec3 n;
-    o = maker.surface_point(p, witness, &n) + off * n;
+    o = maker.surface_point(p, reference, &n) + off * n;
     d = perpendicular(n, maker);
   }
   o -= r * maker.uniform(0.5, 4) * d;
@@ -216,10 +216,10 @@ RayRecord passing_ray(const Setting& s, double r, const FlatPrimitive& p, const 
 }
 
 // Meets the surface at an angle of `graze`, from either side.
-RayRecord shallow_ray(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& witness, CaseMaker& maker,
+RayRecord shallow_ray(const Setting& s, double r, const FlatPrimitive& p, const reference::Primitive& reference, CaseMaker& maker,
                       const PlacedPrimitive& placed) {
   dvec3 n;
-  const dvec3 on = maker.surface_point(p, witness, &n);
+  const dvec3 on = maker.surface_point(p, reference, &n);
   const dvec3 d = perpendicular(n, maker) + (maker.below(2) == 0 ? s.graze : -s.graze) * n;
   const glm::dmat4 m = world_from_object(placed);
   return make_ray(dvec3(m * glm::dvec4(on - r * maker.uniform(0.5, 4) * d, 1)), dvec3(m * glm::dvec4(d, 0)));
@@ -250,7 +250,7 @@ Measured measure(const Case& c, const Listed& listed, double radius) {
   out.wrong = judgement.wrong;
   out.excused = judgement.excused;
   out.hit = listed.nearest.slot != CAPLET_NONE;
-  const auto expected = reference::closest(*c.witness, c.ray);
+  const auto expected = reference::closest(*c.reference, c.ray);
   out.expected = expected.has_value();
   if (!out.hit) return out;
   const double off = std::abs(c.value(listed.nearest.t));
@@ -310,8 +310,8 @@ Setting setting_at(AxisName axis, double value) {
 
 Case SweepCases::of(std::size_t ray) const {
   const std::uint32_t i = cases.which[ray];
-  return placed[i].placed ? make_case(placed[i], cases.witnesses[i], cases.rays[ray])
-                          : make_case(cases.primitives[i], cases.witnesses[i], cases.rays[ray]);
+  return placed[i].placed ? make_case(placed[i], cases.references[i], cases.rays[ray])
+                          : make_case(cases.primitives[i], cases.references[i], cases.rays[ray]);
 }
 
 void add_cell(int shape, const Setting& setting, std::uint32_t cell, int rays, CaseMaker& maker, SweepCases& out) {
@@ -319,11 +319,11 @@ void add_cell(int shape, const Setting& setting, std::uint32_t cell, int rays, C
     if (i % rays_each == 0) add_shape(shape, setting, maker, out);
     const std::size_t which = out.cases.primitives.size() - 1;
     const FlatPrimitive& p = out.cases.primitives[which];
-    const reference::Primitive& witness = out.cases.witnesses[which];
+    const reference::Primitive& reference = out.cases.references[which];
     const bool passing = setting.graze > 0 && maker.below(2) == 0;
     const auto make = passing ? passing_ray : setting.graze > 0 ? shallow_ray : ray_of;
     out.cases.which.push_back(static_cast<std::uint32_t>(which));
-    out.cases.rays.push_back(make(setting, out.radius[which], p, witness, maker, out.placed[which]));
+    out.cases.rays.push_back(make(setting, out.radius[which], p, reference, maker, out.placed[which]));
     out.cell.push_back(cell);
     out.passing.push_back(passing);
   }
@@ -366,7 +366,7 @@ std::vector<Cell> sweep(const Device& device, int shape, AxisName axis, std::spa
         // Csg shapes: the line may be deep inside behind the ray's origin; judge() has looked at what lies ahead.
         if (shape == shape_csg) continue;
         const Case c = all.of(i);
-        const double margin = std::abs(reference::margin(*c.witness, c.ray));
+        const double margin = std::abs(reference::margin(*c.reference, c.ray));
         cell.differ_radii = std::max(cell.differ_radii, margin / all.radius[all.cases.which[i]]);
         cell.differ_bound = std::max(cell.differ_bound, margin / c.bound);
       }

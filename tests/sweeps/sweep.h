@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Sweeps: every kind of shape at one value after another of its aspect, radius, place, distance of the ray's origin and grazing
-// angle, traced by the kernels and held against the witness.
+// angle, traced by the kernels and held against the reference.
 #pragma once
 
 #include <cstdint>
@@ -56,12 +56,12 @@ void add_cell(int shape, const Setting& setting, std::uint32_t cell, int rays, C
 struct Cell {
   std::uint64_t rays = 0, hits = 0;
   std::uint64_t excused = 0,
-                wrong = 0;    // differences from the witness that the referee calls touching; others, and hits out of bound
+                wrong = 0;    // differences from the reference that the referee calls touching; others, and hits out of bound
   std::uint64_t edge_on = 0;  // hits of sheets seen edge-on, which may lie beside them (docs/numerics.md)
   double bound_worst = 0, bound_p99 = 0;              // distance of the hit from the true surface over the bound
   double radius_worst = 0, radius_p99 = 0;            // the same over the radius
   double ulps_p50 = 0, ulps_p99 = 0, ulps_worst = 0;  // error of t
-  // These concern rays that pass closely: their number, how many get different answers from device and witness, and the greatest
+  // These concern rays that pass closely: their number, how many get different answers from device and reference, and the greatest
   // distance from touching of such a ray (in radii, and over the bound).
   std::uint64_t passing = 0, differ = 0;
   double differ_radii = 0, differ_bound = 0;

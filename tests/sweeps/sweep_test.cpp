@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The sweeps of docs/numerics-sweeps.md with fewer rays: in every cell all hits are within the bound that docs/numerics.md
-// states, and no hit or miss differs from the witness but where the referee says that the ray touches. CAPLET_TEST_SCALE=N: N
+// states, and no hit or miss differs from the reference but where the referee says that the ray touches. CAPLET_TEST_SCALE=N: N
 // times the rays.
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 //
 // Solids that touch: boxes and polyhedra with common faces, chains of capsules and cylinders with common ends, spheres that rest
 // on boxes, triangles with common edges. A ray that begins in one of them goes on from surface to surface by offset_origin, as
-// paths do: wherever the witness says that it crosses a surface, one of the solids there has to have seen it. 20,000 rays;
+// paths do: wherever the reference says that it crosses a surface, one of the solids there has to have seen it. 20,000 rays;
 // CAPLET_TEST_SCALE=50 makes it a million.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -15,7 +15,7 @@
 #include <mutex>
 
 #include "cases.h"
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "scene_probe.h"
 #include "shared/kinds.h"
 
@@ -195,20 +195,20 @@ struct Tally {
   int shown = 0;
 };
 
-// Every place where the witness's ray crosses something has been seen by a step of the walk.
-void check(const Touching& touching, const reference::SceneWitness& witness, const RayRecord& ray, const Walk& walk,
+// Every place where the reference's ray crosses something has been seen by a step of the walk.
+void check(const Touching& touching, const reference::SceneReference& reference, const RayRecord& ray, const Walk& walk,
            const std::string& where, Tally& tally) {
-  const reference::Ray exact = witness_ray(ray);
+  const reference::Ray exact = reference_ray(ray);
   const double speed = glm::length(exact.direction), reach = glm::length(exact.origin) + touching.size;
   // What the first hit is off by, and each step moves the ray by at most its `error`; twice that, and the surface points' own.
   double drift = 32 * eps * reach;
   for (const WalkStep& step : walk.steps) drift += 4 * double(step.error);
   std::uint64_t places = 0, steep = 0, leaks = 0;
   dvec3 leak(0);
-  const std::vector<reference::SceneHit> crossings = witness.all(exact);
+  const std::vector<reference::SceneHit> crossings = reference.all(exact);
   const auto at = [&](const reference::SceneHit& hit) { return exact.origin + hit.t * exact.direction; };
   const auto cosine_at = [&](const reference::SceneHit& hit) {
-    return std::abs(glm::dot(witness.normal(hit, at(hit)), exact.direction)) / speed;
+    return std::abs(glm::dot(reference.normal(hit, at(hit)), exact.direction)) / speed;
   };
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const reference::SceneHit& hit = crossings[i];
@@ -265,7 +265,7 @@ TEST_P(Leaks, EveryCrossingIsSeen) {
     Scene scene;
     scene.materials.emplace_back();
     scene.shapes = touching.shapes;
-    const reference::SceneWitness witness(scene);
+    const reference::SceneReference reference(scene);
     CaseMaker& maker = made.maker;
     std::vector<RayRecord> rays;
     for (int k = 0; k < 300; ++k) {
@@ -279,7 +279,7 @@ TEST_P(Leaks, EveryCrossingIsSeen) {
     const std::string where = "scene " + std::to_string(i);
     const auto walks = walk(lower_shapes(touching.shapes), rays, most_steps);
     tbb::parallel_for(std::size_t{0}, rays.size(),
-                      [&](std::size_t k) { check(touching, witness, rays[k], walks[k], where, tally); });
+                      [&](std::size_t k) { check(touching, reference, rays[k], walks[k], where, tally); });
   }
   const auto number = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
   std::printf("%s: %llu rays, %llu crossings, %llu of them not seen; %llu too oblique or shallow to ask\n", GetParam().name,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The comparison of a device with the witness: agrees where it should, and notices every kind of fault. Faults are put into what
+// The comparison of a device with the reference: agrees where it should, and notices every kind of fault. Faults are put into what
 // the device really answered.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,9 +44,9 @@ TEST(TortureScenes, AreValidAndHaveEveryKind) {
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     EXPECT_NO_THROW(diagnostics.finish()) << round;
-    const reference::SceneWitness witness(scene);
+    const reference::SceneReference reference(scene);
     std::array<int, reference::kind_names.size()> kinds{};
-    for (std::size_t i = 0; i < witness.size(); ++i) ++kinds[reference::kind_of(witness.placed(i).primitive)];
+    for (std::size_t i = 0; i < reference.size(); ++i) ++kinds[reference::kind_of(reference.placed(i).primitive)];
     for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_GT(kinds[k], 0) << reference::kind_names[k] << " in round " << round;
   }
 }
@@ -62,8 +62,8 @@ TEST(TortureScenes, DependOnSeedAndRound) {
 
 TEST(Rays, AreAddressedByTheirNumber) {
   const Scene scene = torture_scene(1, 0);
-  const reference::SceneWitness witness(scene);
-  const RaySource one(scene, witness, 3), same(scene, witness, 3), other(scene, witness, 4);
+  const reference::SceneReference reference(scene);
+  const RaySource one(scene, reference, 3), same(scene, reference, 3), other(scene, reference, 4);
   std::array<int, family_names.size()> families{};
   int different = 0;
   for (std::uint64_t i = 0; i < 2000; ++i) {
@@ -140,8 +140,8 @@ TEST(Verify, EndsWhenInterrupted) {
 /// A scene of every kind with a hit list that is plain: rays from outside through the middle of things.
 class Faults : public testing::Test {
  protected:
-  Faults() : scene_(torture_scene(5, 0)), check_(scene_, devices()), comparison_(scene_, check_.witness()) {
-    const RaySource source(scene_, check_.witness(), 5);
+  Faults() : scene_(torture_scene(5, 0)), check_(scene_, devices()), comparison_(scene_, check_.reference()) {
+    const RaySource source(scene_, check_.reference(), 5);
     std::vector<RayRecord> rays;
     for (std::uint64_t i = 0; i < 4000; ++i) rays.push_back(source.ray(i).ray);
     std::mutex mutex;
@@ -288,7 +288,7 @@ TEST_F(Faults, AnotherMaterialIsNoticed) {
 TEST_F(Faults, AnotherSurfaceIsNoticed) {
   const auto spoil = [&](Answer& a) {
     const auto& first = a.expected.hits[0];
-    const auto& primitive = check_.witness().placed(first.index).primitive;
+    const auto& primitive = check_.reference().placed(first.index).primitive;
     const int count = reference::surface_count(primitive);
     // Opposite faces; caps and sides may go over into each other smoothly, and csg surfaces may lie on each other.
     if (!std::holds_alternative<reference::Box>(primitive)) return false;
@@ -372,7 +372,7 @@ TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
   scene.materials.emplace_back();
   scene.shapes.emplace_back().geometry = DiskShape{0, 1, 0.9};
   SceneCheck check(scene, devices());
-  const Comparison comparison(scene, check.witness());
+  const Comparison comparison(scene, check.reference());
   const auto crosses_at = [](float x) {
     return RayRecord{.ox = -3, .oy = 0, .oz = 1e-6f * (3 + x), .t_min = 0, .dx = 6, .dy = 0, .dz = -6e-6f, .t_max = HUGE_VALF};
   };
@@ -404,7 +404,7 @@ TEST(Comparison, SidesOfAFoldMayComeInEitherOrder) {
   fold.patches = {{0, 1, 2, 3}};
   scene.shapes.emplace_back().geometry = fold;
   SceneCheck check(scene, devices());
-  const Comparison comparison(scene, check.witness());
+  const Comparison comparison(scene, check.reference());
   const RayRecord ray = {.ox = 6869.22589f,
                          .oy = -686.688535f,
                          .oz = 10665.8857f,

@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-using Kind = Part::Kind;
+using Kind = FormSubject::Kind;
 
 std::string scene_text_with(const std::string& material, const std::string& more = "", const std::string& light = "") {
   return fmt::format(R"(
@@ -83,7 +83,7 @@ std::string text_of(const Scene& scene) {
   return out;
 }
 
-Json field_of(const LiveScene& live, const ViewEdit& view, const Part& part, const std::string& name) {
+Json field_of(const LiveScene& live, const ViewEdit& view, const FormSubject& part, const std::string& name) {
   const Json form = form_text(live.scene(), view, part);
   for (const Json& field : form["fields"])
     if (field["name"] == name) return field;
@@ -131,7 +131,7 @@ std::vector<Value> bad(const Json& field) {
 }
 
 /// Sets each field that the part's form has, takes it back, and tries what is wrong.
-void try_form(LiveScene& live, Editor& editor, const Part& part) {
+void try_form(LiveScene& live, Editor& editor, const FormSubject& part) {
   const std::string before = text_of(editor.document());
   const Json form = form_text(live.scene(), editor.view(), part);
   ASSERT_FALSE(form.is_null());
@@ -188,7 +188,7 @@ TEST(Forms, NewMaterialsAreWhatFilesHaveWithoutParameters) {
     editor.make(Add{Kind::material, kind});
     ASSERT_EQ(editor.made(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(live.scene().materials.size() - 1)});
     const Scene fresh = scene_with(fmt::format(R"("string type" "{}")", kind));
-    const Part made{Kind::material, editor.made()[0]}, theirs{Kind::material, it};
+    const FormSubject made{Kind::material, editor.made()[0]}, theirs{Kind::material, it};
     const Json mine = form_text(live.scene(), editor.view(), made)["fields"];
     const Json file = form_text(fresh, editor.view(), theirs)["fields"];
     ASSERT_EQ(mine.size(), file.size());
@@ -203,7 +203,7 @@ TEST(Forms, GiveThePictureOfTheSceneAsText) {
     const char* to;
   };
   const auto spectrum = [](Spectrum value) { return Value(std::in_place_type<Spectrum>, std::move(value)); };
-  const Part part{Kind::material, it};
+  const FormSubject part{Kind::material, it};
   const std::vector<Case> cases{
       {R"("string type" "diffuse")",
        {part, "reflectance", spectrum(RgbSpectrum{{0.2, 0.6, 0.3}, ColorSpace::srgb})},

@@ -539,7 +539,7 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
   const Scene before = import_scene(file, FileImageReader());
   {
     Sitting run(file);
-    Look look = look_of_scene(before);
+    ShowView look = look_of_scene(before);
     look.width = 777;
     look.fov = 0.5;
     look.world_from_camera[3].x += 1;

@@ -31,8 +31,8 @@ Translate 2 9 0
 Shape "sphere" "float radius" [ 0.75 ]
 )";
 
-Look look_at(int width, int height) {
-  Look look = look_of_scene(test::scene_of_text(text));
+ShowView look_at(int width, int height) {
+  ShowView look = look_of_scene(test::scene_of_text(text));
   look.width = width;
   look.height = height;
   return look;
@@ -50,7 +50,7 @@ std::vector<std::uint64_t> words_of(const Scene& scene) {
   return {film.words().begin(), film.words().end()};
 }
 
-Scene looked_at(const Look& look, int scale, int eye) {
+Scene looked_at(const ShowView& look, int scale, int eye) {
   Scene scene = test::scene_of_text(text);
   const ViewEdit view = shown_view(view_of(scene), look, scale, eye);
   scene.camera = view.camera;
@@ -61,7 +61,7 @@ Scene looked_at(const Look& look, int scale, int eye) {
 // With parallel rays, 3 units of the world are 48 pixels: balls of radius 0.75 are disks of 12
 // pixels, the near and the far one.
 TEST(Orthographic, ShowsBallsAsDisksWhateverTheirDistance) {
-  Look look = look_at(64, 48);
+  ShowView look = look_at(64, 48);
   look.orthographic = 1.5;
   const Scene scene = looked_at(look, 1, 0);
   const Film film = film_of(scene);
@@ -87,7 +87,7 @@ TEST(Orthographic, ShowsBallsAsDisksWhateverTheirDistance) {
 
 // What is at the distance where a perspective camera frames the same is at the same pixel.
 TEST(Orthographic, KeepsTheFraming) {
-  Look look = look_at(64, 48);
+  ShowView look = look_at(64, 48);
   const RayRecord before = ray_of_pixel(looked_at(look, 1, 0), 5, 40);
   look.orthographic = 6 * std::tan(look.fov / 2);
   const RayRecord after = ray_of_pixel(looked_at(look, 1, 0), 5, 40);
@@ -98,7 +98,7 @@ TEST(Orthographic, KeepsTheFraming) {
 
 // A lens of parallel rays: what is in focus stays where it is.
 TEST(Orthographic, FocusesAtOneDistance) {
-  Look look = look_at(64, 48);
+  ShowView look = look_at(64, 48);
   look.orthographic = 1.5;
   look.focal_distance = 6;
   const Film sharp = film_of(looked_at(look, 1, 0));
@@ -115,7 +115,7 @@ TEST(Orthographic, FocusesAtOneDistance) {
 }
 
 TEST(Orthographic, IsKeptInFiles) {
-  Look look = look_at(64, 48);
+  ShowView look = look_at(64, 48);
   look.orthographic = 1.5;
   const Scene scene = looked_at(look, 1, 0);
   std::string written;
@@ -124,7 +124,7 @@ TEST(Orthographic, IsKeptInFiles) {
   const Scene again = test::scene_of_text(written);
   EXPECT_EQ(fov_of(again.camera), 0);
   EXPECT_EQ(words_of(again), words_of(scene));
-  const Look looked = look_of_scene(again);
+  const ShowView looked = look_of_scene(again);
   EXPECT_EQ(looked.orthographic, 1.5);
   EXPECT_GT(looked.fov, 0);
 }
@@ -143,10 +143,10 @@ Shape "sphere"
 }
 
 TEST(Pairs, AreCamerasMovedByHand) {
-  Look look = look_at(64, 48);
+  ShowView look = look_at(64, 48);
   look.separation = 0.5;
   for (const int eye : {0, 1}) {
-    Look moved = look_at(64, 48);
+    ShowView moved = look_at(64, 48);
     moved.world_from_camera[3].x += eye == 0 ? 0.25 : -0.25;  // right is -x
     EXPECT_EQ(words_of(looked_at(look, 1, eye)), words_of(looked_at(moved, 1, 0))) << eye;
     // With a window that is moved so that what is 6 away stays: 0.25 / (6 tan 20 degrees).

@@ -27,7 +27,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Messages, SayHowOneLooks) {
-  const Look said = std::get<Look>(parse_message(look("", "")));
+  const ShowView said = std::get<ShowView>(parse_message(look("", "")));
   EXPECT_EQ(said.width, 640);
   EXPECT_EQ(said.height, 480);
   EXPECT_EQ(said.fov, 0.5);

@@ -63,14 +63,14 @@ class Notes {
 };
 
 /// What shapes take from a material.
-using Look = MtlMaterial;
+using MeshMaterial = MtlMaterial;
 
 /// Makes the shapes of a geometry element in its own coordinates; other elements give none. Throws InputError.
 bool is_geometry(std::string_view name);
-std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes);
+std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes);
 
 /// Adds a <material> to the scene. Throws InputError.
-Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images, Notes& notes);
+MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images, Notes& notes);
 
 /// A light of an element or of the viewer's options: E, I or L. It shines along z of its own space.
 struct LightElement {

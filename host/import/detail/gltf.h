@@ -84,7 +84,7 @@ class File {
 };
 
 /// What a shape takes from a glTF material.
-struct Look {
+struct MeshMaterial {
   std::uint32_t material = 0;
   std::optional<AreaEmission> emission;
   std::optional<TextureOperand> alpha;
@@ -94,7 +94,7 @@ class Materials {
  public:
   Materials(File& file, Scene& scene, const ImageReader& reader) : file_(file), scene_(scene), reader_(reader) {}
   /// Makes the material at its first use; without an index it is the default material.
-  const Look& look(std::optional<std::size_t> material);
+  const MeshMaterial& look(std::optional<std::size_t> material);
 
  private:
   using Json = nlohmann::json;
@@ -102,7 +102,7 @@ class Materials {
     int wrap = 0;
     TextureMapping mapping;
   };
-  Look make(const Json& material);
+  MeshMaterial make(const Json& material);
   std::shared_ptr<const TextureImage> image(std::size_t index, bool is_srgb);
   /// Returns the image that a texture reference names, and its sampler; no value without a texture.
   std::optional<std::pair<std::size_t, Sampler>> lookup(const Json& of, const char* name);
@@ -111,7 +111,7 @@ class Materials {
   File& file_;
   Scene& scene_;
   const ImageReader& reader_;
-  std::map<std::optional<std::size_t>, Look> looks_;
+  std::map<std::optional<std::size_t>, MeshMaterial> looks_;
   std::map<std::pair<std::size_t, bool>, std::shared_ptr<const TextureImage>> images_;
 };
 

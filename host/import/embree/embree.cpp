@@ -236,7 +236,7 @@ class EmbreeReader {
     return out;
   }
 
-  Look look(SceneFile& from, pugi::xml_node node, const std::string& name) {
+  MeshMaterial look(SceneFile& from, pugi::xml_node node, const std::string& name) {
     const std::string id = node.attribute("id").value();
     if (!id.empty())
       if (const auto found = looks_.find(id); found != looks_.end()) return found->second;
@@ -244,7 +244,7 @@ class EmbreeReader {
       if (!plain_) plain_ = add_plain_material(scene_);
       return {*plain_, {}, {}};
     }
-    const Look out = read_material(from, node, name.empty() ? id : name, scene_, images_, notes_);
+    const MeshMaterial out = read_material(from, node, name.empty() ? id : name, scene_, images_, notes_);
     if (!id.empty()) looks_[id] = out;
     return out;
   }
@@ -327,7 +327,7 @@ class EmbreeReader {
   Notes notes_;
   std::map<fs::path, NodePtr> files_;  // null while a file is being read
   std::map<std::string, NodePtr> nodes_;
-  std::map<std::string, Look> looks_;
+  std::map<std::string, MeshMaterial> looks_;
   std::optional<std::uint32_t> plain_;
   std::optional<View> view_;
   std::vector<std::pair<const LightElement*, glm::dmat4>> lights_;

@@ -98,7 +98,7 @@ class CurveSet {
  public:
   CurveSet(SceneFile& file, pugi::xml_node node, Notes& notes) : file_(file), node_(node), notes_(notes) {}
 
-  std::vector<Shape> read(const Look& look) {
+  std::vector<Shape> read(const MeshMaterial& look) {
     const Curves curves = curves_of(file_, node_);
     basis_ = curves.basis;
     if (curves.is_flat) notes_.add("flat curves are drawn as round ones", file_.place(node_));
@@ -124,7 +124,7 @@ class CurveSet {
     return shapes(look);
   }
 
-  std::vector<Shape> read_points(const Look& look) {
+  std::vector<Shape> read_points(const MeshMaterial& look) {
     const std::string_view type = node_.attribute("type").value();
     if (type != "sphere" && type != "disc" && type != "oriented")
       file_.fail(node_, fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
@@ -218,7 +218,7 @@ class CurveSet {
       cones_.emplace_back(ConeShape{glm::dvec3(a), glm::dvec3(b), {a.w, b.w}, caps});
   }
 
-  std::vector<Shape> shapes(const Look& look) {
+  std::vector<Shape> shapes(const MeshMaterial& look) {
     std::vector<Geometry> all = std::move(cones_);
     if (!capsules_.p0.empty()) {
       if (capsules_.radius0 == capsules_.radius1) capsules_.radius1.clear();
@@ -273,7 +273,7 @@ std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_no
   return out;
 }
 
-std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes) {
+std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes) {
   TriangleMeshShape out;
   out.positions = rows<glm::vec3>(file, first_list(node, "positions", file, notes));
   out.normals = rows<glm::vec3>(file, first_list(node, "normals", file, notes));
@@ -311,7 +311,7 @@ bool is_geometry(std::string_view name) {
          std::ranges::any_of(elements, [&](const Element& element) { return name == element.name; });
 }
 
-std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const Look& look, Notes& notes) {
+std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes) {
   const std::string_view name = node.name();
   if (is_mesh(name)) return mesh(file, node, look, notes);
   CurveSet set(file, node, notes);

@@ -166,7 +166,7 @@ class GltfReader {
     for (const Json& primitive : file_.list_of(mesh, "primitives")) {
       TriangleMeshShape triangles = mesh_of(primitive);
       if (triangles.triangles.empty()) continue;
-      const gltf::Look look = materials_.look(file_.index(primitive, "material", file_.list("materials").size(), "material"));
+      const gltf::MeshMaterial look = materials_.look(file_.index(primitive, "material", file_.list("materials").size(), "material"));
       Shape shape = mesh_shape(std::move(triangles), file_.text(mesh, "name", fmt::format("mesh {}", index)), look.material,
                                {scene_.source, 0, 0});
       shape.emission = look.emission;

@@ -96,10 +96,10 @@ double within(double value, double low, double high) { return std::clamp(value, 
 
 }  // namespace
 
-const Look& Materials::look(std::optional<std::size_t> material) {
+const MeshMaterial& Materials::look(std::optional<std::size_t> material) {
   const auto known = looks_.find(material);
   if (known != looks_.end()) return known->second;
-  Look look;
+  MeshMaterial look;
   if (material)
     look = make(file_.list("materials")[*material]);
   else
@@ -166,8 +166,8 @@ std::uint32_t Materials::add_texture(std::shared_ptr<const TextureImage> image, 
   return narrow<std::uint32_t>(scene_.textures.size() - 1);
 }
 
-Look Materials::make(const Json& from) {
-  Look out;
+MeshMaterial Materials::make(const Json& from) {
+  MeshMaterial out;
   const Json& pbr = file_.object(from, "pbrMetallicRoughness");
   Material material;
   material.name = file_.text(from, "name", "material");

@@ -4,7 +4,7 @@
 
 #include "base/check.h"
 #include "import/detail/text_file.h"
-#include "present/look.h"
+#include "present/picture_options.h"
 
 namespace caplet {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "lower/detail/images.h"
-#include "lower/detail/parts.h"
+#include "lower/detail/subtrees.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"

@@ -13,7 +13,7 @@
 
 namespace caplet {
 
-/// It refers to the shapes of the scene, which must stay where they are. Its parts refer to each
+/// It refers to the shapes of the scene, which must stay where they are. Its subtrees refer to each
 /// other, so it stays where it is.
 struct Lowering {
   /// Lowers the scene. Throws as lower() does.

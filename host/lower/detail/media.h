@@ -4,7 +4,7 @@
 // Converts media of the model to records and their data, and finds which geometries separate them.
 #pragma once
 
-#include "lower/detail/parts.h"
+#include "lower/detail/subtrees.h"
 #include "lower/flat_scene.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"

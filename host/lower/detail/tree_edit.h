@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lower/changes.h"
-#include "lower/detail/parts.h"
+#include "lower/detail/subtrees.h"
 #include "lower/flat_scene.h"
 
 namespace caplet {
@@ -20,23 +20,23 @@ class TreeEdit {
   /// Edits the trees in `flat`, which hold `geometry`.
   TreeEdit(FlatScene& flat, LoweredGeometry& geometry);
 
-  /// Updates the tree after primitive `at` of `part` has changed in `part.primitives`.
-  void move(Part& part, std::size_t at, SceneChanges& changes);
+  /// Updates the tree after primitive `at` of `subtree` has changed in `subtree.primitives`.
+  void move(Subtree& subtree, std::size_t at, SceneChanges& changes);
   /// Records that rows were appended to the leaves.
   void leaves_have_grown();
 
-  /// Returns the part's expected cost of a ray now over that when it was built: for lines through
+  /// Returns the subtree's expected cost of a ray now over that when it was built: for lines through
   /// its bounds, now or then, whichever is worse.
-  double cost_growth(const Part& part) const;
+  double cost_growth(const Subtree& subtree) const;
 
  private:
   struct Cost {
     double built = 0, areas = 0, clipped = 0;  // areas of all boxes, whole and within the bounds that it was built with
     ReferenceBox bounds{};                     // then
   };
-  ReferenceBox leaf_box(const Part& part, std::uint32_t row) const;
-  const FlatPrimitive& primitive(const Part& part, std::uint32_t kind, std::uint32_t id) const;
-  void write_lanes(const Part& part, std::size_t at, SceneChanges& changes);
+  ReferenceBox leaf_box(const Subtree& subtree, std::uint32_t row) const;
+  const FlatPrimitive& primitive(const Subtree& subtree, std::uint32_t kind, std::uint32_t id) const;
+  void write_lanes(const Subtree& subtree, std::size_t at, SceneChanges& changes);
   /// Sets the box of child `i` of a node.
   void set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& box, Cost& cost);
   ReferenceBox box_of(std::uint32_t node, std::uint32_t i) const;
@@ -47,7 +47,7 @@ class TreeEdit {
   // These are, by node and by the first row of a leaf block, the parent node times 8 plus the
   // number of the child.
   std::vector<std::uint32_t> node_parent_, row_parent_;
-  std::unordered_map<const Part*, Cost> costs_;
+  std::unordered_map<const Subtree*, Cost> costs_;
 };
 
 }  // namespace caplet

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Computes texture coordinates by angles from a direction that a rotation carries along, and
-// lengths along the profile that the support function gives (spool.cpp).
+// lengths along the profile that the support function gives (frustum.cpp).
 #pragma once
 
 #include <algorithm>
@@ -45,13 +45,13 @@ inline double angle_within(const glm::dvec3& x, double phi_max) {
   return angle - phi_max < full_turn - angle ? phi_max : 0;
 }
 
-/// OnSpool is a point relative to the hull of two ends: p, along and across the axis, and u, its
+/// OnFrustum is a point relative to the hull of two ends: p, along and across the axis, and u, its
 /// turn around it.
-struct OnSpool {
+struct OnFrustum {
   glm::dvec2 p;
   double u;
 };
-inline OnSpool on_spool(const Spool& s, const glm::dvec3& x) {
+inline OnFrustum on_frustum(const Frustum& s, const glm::dvec3& x) {
   const glm::dvec3 w = x - s.p0;
   const double along = glm::dot(w, s.axis);
   return {{along, glm::length(w - along * s.axis)}, share(angle_around(s.axis, w), full_turn)};

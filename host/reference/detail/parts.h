@@ -21,7 +21,7 @@ namespace caplet::reference {
 
 // Returns a geometry's primitives, in order, in its object space; from_scene.cpp handles those that
 // are described by their surfaces.
-#define GEOMETRY(Type, name) std::vector<Primitive> witnesses_of(const Type& geometry);
+#define GEOMETRY(Type, name) std::vector<Primitive> references_of(const Type& geometry);
 #include "scene/geometries.def"
 
 // --- uv that depend on the direction of the ray: of chains, and of csg shapes with them ---
@@ -32,18 +32,18 @@ glm::dvec2 csg_uv_of(const Csg& csg, const glm::dvec3& x, int surface, const glm
 // --- For shapes of more than one kind, shapes of more than one surface, and csg shapes ---
 
 std::size_t which_kind(const Capsule& capsule);
-std::size_t which_kind(const Spool& spool);
+std::size_t which_kind(const Frustum& frustum);
 
-int surfaces_of(const Spool& spool);
+int surfaces_of(const Frustum& frustum);
 int surfaces_of(const Polyhedron& polyhedron);
 int surfaces_of(const Csg& csg);
-SurfaceAt surface_of(const Spool& spool, const glm::dvec3& x);
+SurfaceAt surface_of(const Frustum& frustum, const glm::dvec3& x);
 SurfaceAt surface_of(const Polyhedron& polyhedron, const glm::dvec3& x);
 SurfaceAt surface_of(const Csg& csg, const glm::dvec3& x);
-double distance_from(const Spool& spool, const glm::dvec3& x, int surface);
+double distance_from(const Frustum& frustum, const glm::dvec3& x, int surface);
 double distance_from(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
 double distance_from(const Csg& csg, const glm::dvec3& x, int surface);
-glm::dvec3 normal_of(const Spool& spool, const glm::dvec3& x, int surface);
+glm::dvec3 normal_of(const Frustum& frustum, const glm::dvec3& x, int surface);
 glm::dvec3 normal_of(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
 
 // --- Sheets: the normal, the solid that they bound a part of, whether that part, and where they end ---
@@ -52,14 +52,14 @@ glm::dvec3 sheet_normal(const Triangle& triangle, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const Disk& disk, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const PartialDisk& disk, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const Bilinear& patch, const glm::dvec3& x);
-Primitive carrier_from(const Spool& spool);
+Primitive carrier_from(const Frustum& frustum);
 Primitive carrier_from(const PartialSphere& sphere);
 Primitive carrier_from(const OpenCylinder& cylinder);
-bool keeps_of(const Spool& spool, const glm::dvec3& x, int surface);
+bool keeps_of(const Frustum& frustum, const glm::dvec3& x, int surface);
 bool keeps_of(const PartialSphere& sphere, const glm::dvec3& x, int surface);
 bool keeps_of(const OpenCylinder& cylinder, const glm::dvec3& x, int surface);
 bool keeps_of(const PartialDisk& disk, const glm::dvec3& x, int surface);
-std::vector<Curve> boundary_of(const Spool& spool);
+std::vector<Curve> boundary_of(const Frustum& frustum);
 std::vector<Curve> boundary_of(const PartialSphere& sphere);
 std::vector<Curve> boundary_of(const OpenCylinder& cylinder);
 std::vector<Curve> boundary_of(const PartialDisk& disk);
@@ -131,11 +131,11 @@ double distance_to_segment(const glm::dvec3& x, const glm::dvec3& a, const glm::
 glm::dvec3 any_perpendicular(const glm::dvec3& unit);
 inline Curve segment(const glm::dvec3& a, const glm::dvec3& b) { return {Curve::Kind::segment, a, b, glm::dvec3(0), 0, 0, 0}; }
 
-// spool.cpp
-double hull_value(const Spool& spool, const glm::dvec3& x);  // signed, as if all ends were closed
+// frustum.cpp
+double hull_value(const Frustum& frustum, const glm::dvec3& x);  // signed, as if all ends were closed
 // Returns where the side of normal n (one of side_normals) touches an end: along and across the
 // axis.
-glm::dvec2 side_contact(const Spool& spool, std::size_t end, const glm::dvec2& n);
+glm::dvec2 side_contact(const Frustum& frustum, std::size_t end, const glm::dvec2& n);
 
 // bilinear.cpp
 glm::dvec2 parameters_of(const Bilinear& patch, const glm::dvec3& x);  // of the point nearest to x

@@ -121,7 +121,7 @@ Primitive carrier_from(const PartialSphere& s) { return Sphere{dvec3(0), s.radiu
 Primitive carrier_from(const OpenCylinder& c) {
   // The tube is longer, so that its caps never matter.
   const double more = c.radius + 0.5 * (c.z_max - c.z_min);
-  return make_spool({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false}, {c.radius, false, false});
+  return make_frustum({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false}, {c.radius, false, false});
 }
 
 dvec2 uv_of(const PartialSphere& s, const dvec3& x, int) {
@@ -137,9 +137,9 @@ dvec2 uv_of(const PartialDisk& d, const dvec3& x, int) {
   return {share(angle_within(x, d.phi_max), d.phi_max), share(d.radius - std::hypot(x.x, x.y), d.radius - d.inner_radius)};
 }
 
-std::vector<Primitive> witnesses_of(const PartialSphereShape& s) {
+std::vector<Primitive> references_of(const PartialSphereShape& s) {
   return {PartialSphere{s.radius, s.z_min, s.z_max, s.phi_max}};
 }
-std::vector<Primitive> witnesses_of(const OpenCylinderShape& c) { return {OpenCylinder{c.radius, c.z_min, c.z_max, c.phi_max}}; }
+std::vector<Primitive> references_of(const OpenCylinderShape& c) { return {OpenCylinder{c.radius, c.z_min, c.z_max, c.phi_max}}; }
 
 }  // namespace caplet::reference

@@ -142,7 +142,7 @@ std::vector<Curve> boundary_of(const Bilinear& b) {
 
 dvec2 uv_of(const Bilinear& b, const dvec3& x, int) { return parameters_of(b, x); }
 
-std::vector<Primitive> witnesses_of(const BilinearMeshShape& mesh) {
+std::vector<Primitive> references_of(const BilinearMeshShape& mesh) {
   std::vector<Primitive> out;
   for (const auto& p : mesh.patches)
     out.push_back(Bilinear{dvec3(mesh.positions[p[0]]), dvec3(mesh.positions[p[1]]), dvec3(mesh.positions[p[2]]),

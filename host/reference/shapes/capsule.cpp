@@ -34,8 +34,8 @@ Ball ball_of(const Capsule& c) { return {0.5 * (c.p0 + c.p1), 0.5 * glm::length(
 
 // The hull of two balls has a cap, a side and a cap, by arc length.
 dvec2 uv_of(const Capsule& c, const dvec3& x, int) {
-  const Spool s = make_spool(c.p0, c.p1, {c.radius0, true, false}, {c.radius1, true, false});
-  const OnSpool at = on_spool(s, x);
+  const Frustum s = make_frustum(c.p0, c.p1, {c.radius0, true, false}, {c.radius1, true, false});
+  const OnFrustum at = on_frustum(s, x);
   if (s.side_count == 0) {
     const dvec2 w = at.p - dvec2(c.radius0 >= c.radius1 ? 0 : s.length, 0);
     return {at.u, share(angle_from_pole(w), pi)};
@@ -76,7 +76,7 @@ dvec2 chain_uv_of(const Capsule& c, const dvec3& x, const dvec3& direction) {
   return {glm::mix(c.u->x, c.u->y, s), std::clamp(0.5 + 0.5 * offset / std::max(radius * cosine, 1e-300), 0.0, 1.0)};
 }
 
-std::vector<Primitive> witnesses_of(const CapsulesShape& capsules) {
+std::vector<Primitive> references_of(const CapsulesShape& capsules) {
   std::vector<Primitive> out;
   for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
     const double radius0 = capsules.radius0[i];

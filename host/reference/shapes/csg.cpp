@@ -141,7 +141,7 @@ dvec2 csg_uv_of(const Csg& csg, const dvec3& x, int surface, const dvec3& direct
   return {0, 0};
 }
 
-std::vector<Primitive> witnesses_of(const CsgShape& csg) {
+std::vector<Primitive> references_of(const CsgShape& csg) {
   std::vector<CsgPart> parts;
   for (const auto& operand : csg.operands) parts.push_back({primitives_of(*operand).at(0), operand->world_from_object});
   const auto operation = csg.operation == CsgShape::Operation::set_union          ? Csg::Operation::set_union

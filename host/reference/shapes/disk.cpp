@@ -35,7 +35,7 @@ dvec2 uv_of(const Disk& d, const dvec3& x, int) {
   return {share(angle_around(n, w), full_turn), 1 - share(glm::length(w - glm::dot(w, n) * n), d.radius)};
 }
 
-std::vector<Primitive> witnesses_of(const DiskShape& d) {
+std::vector<Primitive> references_of(const DiskShape& d) {
   if (d.is_whole()) return {Disk{dvec3(0, 0, d.height), dvec3(0, 0, 1), d.radius}};
   return {PartialDisk{d.height, d.radius, d.inner_radius, d.phi_max}};
 }

@@ -93,7 +93,7 @@ Polyhedron make_polyhedron(const dvec3& center, std::span<const dvec3> normals, 
   return out;
 }
 
-std::vector<Primitive> witnesses_of(const PolyhedronShape& p) {
+std::vector<Primitive> references_of(const PolyhedronShape& p) {
   dvec3 center{0};
   for (const dvec3& point : p.points) center += point / double(p.points.size());
   std::vector<double> offsets;

@@ -20,6 +20,6 @@ dvec2 uv_of(const Sphere& s, const dvec3& x, int) {
   return {share(angle_around({0, 0, 1}, w), full_turn), share(std::atan2(w.z, std::hypot(w.x, w.y)) + pi / 2, pi)};
 }
 
-std::vector<Primitive> witnesses_of(const SphereShape& s) { return {Sphere{dvec3(0), s.radius}}; }
+std::vector<Primitive> references_of(const SphereShape& s) { return {Sphere{dvec3(0), s.radius}}; }
 
 }  // namespace caplet::reference

@@ -48,7 +48,7 @@ dvec2 uv_of(const Triangle& t, const dvec3& x, int) {
   return {(b1 + b2) / sum, b2 / sum};  // (0 0) (1 0) (1 1)
 }
 
-std::vector<Primitive> witnesses_of(const TriangleMeshShape& mesh) {
+std::vector<Primitive> references_of(const TriangleMeshShape& mesh) {
   std::vector<Primitive> out;
   for (const auto& t : mesh.triangles)
     out.push_back(Triangle{dvec3(mesh.positions[t[0]]), dvec3(mesh.positions[t[1]]), dvec3(mesh.positions[t[2]])});

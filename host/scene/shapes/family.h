@@ -15,7 +15,7 @@
 // which are found by type: a missing one is a compile error. Lengths and points are in the shape's own space.
 //
 // A convex solid may be defined by its surfaces, each of which bounds it by a convex function (FacedSolid). It needs no
-// `beyond`, and its witness and the rays that test devices follow from these functions:
+// `beyond`, and its reference and the rays that test devices follow from these functions:
 //
 //   double outside(const Type&, int surface, const dvec3& p)    grows no faster than distance; in the solid all are
 //                                                               at most 0

@@ -53,10 +53,10 @@ void visit_form(FormFields& fields, Light& light);
 void visit_form(FormFields& fields, std::optional<AreaEmission>& emission);
 void visit_form(FormFields& fields, Shape& shape);
 /// Visits the film, the filter, the sampler or the integrator.
-void visit_form(FormFields& fields, ViewEdit& view, Part::Kind kind);
+void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind kind);
 
 /// Lists the kinds that can be made without an existing part.
-std::vector<std::string> new_kinds(Part::Kind what);
+std::vector<std::string> new_kinds(FormSubject::Kind what);
 
 /// Makes a part of a kind in the list, with a name that the scene does not have yet. Throws InputError.
 Material new_material(const Scene& scene, const Add& add);

@@ -27,7 +27,7 @@ class Keeping {
   bool make(const Message& message, const std::string& text);
   /// Saves with the scene's own camera and film, or with that camera. Returns the message `saved`, or `save_asks` when data in
   /// the file would be lost. Throws InputError and RunError.
-  nlohmann::ordered_json save(const Save& save, const Look& look, const std::function<bool()>& cancelled);
+  nlohmann::ordered_json save(const Save& save, const ShowView& look, const std::function<bool()>& cancelled);
   /// Uses the pause after a picture for other work.
   void pause() {
     if (keeper_) keeper_->look_at_contents();
@@ -35,7 +35,7 @@ class Keeping {
   /// Returns the message on unsaved changes: whether there are any, whether they are kept, and what an earlier session left.
   nlohmann::ordered_json text() const;
   /// Returns the camera and the size that the scene is saved with.
-  const Look& own_look() const { return own_; }
+  const ShowView& own_look() const { return own_; }
   bool has_unsaved() const { return editor_.state() != saved_; }
   /// Returns the journal if changes remain in it.
   std::optional<std::filesystem::path> end();
@@ -47,7 +47,7 @@ class Keeping {
 
   Editor& editor_;
   std::unique_ptr<Keeper> keeper_;
-  Look own_;
+  ShowView own_;
   bool own_is_new_ = false;   // it was saved with a different camera
   std::uint64_t saved_ = 0;   // state of the editor
   std::size_t restored_ = 0;  // changes of an earlier session

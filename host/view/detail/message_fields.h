@@ -100,7 +100,7 @@ inline glm::dvec3 point(const json& object, const char* name) {
 }
 
 /// Reads a part of the scene: `of` and `part`.
-Part part(const json& object);
+FormSubject part(const json& object);
 /// Reads a change of a form; returns none where `what` is another kind of message.
 std::optional<FormChange> form_change(const json& object);
 inline constexpr const char* form_changes = "set, add, remove, hide and show";

@@ -20,7 +20,7 @@ inline constexpr std::size_t most_named = 5000;
 nlohmann::ordered_json to_json(const glm::dvec3& v);
 
 /// The page sends cameras in the same form (messages.h).
-nlohmann::ordered_json camera_text(const Look& look);
+nlohmann::ordered_json camera_text(const ShowView& look);
 
 /// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials, the device's name, and the
 /// samples per pixel of a finished picture.

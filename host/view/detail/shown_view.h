@@ -10,9 +10,9 @@
 namespace caplet::view {
 
 /// Returns the scene's own view.
-Look look_of_scene(const Scene& scene);
+ShowView look_of_scene(const Scene& scene);
 
 /// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the left of a stereo pair.
-ViewEdit shown_view(const ViewEdit& own, const Look& look, int scale, int eye);
+ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye);
 
 }  // namespace caplet::view

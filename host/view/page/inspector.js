@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// Shows every crossing along a ray: a table, and a diagram of the solids along it, beside the witness's result.
+// Shows every crossing along a ray: a table, and a diagram of the solids along it, beside the reference's result.
 import { texts } from "./texts.js";
 
 const svg = (name, attributes) => {

@@ -37,7 +37,7 @@ export const texts = {
   coarse: (p, device) => `coarse (1 of ${p.scale * p.scale} pixels), ${device}`,
   nothing: "nothing", lost: "The connection to the program is lost. Trying again…", closed: "This address is not served. Start `caplet view` again: with the same --port this page goes on, else open the address that it prints.",
   under: (h) => `${h.object} · primitive ${h.primitive} · surface ${h.surface} · ${h.material} · t ${h.t.toPrecision(6)} · (${h.point.map((v) => v.toPrecision(5)).join(", ")}) · normal (${h.normal.map((v) => v.toFixed(3)).join(", ")})`,
-  crossings: { t: "t", side: "", object: "solid", surface: "surface", material: "material", witness: "witness t" },
+  crossings: { t: "t", side: "", object: "solid", surface: "surface", material: "material", reference: "reference t" },
   entering: "enters", leaving: "leaves",
   intervals: (n) => `${n} crossings along the ray, nearest at the left`,
   keeping: {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Who renders what, without devices: every path once, by speed, done at the same time, and again where a worker is lost.
-#include "render/detail/shares.h"
+#include "render/detail/work_queue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 constexpr Window picture{10, 20, 100, 60};
 
-Shares::Worker worker(std::size_t batch_paths = 1 << 12) { return {{}, batch_paths, 1 << 12}; }
+WorkQueue::Worker worker(std::size_t batch_paths = 1 << 12) { return {{}, batch_paths, 1 << 12}; }
 
 /// How often each pixel's samples were rendered.
 class Count {
@@ -52,7 +52,7 @@ class Count {
 /// Workers of given speeds in a time of their own.
 class Simulation {
  public:
-  Simulation(Shares& shares, std::vector<double> speeds) : shares_(shares), speeds_(std::move(speeds)), busy_(speeds_.size()) {
+  Simulation(WorkQueue& shares, std::vector<double> speeds) : shares_(shares), speeds_(std::move(speeds)), busy_(speeds_.size()) {
     films_.resize(speeds_.size());
     lost_.resize(speeds_.size());
   }
@@ -105,14 +105,14 @@ class Simulation {
     std::optional<FilmPart> part;
     double seconds = 0, until = 0;
   };
-  Shares& shares_;
+  WorkQueue& shares_;
   std::vector<double> speeds_;
   std::vector<Busy> busy_;
   std::vector<std::vector<FilmPart>> films_;
   std::vector<bool> lost_;
 };
 
-TEST(Shares, PartsAreCutInSamplesOrRowsOfTiles) {
+TEST(WorkQueue, PartsAreCutInSamplesOrRowsOfTiles) {
   const FilmPart all{{0, 0, 100, 60}, 4, 10};
   std::vector<FilmPart> rest;
   EXPECT_EQ(cut_part(all, 18500, 100, rest), (FilmPart{{0, 0, 100, 60}, 4, 3}));
@@ -134,14 +134,14 @@ TEST(Shares, PartsAreCutInSamplesOrRowsOfTiles) {
 }
 
 // Half of what a worker's speed makes its share, within bounds in seconds.
-TEST(Shares, SizesAreHalfOfWhatIsLeftBySpeed) {
+TEST(WorkQueue, SizesAreHalfOfWhatIsLeftBySpeed) {
   EXPECT_DOUBLE_EQ(part_paths(1000, 300, 1000), 150);
   EXPECT_DOUBLE_EQ(part_paths(1000, 300, 600), 250);
   EXPECT_DOUBLE_EQ(part_paths(1e6, 300, 600), 300);  // a second
   EXPECT_DOUBLE_EQ(part_paths(1, 300, 600), 6);      // a fiftieth
 }
 
-TEST(Shares, SpeedsForgetWhatWas) {
+TEST(WorkQueue, SpeedsForgetWhatWas) {
   Speed speed;
   EXPECT_EQ(speed.paths_a_second(), 0);
   speed.measured(1000, 1);
@@ -152,8 +152,8 @@ TEST(Shares, SpeedsForgetWhatWas) {
   EXPECT_NEAR(speed.paths_a_second(), 10, 1e-2);
 }
 
-TEST(Shares, AWorkerAloneTakesWholePasses) {
-  Shares shares(picture, 5, 10, {}, {{{}, 1 << 17, 4}});
+TEST(WorkQueue, AWorkerAloneTakesWholePasses) {
+  WorkQueue shares(picture, 5, 10, {}, {{{}, 1 << 17, 4}});
   EXPECT_EQ(shares.take(0), (FilmPart{picture, 5, 4}));
   EXPECT_FALSE(shares.complete());
   shares.done(0, 1);
@@ -168,11 +168,11 @@ TEST(Shares, AWorkerAloneTakesWholePasses) {
 }
 
 // Workers of any speeds finish together, and each has done what its speed makes of the whole.
-TEST(Shares, AreBySpeedAndEndTogether) {
+TEST(WorkQueue, AreBySpeedAndEndTogether) {
   for (const std::vector<double>& speeds : std::vector<std::vector<double>>{
            {1e5, 1e5}, {1e5, 3e5}, {2e4, 1e6}, {1e5, 1e5, 1e5, 1e5}, {3e5, 1e5, 2e5}, {1e3, 1e6, 2e6}}) {
     constexpr std::uint32_t samples = 4000;
-    Shares shares(picture, 3, samples, {}, std::vector<Shares::Worker>(speeds.size(), worker()));
+    WorkQueue shares(picture, 3, samples, {}, std::vector<WorkQueue::Worker>(speeds.size(), worker()));
     Simulation simulation(shares, speeds);
     const auto [first, last] = simulation.run();
     EXPECT_TRUE(shares.complete());
@@ -189,13 +189,13 @@ TEST(Shares, AreBySpeedAndEndTogether) {
   }
 }
 
-TEST(Shares, WhatALostWorkerHadIsDoneAgain) {
+TEST(WorkQueue, WhatALostWorkerHadIsDoneAgain) {
   for (int seed = 0; seed < 40; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     const auto draw = [&](unsigned most) { return static_cast<double>(1 + random() % most); };
     const std::vector<double> speeds{1e5 * draw(5), 1e5 * draw(5), 1e5};
     constexpr std::uint32_t samples = 300;
-    Shares shares(picture, 7, samples, {}, std::vector<Shares::Worker>(3, worker()));
+    WorkQueue shares(picture, 7, samples, {}, std::vector<WorkQueue::Worker>(3, worker()));
     Simulation simulation(shares, speeds);
     simulation.run(random() % 3, 0.01 * draw(400));
     EXPECT_TRUE(shares.complete());
@@ -207,13 +207,13 @@ TEST(Shares, WhatALostWorkerHadIsDoneAgain) {
 }
 
 // Samples of earlier renders, which a lost worker's film had, come back as well; they do not count as this render's.
-TEST(Shares, WhatIsToBeDoneAgainComesFirst) {
-  Shares shares(picture, 20, 1, {{picture, 3, 2}}, {worker(), worker()});
+TEST(WorkQueue, WhatIsToBeDoneAgainComesFirst) {
+  WorkQueue shares(picture, 20, 1, {{picture, 3, 2}}, {worker(), worker()});
   Simulation simulation(shares, {1e5, 1e5});
   simulation.run();
   EXPECT_DOUBLE_EQ(shares.paths_done(), static_cast<double>(picture.pixels()));
   Count again;
-  Shares others(picture, 20, 0, {{picture, 3, 2}}, {worker()});
+  WorkQueue others(picture, 20, 0, {{picture, 3, 2}}, {worker()});
   while (const auto part = others.take(0)) {
     again.add(*part);
     others.done(0, 1);
@@ -224,8 +224,8 @@ TEST(Shares, WhatIsToBeDoneAgainComesFirst) {
 }
 
 // What is begun is finished for every pixel, and nothing else.
-TEST(Shares, ClosedOnesFinishWhatIsBegun) {
-  Shares shares(picture, 7, 100, {}, {worker(1000), worker(1000)});
+TEST(WorkQueue, ClosedOnesFinishWhatIsBegun) {
+  WorkQueue shares(picture, 7, 100, {}, {worker(1000), worker(1000)});
   EXPECT_FALSE(shares.begun());
   const FilmPart first = *shares.take(0);
   EXPECT_TRUE(shares.begun());
@@ -242,18 +242,18 @@ TEST(Shares, ClosedOnesFinishWhatIsBegun) {
   }
   EXPECT_TRUE(shares.complete());
   count.expect_once(7, 8);
-  Shares none(picture, 7, 100, {}, {worker()});
+  WorkQueue none(picture, 7, 100, {}, {worker()});
   none.close();
   EXPECT_EQ(none.take(0), std::nullopt);
   EXPECT_EQ(none.samples(), 0u);
 }
 
 // One that needs longer for a row than the others for everything leaves it to them, until they are lost.
-TEST(Shares, TheSlowLeaveTheEndToOthers) {
-  Shares::Worker slow = worker(), fast = worker();
+TEST(WorkQueue, TheSlowLeaveTheEndToOthers) {
+  WorkQueue::Worker slow = worker(), fast = worker();
   slow.speed.measured(10, 1);
   fast.speed.measured(1e6, 1);
-  Shares shares(picture, 0, 2, {}, {slow, fast});
+  WorkQueue shares(picture, 0, 2, {}, {slow, fast});
   EXPECT_EQ(shares.take(0), std::nullopt);
   EXPECT_FALSE(shares.complete());
   EXPECT_TRUE(shares.take(1).has_value());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "render/detail/crew.h"
+#include "render/detail/worker_pool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -21,19 +21,19 @@ std::atomic<int>& given_up() {
 
 }  // namespace
 
-bool Crew::any_given_up() { return given_up() > 0; }
+bool WorkerPool::any_given_up() { return given_up() > 0; }
 
-std::size_t Crew::members_there() const {
+std::size_t WorkerPool::members_there() const {
   return static_cast<std::size_t>(std::ranges::count_if(members_, [](const Member& member) { return !member.gone; }));
 }
 
-void Crew::lose(std::size_t member, std::exception_ptr failure) {
+void WorkerPool::lose(std::size_t member, std::exception_ptr failure) {
   members_[member].gone = true;
   calls_.lost(member, std::move(failure));
   notify();
 }
 
-bool Crew::attempt(std::size_t member, Lock& lock, const std::function<void()>& work) {
+bool WorkerPool::attempt(std::size_t member, Lock& lock, const std::function<void()>& work) {
   Member& self = members_[member];
   self.busy = true;
   self.silent = 0;
@@ -51,7 +51,7 @@ bool Crew::attempt(std::size_t member, Lock& lock, const std::function<void()>& 
   return !failure;
 }
 
-void Crew::run(double patience, const std::function<void(std::size_t, Lock&)>& work) {
+void WorkerPool::run(double patience, const std::function<void(std::size_t, Lock&)>& work) {
   if (members_.size() == 1) {
     Lock lock(mutex_);
     work(0, lock);

@@ -19,7 +19,7 @@ namespace caplet {
 /// it returns after all it finds that it is gone and ends. So the functions below hold everything
 /// that the threads use, and such a thread keeps it alive; what they change together is changed
 /// under the mutex.
-class Crew : public std::enable_shared_from_this<Crew> {
+class WorkerPool : public std::enable_shared_from_this<WorkerPool> {
  public:
   using Lock = std::unique_lock<std::mutex>;
   struct Calls {
@@ -30,7 +30,7 @@ class Crew : public std::enable_shared_from_this<Crew> {
     /// (null), and is gone.
     std::function<void(std::size_t member, std::exception_ptr failure)> lost;
   };
-  Crew(std::size_t members, Calls calls) : calls_(std::move(calls)), members_(members) {}
+  WorkerPool(std::size_t members, Calls calls) : calls_(std::move(calls)), members_(members) {}
 
   /// Calls `work(member, lock)` for each member, on a thread each, under the mutex; a single member
   /// works on the caller's thread. Returns when all have returned or are gone. A member in

@@ -41,7 +41,7 @@ double part_paths(double open, double speed, double all_speed);
 /// returned part.
 FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples, std::vector<FilmPart>& rest);
 
-class Shares {
+class WorkQueue {
  public:
   struct Worker {
     Speed speed;
@@ -53,7 +53,7 @@ class Shares {
 
   /// Distributes samples [begin, begin + count) of every pixel of `window`, after the parts that
   /// must be done `again`.
-  Shares(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
+  WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
          std::vector<Worker> workers);
 
   /// Returns the next part for a worker, which has none under way. Returns nothing if there is none

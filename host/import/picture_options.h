@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Options of the picture, for scenes of any format: the LOOK_OPTIONs of import_options.def.
+// Options of the picture, for scenes of any format: the PICTURE_OPTIONs of import_options.def.
 #pragma once
 
 #include "import/import_options.h"
@@ -12,6 +12,6 @@ namespace caplet {
 
 /// Sets the camera, lights and film of a scene by the options. `is_turned`: the importer has turned the scene so that y is up, as
 /// the option "up" asks; otherwise the camera is turned. Throws InputError that names the option.
-void apply_look(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned);
+void apply_picture_options(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned);
 
 }  // namespace caplet

@@ -21,12 +21,12 @@ using glm::dvec3;
 namespace {
 
 // Returns the support of an end whose centre lies `along` the axis.
-double support(const Spool::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
+double support(const Frustum::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
 
 struct Profile {
   double along, across;
 };
-Profile profile_of(const Spool& s, const dvec3& x) {
+Profile profile_of(const Frustum& s, const dvec3& x) {
   const dvec3 w = x - s.p0;
   const double along = glm::dot(w, s.axis);
   return {along, glm::length(w - along * s.axis)};
@@ -37,7 +37,7 @@ struct Values {
   double greatest() const { return std::max({side, end[0], end[1]}); }
 };
 
-Values values_at(const Spool& s, const Profile& x) {
+Values values_at(const Frustum& s, const Profile& x) {
   Values out;
   // `which` becomes the end whose normal n is; its old value is used where both are touched.
   const auto value_along = [&](const dvec2& n, std::size_t* which) {
@@ -68,13 +68,13 @@ double distance2(const dvec2& x, const dvec2& a, const dvec2& b) {
 
 }  // namespace
 
-dvec2 side_contact(const Spool& s, std::size_t end, const dvec2& n) {
+dvec2 side_contact(const Frustum& s, std::size_t end, const dvec2& n) {
   const dvec2 center{end == 0 ? 0 : s.length, 0};
   return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
 }
 
-Spool make_spool(const dvec3& p0, const dvec3& p1, const Spool::End& end0, const Spool::End& end1) {
-  Spool s;
+Frustum make_frustum(const dvec3& p0, const dvec3& p1, const Frustum::End& end0, const Frustum::End& end1) {
+  Frustum s;
   s.p0 = p0;
   s.p1 = p1;
   s.ends = {end0, end1};
@@ -102,9 +102,9 @@ Spool make_spool(const dvec3& p0, const dvec3& p1, const Spool::End& end0, const
   return s;
 }
 
-double hull_value(const Spool& s, const dvec3& x) { return values_at(s, profile_of(s, x)).greatest(); }
+double hull_value(const Frustum& s, const dvec3& x) { return values_at(s, profile_of(s, x)).greatest(); }
 
-double value_of(const Spool& s, const dvec3& x) {
+double value_of(const Frustum& s, const dvec3& x) {
   const Profile profile = profile_of(s, x);
   const Values values = values_at(s, profile);
   const double signed_distance = values.greatest();
@@ -132,7 +132,7 @@ double value_of(const Spool& s, const dvec3& x) {
   return least;
 }
 
-SurfaceAt surface_of(const Spool& s, const dvec3& x) {
+SurfaceAt surface_of(const Frustum& s, const dvec3& x) {
   const Profile profile = profile_of(s, x);
   const Values values = values_at(s, profile);
   SurfaceAt out;
@@ -147,7 +147,7 @@ SurfaceAt surface_of(const Spool& s, const dvec3& x) {
   return out;
 }
 
-double distance_from(const Spool& s, const dvec3& x, int surface) {
+double distance_from(const Frustum& s, const dvec3& x, int surface) {
   const Profile profile = profile_of(s, x);
   const dvec2 p{profile.along, profile.across};
   double least = HUGE_VAL;
@@ -164,7 +164,7 @@ double distance_from(const Spool& s, const dvec3& x, int surface) {
   return distance2(p, center, center + dvec2(0, s.ends[end].radius));
 }
 
-dvec3 normal_of(const Spool& s, const dvec3& x, int surface) {
+dvec3 normal_of(const Frustum& s, const dvec3& x, int surface) {
   if (surface > 0) {
     const bool first = surface == 1;
     if (!s.ends[first ? 0 : 1].round) return first ? -s.axis : s.axis;
@@ -188,7 +188,7 @@ dvec3 normal_of(const Spool& s, const dvec3& x, int surface) {
   return nearest.x * s.axis + nearest.y * across;
 }
 
-std::vector<Curve> boundary_of(const Spool& s) {
+std::vector<Curve> boundary_of(const Frustum& s) {
   std::vector<Curve> out;
   const dvec3 u = any_perpendicular(s.axis), v = glm::cross(s.axis, u);
   for (std::size_t end = 0; end < 2; ++end)
@@ -199,23 +199,23 @@ std::vector<Curve> boundary_of(const Spool& s) {
   return out;
 }
 
-bool has_inside(const Spool& s) { return !s.ends[0].open && !s.ends[1].open; }
-std::size_t which_kind(const Spool& s) { return s.ends[0].radius == s.ends[1].radius ? 0 : 1; }
-int surfaces_of(const Spool&) { return 3; }
+bool has_inside(const Frustum& s) { return !s.ends[0].open && !s.ends[1].open; }
+std::size_t which_kind(const Frustum& s) { return s.ends[0].radius == s.ends[1].radius ? 0 : 1; }
+int surfaces_of(const Frustum&) { return 3; }
 
-Ball ball_of(const Spool& s) { return {0.5 * (s.p0 + s.p1), 0.5 * s.length + std::max(s.ends[0].radius, s.ends[1].radius)}; }
+Ball ball_of(const Frustum& s) { return {0.5 * (s.p0 + s.p1), 0.5 * s.length + std::max(s.ends[0].radius, s.ends[1].radius)}; }
 
-Primitive carrier_from(const Spool& s) {
-  Spool closed = s;
+Primitive carrier_from(const Frustum& s) {
+  Frustum closed = s;
   closed.ends[0].open = closed.ends[1].open = false;
   return closed;
 }
-bool keeps_of(const Spool& s, const dvec3&, int surface) {
+bool keeps_of(const Frustum& s, const dvec3&, int surface) {
   return surface == 0 || !s.ends[static_cast<std::size_t>(surface - 1)].open;
 }
 
-dvec2 uv_of(const Spool& s, const dvec3& x, int surface) {
-  const OnSpool at = on_spool(s, x);
+dvec2 uv_of(const Frustum& s, const dvec3& x, int surface) {
+  const OnFrustum at = on_frustum(s, x);
   if (surface == 0) {
     Position best{0, HUGE_VAL};
     for (int i = 0; i < s.side_count; ++i) {
@@ -240,15 +240,15 @@ dvec2 uv_of(const Spool& s, const dvec3& x, int surface) {
 
 namespace {
 
-Spool::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
+Frustum::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
 
 }  // namespace
 
-std::vector<Primitive> witnesses_of(const CylinderShape& c) {
-  return {make_spool(c.p0, c.p1, end_of(c.radius, c.caps[0]), end_of(c.radius, c.caps[1]))};
+std::vector<Primitive> references_of(const CylinderShape& c) {
+  return {make_frustum(c.p0, c.p1, end_of(c.radius, c.caps[0]), end_of(c.radius, c.caps[1]))};
 }
-std::vector<Primitive> witnesses_of(const ConeShape& c) {
-  return {make_spool(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]))};
+std::vector<Primitive> references_of(const ConeShape& c) {
+  return {make_frustum(c.p0, c.p1, end_of(c.radius[0], c.caps[0]), end_of(c.radius[1], c.caps[1]))};
 }
 
 }  // namespace caplet::reference

@@ -21,11 +21,11 @@
 
 namespace caplet {
 
-/// Part is one tree: primitives in its space, and the shapes that emissive ones come from.
-struct Part {
-  glm::dmat4 placed{1};  // object_from_part
+/// Subtree is one tree: primitives in its space, and the shapes that emissive ones come from.
+struct Subtree {
+  glm::dmat4 placed{1};  // object_from_subtree
   uint flags = 0;        // of its instances
-  /// Primitives are by id; after them, in the world's first part, come the instances.
+  /// Primitives are by id; after them, in the world's first subtree, come the instances.
   std::vector<FlatPrimitive> primitives;
   std::vector<const Shape*> shapes;  // those that gave primitives
   struct Emissive {
@@ -38,13 +38,13 @@ struct Part {
   EncodedTree tree;
 };
 
-/// Placed is an instance record: a part as placed, by the number of the record.
-struct Placed {
-  const Part* part;
+/// PlacedSubtree is an instance record: a subtree as placed, by the number of the record.
+struct PlacedSubtree {
+  const Subtree* subtree;
   std::uint32_t instance;
-  glm::dmat4 world_from_part;
-  std::uint32_t scene_instance;  // index into Scene::instances; CAPLET_NONE: a part of the world
-  std::size_t top;               // index into the primitives of the world's first part
+  glm::dmat4 world_from_subtree;
+  std::uint32_t scene_instance;  // index into Scene::instances; CAPLET_NONE: a subtree of the world
+  std::size_t top;               // index into the primitives of the world's first subtree
 };
 
 /// Lengths holds the lengths of the arrays that shapes add to.
@@ -52,11 +52,11 @@ struct Lengths {
   std::size_t geometries = 0, primitives = 0, surfaces = 0, indices = 0, normals = 0, uvs = 0, leaves = 0;
 };
 
-/// ShapeExtent is a shape's range of the flat arrays: from `begin` on up to `end`. `part` is null
+/// ShapeExtent is a shape's range of the flat arrays: from `begin` on up to `end`. `subtree` is null
 /// where it gave nothing.
 struct ShapeExtent {
-  Part* part = nullptr;
-  std::size_t first = 0;  // of its primitives in the part
+  Subtree* subtree = nullptr;
+  std::size_t first = 0;  // of its primitives in the subtree
   Lengths begin, end;
 };
 
@@ -66,35 +66,35 @@ struct LoweredShapes {
   LoweredShapes() = default;
   LoweredShapes(LoweredShapes&&) = default;
   LoweredShapes& operator=(LoweredShapes&&) = default;
-  std::deque<Part> parts;  // the first holds what is baked into the common space; then one for each transform that cannot be
+  std::deque<Subtree> subtrees;  // the first holds what is baked into the common space; then one for each transform that cannot be
   std::vector<ShapeExtent> extents;  // by shape
 };
 
 struct LoweredGeometry {
   LoweredShapes world;
   std::vector<LoweredShapes> objects;
-  std::vector<Placed> placed;
+  std::vector<PlacedSubtree> placed;
   std::vector<Emitter> emitters;  // in the order of their lights
 };
 
-/// PartKey decides the part that a shape belongs to, and the matrix under which it is stored there.
-struct PartKey {
+/// SubtreeKey decides the subtree that a shape belongs to, and the matrix under which it is stored there.
+struct SubtreeKey {
   glm::dmat4 placed{1};
   uint flags = 0;
   glm::dmat4 baked{1};
-  /// Returns whether the shape needs no part of its own.
+  /// Returns whether the shape needs no subtree of its own.
   bool is_common() const { return placed == glm::dmat4(1) && flags == 0; }
-  bool same_part(const PartKey& other) const { return placed == other.placed && flags == other.flags; }
+  bool same_subtree(const SubtreeKey& other) const { return placed == other.placed && flags == other.flags; }
 };
-PartKey part_key(const Shape& shape, const glm::dmat4& world_from_object);
+SubtreeKey subtree_key(const Shape& shape, const glm::dmat4& world_from_object);
 
-/// Returns the record of a part as placed; `object`: InstanceRecord.object.
-InstanceRecord instance_record(const Part& part, const glm::dmat4& world_from_part, std::uint32_t object);
+/// Returns the record of a subtree as placed; `object`: InstanceRecord.object.
+InstanceRecord instance_record(const Subtree& subtree, const glm::dmat4& world_from_subtree, std::uint32_t object);
 /// Writes the box of an instance into its primitive of the top tree.
-void set_instance_box(const Part& part, const glm::dmat4& world_from_part, FlatPrimitive& instance);
+void set_instance_box(const Subtree& subtree, const glm::dmat4& world_from_subtree, FlatPrimitive& instance);
 
-/// Sets the lights of an emissive shape of a part as placed, one for each of its primitives.
-void set_emitters(const Part& part, const Part::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_part,
+/// Sets the lights of an emissive shape of a subtree as placed, one for each of its primitives.
+void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_subtree,
                   std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
 
 /// Sets the bounding sphere of the world; it is the unit sphere where the tree is empty, so that
@@ -103,7 +103,7 @@ void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
 
 /// Lowers one shape by itself into empty arrays `out` under `baked`: its primitives, with ids from
 /// 0 on.
-Part lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
+Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
                        const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "import/look.h"
+#include "import/picture_options.h"
 
 #include "base/error.h"
 #include "import/detail/text_file.h"
-#include "present/look.h"
+#include "present/picture_options.h"
 #include "present/present.h"
 
 namespace caplet {
@@ -40,7 +40,7 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
 
 }  // namespace
 
-void apply_look(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned) {
+void apply_picture_options(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned) {
   look_from(scene, options, is_turned);
   if (const auto light = options.text("light")) set_light(scene, *light, "--light");
   if (const auto backdrop = options.text("background")) scene.film.backdrop = parse_backdrop(*backdrop, images, "--background");

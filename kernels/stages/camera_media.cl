@@ -9,8 +9,8 @@ static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->rays.path_ray[item];
   ray.t_min = 0.0f;
   ray.dx = 0.371391f; ray.dy = 0.557086f; ray.dz = 0.742781f;  // any direction that scenes do not prefer
-  const Held nothing = {(uint4)(0u), g->camera.camera->medium};
-  const Held held = held_counted(&g->tree, &g->surfaces, &g->media, ray, nothing);
-  g->immersion.path_inside[item] = held.inside;
-  g->immersion.path_around[item] = held.around;
+  const MediumStack nothing = {(uint4)(0u), g->camera.camera->medium};
+  const MediumStack stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, nothing);
+  g->medium_stacks.path_inside[item] = stack.inside;
+  g->medium_stacks.path_around[item] = stack.around;
 }

@@ -14,7 +14,7 @@
 
 namespace caplet {
 
-struct Drive {
+struct LaunchPolicy {
   std::size_t batch_paths;  // under way at a time
   std::size_t local_size;   // of kernels that take one item a work-item
   bool counts_on_device;    // rounds are launched for as many paths as there may be, and several of them before the host asks
@@ -23,7 +23,7 @@ struct Drive {
   std::uint32_t sort_fan;   // sort bins that a work-item adds up
   std::size_t first_chunk;  // work-items of a launch in the beginning; 0: any number
 };
-const Drive& drive_of(Profile profile);
+const LaunchPolicy& launch_policy_of(Profile profile);
 
 /// This many rounds of a batch are launched between two queries for the number of paths left.
 inline constexpr int rounds_unasked = 4;

@@ -3,7 +3,7 @@
 //
 // This loops over all groups of primitives; a ray that misses the ball of a group, or of a
 // primitive, is not tested further.
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 
 #include <tbb/parallel_for.h>
 
@@ -101,7 +101,7 @@ SceneHit hit_of(SceneHit identity, const Crossing& crossing, bool leaving, const
 
 }  // namespace
 
-SceneWitness::SceneWitness(const Scene& scene) {
+SceneReference::SceneReference(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.shapes.size(); ++i) {
     shape_begin_.push_back(placed_.size());
     add(scene.shapes[i], scene.shapes[i].world_from_object, {.instance = no_instance, .shape = i});
@@ -118,18 +118,18 @@ SceneWitness::SceneWitness(const Scene& scene) {
   }
 }
 
-SceneWitness::PlacedPrimitive SceneWitness::placed(std::size_t index) const {
+SceneReference::PlacedPrimitive SceneReference::placed(std::size_t index) const {
   const Placed& placed = placed_.at(index);
   return {placed.primitive, placed.ball, object_from_world_[placed.space], placed.identity};
 }
 
-std::uint32_t SceneWitness::material(std::size_t index, std::uint32_t surface) const {
+std::uint32_t SceneReference::material(std::size_t index, std::uint32_t surface) const {
   const Placed& placed = placed_.at(index);
   const std::vector<std::uint32_t>& materials = surface_materials_[placed.space];
   return surface < materials.size() ? materials[surface] : placed.identity.material;
 }
 
-std::optional<std::size_t> SceneWitness::index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const {
+std::optional<std::size_t> SceneReference::index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const {
   if (instance != no_instance && instance >= instance_begin_.size()) return std::nullopt;
   const std::vector<std::size_t>& begin = instance == no_instance ? shape_begin_ : instance_begin_[instance];
   if (shape >= begin.size() || begin[shape] + primitive >= placed_.size()) return std::nullopt;
@@ -138,7 +138,7 @@ std::optional<std::size_t> SceneWitness::index_of(std::uint32_t instance, std::u
   return found.index;
 }
 
-void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
+void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
   object_from_world_.push_back(glm::inverse(world_from_shape));
   surface_materials_.push_back(materials_by_surface(shape));
   corner_uvs_.push_back(corner_uvs(shape));
@@ -165,7 +165,7 @@ void SceneWitness::add(const Shape& shape, const glm::dmat4& world_from_shape, c
 }
 
 /// Halves the primitives of one shape, along the axis on which their centres are furthest apart, until 32 or fewer are left.
-void SceneWitness::group(std::uint32_t begin, std::uint32_t end, const glm::dmat4& world_from_shape) {
+void SceneReference::group(std::uint32_t begin, std::uint32_t end, const glm::dmat4& world_from_shape) {
   dvec3 low(HUGE_VAL), high(-HUGE_VAL);
   for (std::uint32_t i = begin; i < end; ++i) {
     low = glm::min(low, placed_[grouped_[i]].ball.center);
@@ -194,7 +194,7 @@ void SceneWitness::group(std::uint32_t begin, std::uint32_t end, const glm::dmat
 
 /// Calls visit(placed, ray in its space) for every primitive that the ray may touch.
 template <class Visit>
-void SceneWitness::visit_touched(const Ray& ray, const Visit& visit) const {
+void SceneReference::visit_touched(const Ray& ray, const Visit& visit) const {
   Ray local = ray;
   std::uint32_t space = 0xffffffffu;
   for (const Group& group : groups_) {
@@ -211,7 +211,7 @@ void SceneWitness::visit_touched(const Ray& ray, const Visit& visit) const {
   }
 }
 
-std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
+std::optional<SceneHit> SceneReference::closest(const Ray& ray) const {
   std::optional<SceneHit> best;
   visit_touched(ray, [&](const Placed& placed, const Ray& local) {
     for (const Crossing& crossing : crossings(placed.primitive, local)) {
@@ -225,14 +225,14 @@ std::optional<SceneHit> SceneWitness::closest(const Ray& ray) const {
   return best;
 }
 
-std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::size_t limit) const {
+std::vector<SceneHit> SceneReference::all(const Ray& ray, std::size_t limit) const {
   std::vector<std::uint32_t> near;
   std::vector<SceneHit> out = all(ray, near);
   out.resize(std::min(out.size(), limit));
   return out;
 }
 
-std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::vector<std::uint32_t>& near) const {
+std::vector<SceneHit> SceneReference::all(const Ray& ray, std::vector<std::uint32_t>& near) const {
   std::vector<SceneHit> out;
   near.clear();
   visit_touched(ray, [&](const Placed& placed, const Ray& local) {
@@ -247,7 +247,7 @@ std::vector<SceneHit> SceneWitness::all(const Ray& ray, std::vector<std::uint32_
   return out;
 }
 
-dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
+dvec3 SceneReference::normal(const SceneHit& hit, const dvec3& point) const {
   const Placed& placed = placed_.at(hit.index);
   const glm::dmat4& m = object_from_world_[placed.space];
   const dvec3 local = normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
@@ -255,7 +255,7 @@ dvec3 SceneWitness::normal(const SceneHit& hit, const dvec3& point) const {
   return placed.reversed != placed.turned ? -out : out;
 }
 
-glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point, const dvec3& direction) const {
+glm::dvec2 SceneReference::uv(const SceneHit& hit, const dvec3& point, const dvec3& direction) const {
   const Placed& placed = placed_.at(hit.index);
   const dvec3 own(object_from_world_[placed.space] * glm::dvec4(point, 1));
   const glm::dvec2 at =
@@ -267,7 +267,7 @@ glm::dvec2 SceneWitness::uv(const SceneHit& hit, const dvec3& point, const dvec3
   return (1 - at.y) * ((1 - at.x) * corners[0] + at.x * corners[1]) + at.y * ((1 - at.x) * corners[2] + at.x * corners[3]);
 }
 
-std::vector<std::optional<SceneHit>> SceneWitness::closest(std::span<const Ray> rays) const {
+std::vector<std::optional<SceneHit>> SceneReference::closest(std::span<const Ray> rays) const {
   std::vector<std::optional<SceneHit>> out(rays.size());
   tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) { out[i] = closest(rays[i]); });
   return out;

@@ -66,8 +66,8 @@ class Parameters {
   std::map<std::string, std::string> images_;
 };
 
-Look added(Scene& scene, const Material& material) {
-  Look out;
+MeshMaterial added(Scene& scene, const Material& material) {
+  MeshMaterial out;
   out.material = narrow<std::uint32_t>(scene.materials.size());
   scene.materials.push_back(material);
   return out;
@@ -84,7 +84,7 @@ double alpha_of(double roughness) {
 
 }  // namespace
 
-Look read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images,
+MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images,
                    Notes& notes) {
   const SourceLocation where = file.place(node);
   std::string code = SceneFile::text_of(node.child("code"));

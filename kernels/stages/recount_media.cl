@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Recounts, before paths travel, the boundaries that contain rays which began where several
+// Recounts, before distances are sampled, the boundaries that contain rays which began where several
 // surfaces are at one place, and finds whether their hits are at such a place.
 #include "stages/crossings.cl"
 #include "media/passing.cl"
@@ -12,13 +12,13 @@ static void stage_item(const Stage* g, uint item) {
   const RayRecord ray = g->rays.path_ray[path];
   const HitRecord hit = g->rays.path_hit[path];
   const int begins = (g->carried.path_flags[path] >> PATH_DEPTH_SHIFT) == 0u && ray.t_min == 0.0f;
-  if (!begins && g->immersion.path_near[path] == CAPLET_UNSETTLED) {
-    Held held = {g->immersion.path_inside[path], g->immersion.path_around[path]};
-    held = held_counted(&g->tree, &g->surfaces, &g->media, ray, held);
-    g->immersion.path_inside[path] = held.inside;
-    g->immersion.path_around[path] = held.around;
+  if (!begins && g->medium_stacks.path_near[path] == CAPLET_RECOUNT) {
+    MediumStack stack = {g->medium_stacks.path_inside[path], g->medium_stacks.path_around[path]};
+    stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, stack);
+    g->medium_stacks.path_inside[path] = stack.inside;
+    g->medium_stacks.path_around[path] = stack.around;
   }
-  g->immersion.path_near[path] = CAPLET_ALONE;
+  g->medium_stacks.path_near[path] = CAPLET_ALONE;
   if (hit.slot == CAPLET_NONE) return;
 
   RayRecord around = ray;
@@ -43,5 +43,5 @@ static void stage_item(const Stage* g, uint item) {
     g->rays.path_hit[path] = other;
     near = CAPLET_NEAR;
   }
-  if (near == CAPLET_NEAR) g->immersion.path_near[path] = left == CAPLET_NONE ? CAPLET_NEAR : CAPLET_NEAR_LEFT + left;
+  if (near == CAPLET_NEAR) g->medium_stacks.path_near[path] = left == CAPLET_NONE ? CAPLET_NEAR : CAPLET_NEAR_LEFT + left;
 }

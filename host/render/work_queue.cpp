@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "render/detail/shares.h"
+#include "render/detail/work_queue.h"
 
 #include <algorithm>
 #include <numeric>
@@ -56,13 +56,13 @@ FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples
   return part;
 }
 
-Shares::Shares(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
+WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
                std::vector<Worker> workers)
     : begin_(begin), end_(begin + count), begun_end_(begin), open_(again.begin(), again.end()), workers_(std::move(workers)) {
   if (count > 0) open_.push_back({window, begin, count});
 }
 
-std::optional<FilmPart> Shares::take(std::size_t worker) {
+std::optional<FilmPart> WorkQueue::take(std::size_t worker) {
   Worker& to = workers_[worker];
   if (open_.empty() || !to.there) return {};
   const FilmPart from = open_.front();
@@ -97,14 +97,14 @@ std::optional<FilmPart> Shares::take(std::size_t worker) {
   return part;
 }
 
-void Shares::done(std::size_t worker, double seconds) {
+void WorkQueue::done(std::size_t worker, double seconds) {
   Worker& by = workers_[worker];
   by.speed.measured(paths_of(*by.under_way), seconds);
   paths_done_ += new_paths(*by.under_way);
   by.under_way.reset();
 }
 
-void Shares::lose(std::size_t worker, std::span<const FilmPart> had) {
+void WorkQueue::lose(std::size_t worker, std::span<const FilmPart> had) {
   Worker& lost = workers_[worker];
   lost.there = false;
   for (const FilmPart& part : had) paths_done_ -= new_paths(part);
@@ -114,7 +114,7 @@ void Shares::lose(std::size_t worker, std::span<const FilmPart> had) {
   std::ranges::stable_sort(open_, {}, &FilmPart::sample_begin);
 }
 
-void Shares::close() {
+void WorkQueue::close() {
   end_ = begun_end_;
   std::deque<FilmPart> left;
   for (FilmPart part : open_) {
@@ -125,19 +125,19 @@ void Shares::close() {
   open_ = std::move(left);
 }
 
-bool Shares::complete() const {
+bool WorkQueue::complete() const {
   return open_.empty() && std::ranges::none_of(workers_, [](const Worker& each) { return each.under_way.has_value(); });
 }
 
-std::size_t Shares::workers_there() const {
+std::size_t WorkQueue::workers_there() const {
   return static_cast<std::size_t>(std::ranges::count_if(workers_, [](const Worker& each) { return each.there; }));
 }
 
-double Shares::open_paths() const {
+double WorkQueue::open_paths() const {
   return std::accumulate(open_.begin(), open_.end(), 0.0, [](double sum, const FilmPart& part) { return sum + paths_of(part); });
 }
 
-double Shares::new_paths(const FilmPart& part) const {
+double WorkQueue::new_paths(const FilmPart& part) const {
   const std::uint32_t end = end_of(part), first = std::min(end, std::max(part.sample_begin, begin_));
   return static_cast<double>(part.window.pixels()) * (end - first);
 }

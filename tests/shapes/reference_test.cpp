@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The witness on cases whose answer is known without it.
+// The reference on cases whose answer is known without it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@
 #include <set>
 #include <tuple>
 
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "reference/solver.h"
 
 namespace {
@@ -62,14 +62,14 @@ void expect_surfaces(const Primitive& primitive, const Ray& ray, std::initialize
   }
 }
 
-TEST(Witness, SphereOnItsAxes) {
+TEST(Reference, SphereOnItsAxes) {
   expect_crossings(Sphere{{1, 2, 3}, 2}, {{1, 2, -7}, {0, 0, 1}}, {8, 12});
   expect_crossings(Sphere{{1, 2, 3}, 2}, {{1, 2, -7}, {0, 0, 4}}, {2, 3});
   expect_crossings(Sphere{{1, 2, 3}, 2}, {{1, 2, -7}, {0, 0, -0.5}}, {-24, -16});
   expect_crossings(Sphere{{1, 2, 3}, 2}, {{3.0001, 2, -7}, {0, 0, 1}}, {});
 }
 
-TEST(Witness, CapsuleAlongAndAcross) {
+TEST(Reference, CapsuleAlongAndAcross) {
   const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 0.5, 0.5};
   expect_crossings(capsule, {{0, 0, -3}, {0, 0, 1}}, {2.5, 7.5});
   expect_crossings(capsule, {{3, 0, 2}, {-1, 0, 0}}, {2.5, 3.5});
@@ -78,7 +78,7 @@ TEST(Witness, CapsuleAlongAndAcross) {
 }
 
 // The silhouette of the tangent cone in the xz plane: half angle a with sin a = (r0 - r1) / L; at x = q + r n on the generator.
-TEST(Witness, TaperedCapsuleIsTheTangentHull) {
+TEST(Reference, TaperedCapsuleIsTheTangentHull) {
   const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 2, 1};
   const double k = 1.0 / 4, c = std::sqrt(1 - k * k);
   for (const double s : {0.1, 0.5, 0.9}) {
@@ -97,7 +97,7 @@ TEST(Witness, TaperedCapsuleIsTheTangentHull) {
   expect_crossings(Capsule{{0, 0, 0}, {0, 0, 4}, 2, 0}, {{0, 0, -5}, {0, 0, 1}}, {3, 9});
 }
 
-TEST(Witness, TriangleAndDisk) {
+TEST(Reference, TriangleAndDisk) {
   const Triangle triangle{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   expect_crossings(triangle, {{0.2, 0.3, 0}, {0, 0, 0.5}}, {2});
   expect_crossings(triangle, {{0.2, 0.3, 3}, {0, 0, -1}}, {2});
@@ -119,7 +119,7 @@ TEST(Witness, TriangleAndDisk) {
   EXPECT_LE(margin(flat, grazing), inside);
 }
 
-TEST(Witness, OpenShapesSayWhetherTheRayGoesAlongTheNormal) {
+TEST(Reference, OpenShapesSayWhetherTheRayGoesAlongTheNormal) {
   const Triangle triangle{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   expect_surfaces(triangle, {{0.2, 0.3, 0}, {0, 0, 0.5}}, {{2, 0, true}});
   expect_surfaces(triangle, {{0.2, 0.3, 3}, {0, 0, -1}}, {{2, 0, false}});
@@ -134,9 +134,9 @@ TEST(Witness, OpenShapesSayWhetherTheRayGoesAlongTheNormal) {
   EXPECT_NEAR(value(ring, {0, 0.5, 1}), 0.5, rounding);
 }
 
-TEST(Witness, CylindersAndCones) {
+TEST(Reference, CylindersAndCones) {
   const auto cylinder = [](bool round0, bool open0, bool round1, bool open1) {
-    return make_spool({0, 0, 0}, {0, 0, 4}, {1, round0, open0}, {1, round1, open1});
+    return make_frustum({0, 0, 0}, {0, 0, 4}, {1, round0, open0}, {1, round1, open1});
   };
   const Ray along{{0.6, 0, -2}, {0, 0, 1}}, across{{-3, 0, 2}, {2, 0, 0}};
   expect_surfaces(cylinder(false, false, false, false), along, {{2, 1, false}, {6, 2, true}});
@@ -149,17 +149,17 @@ TEST(Witness, CylindersAndCones) {
   expect_surfaces(cylinder(false, true, false, true), {{-3, 0, 1}, {1, 0, 1}}, {{2, 0, false}});
 
   // A frustum whose side has slope 1, and its apex.
-  const Spool frustum = make_spool({0, 0, 0}, {0, 0, 2}, {3, false, false}, {1, false, false});
+  const Frustum frustum = make_frustum({0, 0, 0}, {0, 0, 2}, {3, false, false}, {1, false, false});
   expect_surfaces(frustum, {{-5, 0, 1}, {1, 0, 0}}, {{3, 0, false}, {7, 0, true}});
   expect_surfaces(frustum, {{2, 0, 5}, {0, 0, -1}}, {{4, 0, false}, {5, 1, true}});
-  const Spool cone = make_spool({0, 0, 0}, {0, 0, 2}, {2, false, false}, {0, false, false});
+  const Frustum cone = make_frustum({0, 0, 0}, {0, 0, 2}, {2, false, false}, {0, false, false});
   expect_surfaces(cone, {{0, 0, 5}, {0, 0, -1}}, {{3, 0, false}, {5, 1, true}});
   EXPECT_NEAR(value(cone, {0, 0, 3}), 1, rounding);
   EXPECT_NEAR(value(cone, {2, 0, 1}), std::sqrt(0.5), rounding);
 
   // Round ends of two radii: the tapered capsule.
   const Capsule tapered{{0, 0, 0}, {0, 0, 4}, 2, 1};
-  const Spool same = make_spool(tapered.p0, tapered.p1, {2, true, false}, {1, true, false});
+  const Frustum same = make_frustum(tapered.p0, tapered.p1, {2, true, false}, {1, true, false});
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {
     const dvec3 x = 3.0 * random_vector(random);
@@ -173,35 +173,35 @@ TEST(Witness, CylindersAndCones) {
 }
 
 // The hull of a disk and a ball, by its definition: points between a point of the one and a point of the other.
-TEST(Witness, MixedEndsAreTheHullOfADiskAndABall) {
+TEST(Reference, MixedEndsAreTheHullOfADiskAndABall) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform;
   for (const auto& [disk, ball, length] :
        {std::tuple(2.0, 1.0, 3.0), {1.0, 2.0, 3.0}, {1.0, 1.0, 0.5}, {0.0, 1.0, 2.0}, {3.0, 2.0, 1.0}}) {
-    const Spool spool = make_spool({0, 0, 0}, {0, 0, length}, {disk, false, false}, {ball, true, false});
+    const Frustum frustum = make_frustum({0, 0, 0}, {0, 0, length}, {disk, false, false}, {ball, true, false});
     double greatest = -HUGE_VAL;
     for (int i = 0; i < 100000; ++i) {
       const double a = full_turn * uniform(random);
       const dvec3 p = disk * dvec3(std::cos(a), std::sin(a), 0);
       const dvec3 q = dvec3(0, 0, length) + ball * glm::normalize(random_vector(random));
-      greatest = std::max(greatest, value(spool, p + uniform(random) * (q - p)));
+      greatest = std::max(greatest, value(frustum, p + uniform(random) * (q - p)));
     }
     EXPECT_LE(greatest, 1e-12);
-    // And no larger: a plane that touches the spool touches the disk or the ball.
+    // And no larger: a plane that touches the frustum touches the disk or the ball.
     for (int i = 0; i < 1000; ++i) {
       const dvec3 n = glm::normalize(random_vector(random));
       const double support = std::max(disk * std::hypot(n.x, n.y), n.z * length + ball);
       for (int k = 0; k < 10; ++k) {
         const dvec3 x = (1 + std::abs(uniform(random))) * support * n + 3.0 * glm::cross(n, random_vector(random));
         if (glm::dot(n, x) > support) {
-          EXPECT_GE(value(spool, x), glm::dot(n, x) - support - 1e-12);
+          EXPECT_GE(value(frustum, x), glm::dot(n, x) - support - 1e-12);
         }
       }
     }
   }
 }
 
-TEST(Witness, BoxesAndPolyhedra) {
+TEST(Reference, BoxesAndPolyhedra) {
   const Box box{{{-1, -2, -3}, {1, 2, 3}}};
   expect_surfaces(box, {{-5, 0.5, 0.5}, {2, 0, 0}}, {{2, 0, false}, {3, 1, true}});
   expect_surfaces(box, {{0.5, 5, 0.5}, {0, -1, 0}}, {{3, 3, false}, {7, 2, true}});
@@ -215,7 +215,7 @@ TEST(Witness, BoxesAndPolyhedra) {
   expect_surfaces(tetrahedron, {{1.25, 0, 1.25}, {0, 1, 0}}, {{1, 1, false}, {1.5, 3, true}});
 }
 
-TEST(Witness, PartsOfSpheresAndTubes) {
+TEST(Reference, PartsOfSpheresAndTubes) {
   const PartialSphere sphere{2, -1, 1.5, 4.71238898038469};
   expect_surfaces(sphere, {{-5, 0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}, {5 + std::sqrt(4 - 0.01), 0, true}});
   expect_surfaces(sphere, {{-5, -0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}});
@@ -230,7 +230,7 @@ TEST(Witness, PartsOfSpheresAndTubes) {
   EXPECT_NEAR(value(tube, {3, 0, 4}), std::sqrt(8), rounding);
 }
 
-TEST(Witness, BilinearPatches) {
+TEST(Reference, BilinearPatches) {
   // z = x y: two crossings of a line along (1, -1) below, where x y is concave.
   const Bilinear saddle{{-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, 1}};
   expect_surfaces(saddle, {{0.5, 0.25, -3}, {0, 0, 1}}, {{3.125, 0, true}});
@@ -249,7 +249,7 @@ TEST(Witness, BilinearPatches) {
 }
 
 // However sharply a patch is folded: its own points are no distance from it, and no other of its points is nearer than that.
-TEST(Witness, DistanceFromFoldedPatches) {
+TEST(Reference, DistanceFromFoldedPatches) {
   // Where two extremes meet, rounding of the squared distance (2^-52) may hide them.
   constexpr double hidden = 0x1p-26;
   std::mt19937 random(8);
@@ -273,9 +273,9 @@ TEST(Witness, DistanceFromFoldedPatches) {
 }
 
 // Away from edges the gradient says the same; beside one it is that of the surface asked for, however close the other is.
-TEST(Witness, NormalsOfSurfaces) {
-  const Spool cone = make_spool({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
-  const Spool bullet = make_spool({1, 0, 0}, {5, 0, 0}, {1, false, false}, {2, true, false});
+TEST(Reference, NormalsOfSurfaces) {
+  const Frustum cone = make_frustum({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
+  const Frustum bullet = make_frustum({1, 0, 0}, {5, 0, 0}, {1, false, false}, {2, true, false});
   const Box box{{{-1, -2, -3}, {1, 2, 3}}};
   const std::array normals = {dvec3(0, 0, 2), dvec3(3, 0, -1), dvec3(-1, 2, -1), dvec3(-1, -2, -1)};
   const std::array offsets = {1.0, 1.0, 1.0, 1.0};
@@ -306,7 +306,7 @@ TEST(Witness, NormalsOfSurfaces) {
   EXPECT_LT(glm::length(normal_of_surface(Sphere{{1, 0, 0}, 2}, {3, 0, 0}, 0, 1e-3) - dvec3(1, 0, 0)), 1e-9);
 }
 
-TEST(Witness, CsgByMembership) {
+TEST(Reference, CsgByMembership) {
   const auto moved = [](const dvec3& by) { return glm::translate(glm::dmat4(1), by); };
   const Csg lens = make_csg(Csg::Operation::set_intersection, std::vector<CsgPart>{{Sphere{{0, 0, 0}, 2}, moved({0, 0, -1})},
                                                                                    {Sphere{{0, 0, 0}, 2}, moved({0, 0, 1})}});
@@ -325,7 +325,7 @@ TEST(Witness, CsgByMembership) {
 
 // All sign changes of the value, by excluding intervals that a 1-Lipschitz function cannot change sign in: no use is made of the
 // operands' own crossings.
-TEST(Witness, CsgCrossingsAreTheSignChangesOfTheValue) {
+TEST(Reference, CsgCrossingsAreTheSignChangesOfTheValue) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform;
   int crossed = 0;
@@ -337,7 +337,7 @@ TEST(Witness, CsgCrossingsAreTheSignChangesOfTheValue) {
                                       dvec3(0.3 + uniform(random), 0.3 + uniform(random), 0.3 + uniform(random)));
       const Primitive primitive = k == 0   ? Primitive(Box{{{-1, -1, -1}, {1, 1, 1}}})
                                   : k == 1 ? Primitive(Sphere{})
-                                  : k == 2 ? Primitive(make_spool({0, 0, -1}, {0, 0, 1}, {1, false, false}, {0.5, false, false}))
+                                  : k == 2 ? Primitive(make_frustum({0, 0, -1}, {0, 0, 1}, {1, false, false}, {0.5, false, false}))
                                            : Primitive(Capsule{{0, 0, -1}, {0, 0, 1}, 0.5, 0.3});
       parts.push_back({primitive, m});
     }
@@ -376,14 +376,14 @@ TEST(Witness, CsgCrossingsAreTheSignChangesOfTheValue) {
   EXPECT_GT(crossed, 500);
 }
 
-TEST(Witness, MarginIsTheDistanceToTangency) {
+TEST(Reference, MarginIsTheDistanceToTangency) {
   const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 0.5, 0.5};
   EXPECT_NEAR(margin(capsule, {{5, 0.3, 2}, {-1, 0, 0}}), 0.2, rounding);
   EXPECT_NEAR(margin(capsule, {{5, 0.7, 2}, {-1, 0, 0}}), -0.2, rounding);
 }
 
 // The solver uses convexity, the referee does not.
-TEST(Witness, SolverAgreesWithReferee) {
+TEST(Reference, SolverAgreesWithReferee) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;
   int hits = 0;
@@ -406,7 +406,7 @@ TEST(Witness, SolverAgreesWithReferee) {
   EXPECT_LT(hits, 1900);
 }
 
-TEST(Witness, UselessRaysMiss) {
+TEST(Reference, UselessRaysMiss) {
   const double nan = std::nan(""), inf = HUGE_VAL;
   const Sphere sphere{{0, 0, 0}, 1};
   EXPECT_TRUE(crossings(sphere, {{nan, 0, 0}, {0, 0, 1}}).empty());
@@ -416,7 +416,7 @@ TEST(Witness, UselessRaysMiss) {
   EXPECT_TRUE(closest(sphere, {{0, 0, -3}, {0, 0, 1}, 2, inf})->leaving);
 }
 
-TEST(SceneWitness, InstancesKeepT) {
+TEST(SceneReference, InstancesKeepT) {
   Scene scene;
   Shape capsules;
   capsules.geometry = CapsulesShape{{{0, 0, 0}, {5, 0, 0}}, {{0, 0, 1}, {5, 0, 1}}, {0.5f, 0.5f}, {}, {}};
@@ -426,11 +426,11 @@ TEST(SceneWitness, InstancesKeepT) {
   sphere.world_from_object = glm::scale(glm::dmat4(1), {1, 1, 3});
   scene.objects.push_back({"ellipsoid", {sphere}, {}});
   scene.instances.push_back({0, glm::translate(glm::dmat4(1), {10, 0, 2}), {}});
-  const SceneWitness witness(scene);
-  EXPECT_EQ(witness.size(), 3u);
+  const SceneReference reference(scene);
+  EXPECT_EQ(reference.size(), 3u);
   const std::vector<Ray> rays = {
       {{5, 0, -9.5}, {0, 0, 2}}, {{10, 0, -13}, {0, 0, 2}}, {{-9, 0, 0}, {1, 0, 0}}, {{0, 0, 9}, {0, 1, 0}}};
-  const auto hits = witness.closest(rays);
+  const auto hits = reference.closest(rays);
   ASSERT_TRUE(hits[0] && hits[1] && hits[2]);
   EXPECT_NEAR(hits[0]->t, 4.5, rounding);
   EXPECT_EQ(hits[0]->primitive, 1u);
@@ -441,7 +441,7 @@ TEST(SceneWitness, InstancesKeepT) {
   EXPECT_FALSE(hits[3]);
 }
 
-TEST(SceneWitness, SurfacesMaterialsAndNormals) {
+TEST(SceneReference, SurfacesMaterialsAndNormals) {
   Scene scene;
   Shape box;
   box.geometry = BoxShape{{-1, -1, -1}, {1, 1, 1}};
@@ -462,16 +462,16 @@ TEST(SceneWitness, SurfacesMaterialsAndNormals) {
   tube.one_sided = true;
   tube.reverse_orientation = true;
   scene.shapes.push_back(tube);
-  const SceneWitness witness(scene);
+  const SceneReference reference(scene);
 
   const Ray ray{{-9, 0, 0.1}, {2, 0, 0}};
-  const auto hits = witness.all(ray);
+  const auto hits = reference.all(ray);
   // The tube is seen from inside alone, then the bite, which is its sphere's inside, then the far face: that of the least x.
   ASSERT_EQ(hits.size(), 3u);
   EXPECT_NEAR(hits[0].t, 5, rounding);
   EXPECT_EQ(hits[0].material, 30u);
   EXPECT_TRUE(hits[0].leaving);
-  EXPECT_LT(glm::length(witness.normal(hits[0], {1, 0, 0.1}) - dvec3(-1, 0, 0)), 1e-9);
+  EXPECT_LT(glm::length(reference.normal(hits[0], {1, 0, 0.1}) - dvec3(-1, 0, 0)), 1e-9);
   const double chord = std::sqrt(0.25 - 0.05 * 0.05);
   EXPECT_NEAR(hits[1].t, (9 + 4 + chord) / 2, 10 * rounding);
   EXPECT_EQ(hits[1].surface, 6u);
@@ -479,14 +479,14 @@ TEST(SceneWitness, SurfacesMaterialsAndNormals) {
   EXPECT_EQ(hits[1].instance, 0u);
   EXPECT_FALSE(hits[1].leaving);
   // The normal is that of the ellipsoid with half axes 1/2 and 1, into its middle.
-  EXPECT_LT(glm::length(witness.normal(hits[1], {4 + chord, 0, 0.1}) + glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))), 1e-6);
+  EXPECT_LT(glm::length(reference.normal(hits[1], {4 + chord, 0, 0.1}) + glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))), 1e-6);
   EXPECT_NEAR(hits[2].t, (9 + 6) / 2.0, 10 * rounding);
   EXPECT_EQ(hits[2].surface, 0u);
   EXPECT_EQ(hits[2].material, 10u);
-  EXPECT_LT(glm::length(witness.normal(hits[2], {6, 0, 0.1}) - dvec3(1, 0, 0)), 1e-9);
+  EXPECT_LT(glm::length(reference.normal(hits[2], {6, 0, 0.1}) - dvec3(1, 0, 0)), 1e-9);
 
-  EXPECT_EQ(witness.all(ray, 2).size(), 2u);
-  const auto first = witness.closest(ray);
+  EXPECT_EQ(reference.all(ray, 2).size(), 2u);
+  const auto first = reference.closest(ray);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->t, hits[0].t);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// SceneWitness is the reference implementation of a whole scene. It tests every ray against every
+// SceneReference is the reference implementation of a whole scene. It tests every ray against every
 // primitive, without a tree: primitives are only skipped in groups whose common ball the ray
 // misses. Primitives stay in their object space; rays are transformed there by matrices inverted in
 // double, not normalised, so that t is the same in all spaces.
@@ -33,9 +33,9 @@ struct SceneHit {
 };
 inline constexpr std::uint32_t no_instance = 0xffffffffu;
 
-class SceneWitness {
+class SceneReference {
  public:
-  explicit SceneWitness(const Scene& scene);
+  explicit SceneReference(const Scene& scene);
   /// Returns the nearest hit with t_min < t < t_max over all primitives; the first in scene order
   /// among equals.
   std::optional<SceneHit> closest(const Ray& ray) const;
@@ -58,7 +58,7 @@ class SceneWitness {
   std::size_t size() const { return placed_.size(); }
 
   /// PlacedPrimitive is a primitive of the scene, instances expanded. References last as long as
-  /// the witness.
+  /// the reference.
   struct PlacedPrimitive {
     const Primitive& primitive;
     const Ball& ball;  // object space

@@ -15,7 +15,7 @@
 
 #include "import/import.h"
 #include "lower/lower.h"
-#include "render/detail/drive.h"
+#include "render/detail/launch_policy.h"
 #include "render/device_scene.h"
 #include "render/render.h"
 #include "render_scene.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// First-hit layers of rendered pictures, pixel by pixel, against the witness along the same camera rays.
+// First-hit layers of rendered pictures, pixel by pixel, against the reference along the same camera rays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "film/develop.h"
 #include "import/import.h"
 #include "lower/camera.h"
-#include "reference/scene_witness.h"
+#include "reference/scene_reference.h"
 #include "scene_text.h"
 
 namespace caplet::test {
@@ -32,10 +32,10 @@ bool same_place(const std::optional<SceneHit>& a, const std::optional<SceneHit>&
 }
 
 /// Whether rays a little beside this one hit the same: no edge is near, where rounding may decide.
-bool is_clear(const reference::SceneWitness& witness, const reference::Ray& ray, const std::optional<SceneHit>& hit) {
+bool is_clear(const reference::SceneReference& reference, const reference::Ray& ray, const std::optional<SceneHit>& hit) {
   for (const dvec3 step : {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)})
     for (const double sign : {-1e-4, 1e-4})
-      if (!same_place(witness.closest({ray.origin, ray.direction + sign * step}), hit)) return false;
+      if (!same_place(reference.closest({ray.origin, ray.direction + sign * step}), hit)) return false;
   return true;
 }
 
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Files, LayersOfScene,
                                          Case{"tests/query/solids.pbrt", 1, 96, 54},
                                          Case{"tests/render/everything.pbrt", 1, 96, 72}));
 
-TEST_P(LayersOfScene, AreTheWitnesss) {
+TEST_P(LayersOfScene, AreTheReferences) {
   const int width = GetParam().width, height = GetParam().height;
   Scene scene;
   const Rendered rendered = render_file(source_folder() / GetParam().file, GetParam().samples, [&](Scene& s) {
@@ -75,7 +75,7 @@ TEST_P(LayersOfScene, AreTheWitnesss) {
     scene = s;
   });
   const LayeredImage& image = rendered.image;
-  const reference::SceneWitness witness(scene);
+  const reference::SceneReference reference(scene);
   int compared = 0, edges = 0, normals = 0;
   std::set<std::uint32_t> objects, primitives;
   for (int y = 0; y < height; ++y)
@@ -83,8 +83,8 @@ TEST_P(LayersOfScene, AreTheWitnesss) {
       const auto i = static_cast<std::size_t>(y * width + x);
       SCOPED_TRACE(std::to_string(x) + ", " + std::to_string(y));
       const reference::Ray ray = ray_through(scene, x, y);
-      const std::optional<SceneHit> hit = witness.closest(ray);
-      if (!is_clear(witness, ray, hit)) {
+      const std::optional<SceneHit> hit = reference.closest(ray);
+      if (!is_clear(reference, ray, hit)) {
         ++edges;
         continue;
       }
@@ -105,7 +105,7 @@ TEST_P(LayersOfScene, AreTheWitnesss) {
       primitives.insert(primitive);
       const dvec3 expected = ray.origin + hit->t * ray.direction, point = at3(image, "P", "XYZ", i),
                   n = at3(image, "N", "XYZ", i);
-      dvec3 normal = witness.normal(*hit, expected);
+      dvec3 normal = reference.normal(*hit, expected);
       if (glm::dot(normal, ray.direction) > 0) normal = -normal;
       EXPECT_LE(glm::length(n), 1);
       EXPECT_GT(glm::length(n), 1 - 1e-6);
@@ -117,7 +117,7 @@ TEST_P(LayersOfScene, AreTheWitnesss) {
       EXPECT_LE(glm::length(point - expected), bound);
       if (has_smooth_normals(shape_of(scene, *hit))) continue;
       ++normals;
-      // The witness's normals are differences over 1e-6 of a primitive's size, of values in double.
+      // The reference's normals are differences over 1e-6 of a primitive's size, of values in double.
       EXPECT_LT(glm::length(n - normal), 2e-3);
     }
   EXPECT_LT(edges, 0.2 * width * height);

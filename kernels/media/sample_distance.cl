@@ -12,8 +12,8 @@
 // A path keeps its throughput over the mean of the densities with which each of the four
 // wavelengths as the hero would have made it: `scattering` are these, with mean 1. `light` are the
 // densities, in the same measure, of the same path with its last ray made as a shadow ray.
-#ifndef CAPLET_MEDIA_TRAVEL_CL
-#define CAPLET_MEDIA_TRAVEL_CL
+#ifndef CAPLET_MEDIA_SAMPLE_DISTANCE_CL
+#define CAPLET_MEDIA_SAMPLE_DISTANCE_CL
 
 #include "math/rng.cl"
 #include "media/media.cl"
@@ -54,7 +54,7 @@ static inline float4 uniform_emission(MediumPoint at, float d) {
   return at.sigma_a * at.le * d * select(exact, series, depth < 1e-2f);
 }
 
-static inline int travel_uniform(MediumPoint at, float d, int scatters, float u, MediumWeights* w, float4* emitted, float* length_gone) {
+static inline int sample_distance_uniform(MediumPoint at, float d, int scatters, float u, MediumWeights* w, float4* emitted, float* length_gone) {
   d = fmin(d, CAPLET_FARTHEST);
   const float4 sigma_t = at.sigma_a + at.sigma_s;
   if (scatters && max4(at.le) > 0.0f) *emitted += w->throughput * uniform_emission(at, d);
@@ -103,7 +103,7 @@ static inline int collides(float4 majorant, float most, float u, MediumWeights* 
   return 0;
 }
 
-static inline int travel_varying(uint kind, const MediumView* view, float3 o, float3 d, float t0, float t1, int scatters, float u, MediumNumbers* numbers,
+static inline int sample_distance_varying(uint kind, const MediumView* view, float3 o, float3 d, float t0, float t1, int scatters, float u, MediumNumbers* numbers,
                                  MediumWeights* w, float4* emitted, float* t_scattered) {
   const MediumBox box = medium_box(kind, view);
   MajorantWalk walk;
@@ -153,15 +153,15 @@ static inline int travel_varying(uint kind, const MediumView* view, float3 o, fl
 // Travels from t0 to t1 (which may be infinite) along o + t d. scatters: scattered paths go on, and
 // emission counts. u: for the first length. Adds the medium's emission to *emitted; *t_scattered:
 // where a ray is scattered.
-static inline int medium_travel(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1, int scatters,
+static inline int medium_sample_distance(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1, int scatters,
                                 float u, MediumNumbers* numbers, MediumWeights* w, float4* emitted, float* t_scattered) {
   const uint kind = media->mediums[medium].kind;
   const MediumView view = medium_view(media, spectra, medium, lambda);
   if (any_varying_medium && !medium_is_uniform(kind))
-    return travel_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted, t_scattered);
+    return sample_distance_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted, t_scattered);
   const float unit = length(d);
   float gone = 0.0f;
-  const int end = travel_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit, scatters, u, w, emitted, &gone);
+  const int end = sample_distance_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit, scatters, u, w, emitted, &gone);
   *t_scattered = t0 + gone / unit;
   return end;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "present/look.h"
+#include "present/picture_options.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Sizes of batches, launches and sort blocks, without a device.
-#include "render/detail/drive.h"
+#include "render/detail/launch_policy.h"
 
 #include <gtest/gtest.h>
 

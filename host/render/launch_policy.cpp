@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "render/detail/drive.h"
+#include "render/detail/launch_policy.h"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace {
 // 2^18 paths are enough rays for sorting to find neighbours, and few launches of nearly empty
 // rounds; they take 60 MB of state (decision 26). One work-item at a time suits PoCL's tracing; a
 // CPU adds up its bins one after the other.
-constexpr Drive of_cpus{.batch_paths = std::size_t{1} << 18,
+constexpr LaunchPolicy of_cpus{.batch_paths = std::size_t{1} << 18,
                         .local_size = 64,
                         .counts_on_device = false,
                         .by_sample = false,
@@ -19,7 +19,7 @@ constexpr Drive of_cpus{.batch_paths = std::size_t{1} << 18,
                         .sort_fan = 1u << 31,
                         .first_chunk = 0};
 // GPUs need whole wavefronts, and a query from the host stops all of them.
-constexpr Drive of_gpus{.batch_paths = std::size_t{1} << 20,
+constexpr LaunchPolicy of_gpus{.batch_paths = std::size_t{1} << 20,
                         .local_size = 64,
                         .counts_on_device = true,
                         .by_sample = true,
@@ -31,7 +31,7 @@ constexpr std::size_t least_chunk = std::size_t{1} << 10, most_chunk = std::size
 
 }  // namespace
 
-const Drive& drive_of(Profile profile) { return profile == Profile::gpu ? of_gpus : of_cpus; }
+const LaunchPolicy& launch_policy_of(Profile profile) { return profile == Profile::gpu ? of_gpus : of_cpus; }
 
 std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes, std::uint64_t left,
                           std::uint64_t most) {
