@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/check.h"
@@ -168,15 +169,11 @@ LightBounds TreeLights::bounds_of(const One& light) const {
   return out;
 }
 
-void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, FlatScene& out) {
-  const std::vector<TreeLights::One>& lights = all_lights.lights;
-  out.light_nodes.clear();
-  out.light_places.clear();
-  LightingRecord& record = out.lighting;
-  for (int k = 0; k < 3; ++k) record.tree_min[k] = record.tree_cell[k] = 0;
-  if (lights.empty()) return;
+namespace {
 
-  const auto boxes = std::make_unique_for_overwrite<bvh::Reference[]>(lights.size());
+/// Returns the box of each light, for the tree's builder, and the extent of all.
+std::pair<std::unique_ptr<bvh::Reference[]>, Extent> boxes_of(const std::vector<TreeLights::One>& lights) {
+  auto boxes = std::make_unique_for_overwrite<bvh::Reference[]>(lights.size());
   const Extent extent = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, lights.size(), 4096), Extent{},
       [&](const tbb::blocked_range<std::size_t>& range, Extent all) {
@@ -197,89 +194,130 @@ void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, Fla
         a.extend(b.min, b.max);
         return a;
       });
-  const Grid grid(extent.min, extent.max);
-  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, no_group, bvh::Effort::quick);
+  return {std::move(boxes), extent};
+}
 
-  // Leaves of several lights become nodes, behind the others.
-  std::vector<std::uint32_t> node_of_leaf(tree.leaves.size(), CAPLET_NONE);
-  std::size_t count = tree.nodes.size();
-  for (std::size_t i = 0; i < tree.leaves.size(); ++i)
-    if (tree.leaves[i].count > 1) node_of_leaf[i] = narrow<std::uint32_t>(count++);
+/// Writes a built tree as nodes of the device. Leaves of several lights become nodes, behind the others.
+class LightTreeWriter {
+ public:
+  LightTreeWriter(const TreeLights& lights, const bvh::Tree& tree, const Grid& grid, std::size_t light_count, FlatScene& out)
+      : lights_(lights),
+        tree_(tree),
+        grid_(grid),
+        light_count_(light_count),
+        out_(out),
+        node_of_leaf_(tree.leaves.size(), CAPLET_NONE) {
+    std::size_t count = tree.nodes.size();
+    for (std::size_t i = 0; i < tree.leaves.size(); ++i)
+      if (tree.leaves[i].count > 1) node_of_leaf_[i] = narrow<std::uint32_t>(count++);
+    out.light_nodes.assign(count * CAPLET_LIGHT_NODE, 0);
+    out.light_places.assign(light_count + count, CAPLET_NONE);
+    bounds_.resize(count);
+  }
 
-  out.light_nodes.assign(count * CAPLET_LIGHT_NODE, 0);
-  out.light_places.assign(light_count + count, CAPLET_NONE);
-  std::vector<LightBounds> bounds(count);
-  struct Writer {
-    const Grid& grid;
-    FlatScene& out;
-    std::size_t light_count;
+  void write() {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.leaves.size(), 256),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        Cosines cosines;
+                        for (std::size_t i = range.begin(); i < range.end(); ++i)
+                          if (node_of_leaf_[i] != CAPLET_NONE) write_leaf(i, cosines);
+                      });
+    Cosines cosines;
+    for (std::size_t i = tree_.nodes.size(); i-- > 0;) write_node(i, cosines);  // children before parents
+  }
+
+ private:
+  struct Cosines {
     CosineBits cone, reach;
-
-    void write(std::size_t node, std::uint32_t slot, std::uint32_t reference, const LightBounds& of) {
-      uint* const rows = &out.light_nodes[node * CAPLET_LIGHT_NODE + slot];
-      for (int k = 0; k < 3; ++k) rows[8 * k] = grid.ends(k, of.min[k], of.max[k]);
-      rows[24] = octahedral_bits(of.axis);
-      rows[32] = cone(of.cos_cone) | reach(of.cos_reach) << 16;
-      rows[40] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
-      rows[48] = reference;
-      const std::size_t place = reference & CAPLET_LIGHT_LEAF ? reference & ~CAPLET_LIGHT_LEAF : light_count + reference;
-      out.light_places[place] = narrow<uint>(node * width + slot);
-    }
   };
-  const auto light_of = [&](std::size_t ordered) -> const TreeLights::One& { return lights[tree.order[ordered]]; };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.leaves.size(), 256),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      Writer to{grid, out, light_count, {}, {}};
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        if (node_of_leaf[i] == CAPLET_NONE) continue;
-                        const bvh::Leaf& leaf = tree.leaves[i];
-                        LightBounds& all = bounds[node_of_leaf[i]];
-                        for (std::uint32_t k = 0; k < width; ++k) {
-                          if (k >= leaf.count) {
-                            out.light_nodes[node_of_leaf[i] * std::size_t{CAPLET_LIGHT_NODE} + 48 + k] = CAPLET_NONE;
-                            continue;
-                          }
-                          __builtin_prefetch(&light_of(std::min(leaf.first + k + std::size_t{ahead}, lights.size() - 1)));
-                          const TreeLights::One& light = light_of(leaf.first + k);
-                          const LightBounds of = all_lights.bounds_of(light);
-                          if (k == 0)
-                            all = of;
-                          else
-                            unite(all, of);
-                          to.write(node_of_leaf[i], k, light.light | CAPLET_LIGHT_LEAF, of);
-                        }
-                      }
-                    });
-  Writer to{grid, out, light_count, {}, {}};
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {  // children before parents
-    const bvh::Node& node = tree.nodes[i];
-    bool some = false;
-    for (std::uint32_t slot = 0; slot < width; ++slot) {
-      if (node.min[0][slot] > node.max[0][slot]) {
-        out.light_nodes[i * CAPLET_LIGHT_NODE + 48 + slot] = CAPLET_NONE;
+  /// What a slot of a node refers to, and the bounds of its lights.
+  struct Child {
+    std::uint32_t reference;
+    LightBounds bounds;
+  };
+
+  const TreeLights::One& light(std::size_t ordered) const { return lights_.lights[tree_.order[ordered]]; }
+  uint& reference_at(std::size_t node, std::uint32_t slot) {
+    return out_.light_nodes[node * std::size_t{CAPLET_LIGHT_NODE} + 48 + slot];
+  }
+  Child of_light(std::size_t ordered) const {
+    const TreeLights::One& one = light(ordered);
+    return {one.light | CAPLET_LIGHT_LEAF, lights_.bounds_of(one)};
+  }
+  Child of_node(const bvh::Node& node, std::uint32_t slot) const {
+    if (node.child[slot] >= 0) {
+      const auto number = static_cast<std::uint32_t>(node.child[slot]);
+      return {number, bounds_[number]};
+    }
+    const auto leaf = static_cast<std::uint32_t>(~node.child[slot]);
+    if (const std::uint32_t number = node_of_leaf_[leaf]; number != CAPLET_NONE) return {number, bounds_[number]};
+    return of_light(tree_.leaves[leaf].first);
+  }
+
+  void write_leaf(std::size_t at, Cosines& cosines) {
+    const bvh::Leaf& leaf = tree_.leaves[at];
+    const std::uint32_t node = node_of_leaf_[at];
+    for (std::uint32_t k = 0; k < width; ++k) {
+      if (k >= leaf.count) {
+        reference_at(node, k) = CAPLET_NONE;
         continue;
       }
-      LightBounds of;
-      std::uint32_t reference;
-      if (node.child[slot] >= 0) {
-        reference = static_cast<std::uint32_t>(node.child[slot]);
-        of = bounds[reference];
-      } else if (const auto leaf = static_cast<std::uint32_t>(~node.child[slot]); node_of_leaf[leaf] != CAPLET_NONE) {
-        reference = node_of_leaf[leaf];
-        of = bounds[reference];
-      } else {
-        const TreeLights::One& light = light_of(tree.leaves[leaf].first);
-        reference = light.light | CAPLET_LIGHT_LEAF;
-        of = all_lights.bounds_of(light);
-      }
-      if (some)
-        unite(bounds[i], of);
-      else
-        bounds[i] = of;
-      some = true;
-      to.write(i, slot, reference, of);
+      __builtin_prefetch(&light(std::min(leaf.first + k + std::size_t{ahead}, lights_.lights.size() - 1)));
+      write_slot(node, k, of_light(leaf.first + k), k == 0, cosines);
     }
   }
+
+  void write_node(std::size_t at, Cosines& cosines) {
+    const bvh::Node& node = tree_.nodes[at];
+    bool is_first = true;
+    for (std::uint32_t slot = 0; slot < width; ++slot) {
+      if (node.min[0][slot] > node.max[0][slot]) {
+        reference_at(at, slot) = CAPLET_NONE;
+        continue;
+      }
+      write_slot(at, slot, of_node(node, slot), std::exchange(is_first, false), cosines);
+    }
+  }
+
+  void write_slot(std::size_t node, std::uint32_t slot, const Child& child, bool is_first, Cosines& cosines) {
+    const LightBounds& of = child.bounds;
+    if (is_first)
+      bounds_[node] = of;
+    else
+      unite(bounds_[node], of);
+    uint* const rows = &out_.light_nodes[node * CAPLET_LIGHT_NODE + slot];
+    for (int k = 0; k < 3; ++k) rows[8 * k] = grid_.ends(k, of.min[k], of.max[k]);
+    rows[24] = octahedral_bits(of.axis);
+    rows[32] = cosines.cone(of.cos_cone) | cosines.reach(of.cos_reach) << 16;
+    rows[40] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
+    rows[48] = child.reference;
+    const bool is_light = (child.reference & CAPLET_LIGHT_LEAF) != 0;
+    const std::size_t place = is_light ? child.reference & ~CAPLET_LIGHT_LEAF : light_count_ + child.reference;
+    out_.light_places[place] = narrow<uint>(node * width + slot);
+  }
+
+  const TreeLights& lights_;
+  const bvh::Tree& tree_;
+  const Grid& grid_;
+  std::size_t light_count_;
+  FlatScene& out_;
+  std::vector<std::uint32_t> node_of_leaf_;  // CAPLET_NONE: a single light
+  std::vector<LightBounds> bounds_;          // by node
+};
+
+}  // namespace
+
+void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, FlatScene& out) {
+  const std::vector<TreeLights::One>& lights = all_lights.lights;
+  out.light_nodes.clear();
+  out.light_places.clear();
+  LightingRecord& record = out.lighting;
+  for (int k = 0; k < 3; ++k) record.tree_min[k] = record.tree_cell[k] = 0;
+  if (lights.empty()) return;
+  const auto [boxes, extent] = boxes_of(lights);
+  const Grid grid(extent.min, extent.max);
+  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, no_group, bvh::Effort::quick);
+  LightTreeWriter(all_lights, tree, grid, light_count, out).write();
   for (int k = 0; k < 3; ++k) {
     record.tree_min[k] = static_cast<float>(grid.min[k]);
     record.tree_cell[k] = static_cast<float>(grid.cell[k]);

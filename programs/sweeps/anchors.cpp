@@ -37,15 +37,15 @@ std::array<float, 3> floats(const dvec3& v) {
 
 // Score is the result of one shape and one program.
 struct Score {
-  std::uint64_t rays = 0, meets = 0;  // those that the witness says enter deeper than `clear`
+  std::uint64_t rays = 0, meets = 0;  // those that the reference says enter deeper than `clear`
   std::uint64_t lost = 0, false_hits = 0, outside = 0;
   std::uint64_t later = 0;        // hits of another crossing than the first
   double worst = 0, t_worst = 0;  // distance of o + t d from the surface; of t from the nearest crossing, along unit directions
   std::vector<double> distances;
   void add(const Case& c, bool hit, double t, double clear) {
     ++rays;
-    const auto expected = reference::closest(*c.witness, c.ray);
-    const double margin = reference::margin(*c.witness, c.ray);
+    const auto expected = reference::closest(*c.reference, c.ray);
+    const double margin = reference::margin(*c.reference, c.ray);
     meets += expected && margin > clear;
     lost += expected && margin > clear && !hit;
     false_hits += margin < -clear && hit;
@@ -56,7 +56,7 @@ struct Score {
     outside += off > c.bound;
     if (!expected) return;
     double nearest = HUGE_VAL, at = 0;
-    for (const reference::Crossing& crossing : reference::crossings(*c.witness, c.ray))
+    for (const reference::Crossing& crossing : reference::crossings(*c.reference, c.ray))
       if (std::abs(t - crossing.t) < nearest) nearest = std::abs(t - crossing.t), at = crossing.t;
     later += at > expected->t;
     t_worst = std::max(t_worst, nearest * glm::length(c.ray.direction));
@@ -77,11 +77,11 @@ struct Scores {
 // Every ray through one shape. `clear`: what a ray must enter or miss by for a loss to count, beyond the stated bound.
 Scores score(const Device& device, const FlatPrimitive& shape, const std::vector<RayRecord>& rays, double clear) {
   Scores out;
-  const reference::Primitive witness = witness_of(shape);
+  const reference::Primitive reference = reference_of(shape);
   const std::vector<std::uint32_t> which(rays.size(), 0);
   const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{shape}).list(which, rays, 8);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Case c = make_case(shape, witness, rays[i]);
+    const Case c = make_case(shape, reference, rays[i]);
     out.ours.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, std::max(clear, c.bound));
     out.held = out.held && judge(c, listed[i], 8).wrong.empty();
   }
@@ -90,7 +90,7 @@ Scores score(const Device& device, const FlatPrimitive& shape, const std::vector
   const Peer peer(std::span(&shape, 1), PeerMode::robust);
   const auto hits = peer.closest(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Case c = make_case(shape, witness, rays[i]);
+    const Case c = make_case(shape, reference, rays[i]);
     out.embree.add(c, hits[i].id != CAPLET_NONE, hits[i].t, std::max(clear, c.bound));
   }
 #endif
@@ -136,11 +136,11 @@ void thin_curves(const Device& device, int rays, Anchors& out) {
     for (int shape = 0; shape < 20; ++shape) {
       const dvec3 axis = maker.direction(), center = place * maker.direction();
       const FlatPrimitive p = make_capsule(floats(center - 0.5 * axis), floats(center + 0.5 * axis), 0.00375f);
-      const reference::Primitive witness = witness_of(p);
+      const reference::Primitive reference = reference_of(p);
       std::vector<RayRecord> list;
       for (int i = 0; i < rays / 20; ++i) {
         dvec3 n;
-        const dvec3 on = maker.surface_point(p, witness, &n), d = maker.direction();
+        const dvec3 on = maker.surface_point(p, reference, &n), d = maker.direction();
         list.push_back(make_ray(on - maker.uniform(2, 9) * d, d));
       }
       Scores s = score(device, p, list, 0);
@@ -174,7 +174,7 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
       "to (x, 0, "
       "0), half of the rays from a tenth of the length to one length away, half of them from one to ten radii. The report names "
       "no radius; "
-      "these are 1 and 10. A ray counts as lost when the witness says that it enters deeper than the stated bound and a "
+      "these are 1 and 10. A ray counts as lost when the reference says that it enters deeper than the stated bound and a "
       "hundredth of the "
       "radius.\n\n" +
       head("the radius");
@@ -196,12 +196,12 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
       const std::string where = fmt::format("radius {}, x = {:.0f}", radius, x);
       out.text += rows(where + ", round ends", tube, radius);
       // Embree has no closed cylinder.
-      const reference::Primitive witness = witness_of(cylinder);
+      const reference::Primitive reference = reference_of(cylinder);
       const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{cylinder})
                               .list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
       Score flat;
       for (std::size_t i = 0; i < list.size(); ++i) {
-        const Case c = make_case(cylinder, witness, list[i]);
+        const Case c = make_case(cylinder, reference, list[i]);
         flat.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, std::max(0.01 * radius, c.bound));
         out.held = out.held && judge(c, listed[i], 8).wrong.empty();
       }
@@ -231,11 +231,11 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
     const double radius = maker.uniform(0.1, 3);
     const dvec3 p0 = 3.0 * maker.direction(), p1 = p0 + maker.uniform(0, 6) * maker.direction();
     const FlatPrimitive p = make_capsule(floats(p0), floats(p1), static_cast<float>(radius));
-    const reference::Primitive witness = witness_of(p);
+    const reference::Primitive reference = reference_of(p);
     std::vector<RayRecord> list;
     for (int i = 0; i < rays / 100; ++i) {
       dvec3 n;
-      const dvec3 on = maker.surface_point(p, witness, &n);
+      const dvec3 on = maker.surface_point(p, reference, &n);
       const bool touching = i % 3 == 0;
       const dvec3 d = touching ? perpendicular(n, maker) : maker.direction();
       const double depth = touching ? std::pow(10.0, maker.uniform(-6, -1)) * radius : 0;
@@ -247,10 +247,10 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
     const auto hits = Peer(std::span(&p, 1), PeerMode::robust).closest(list);
 #endif
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const Case c = make_case(p, witness, list[i]);
+      const Case c = make_case(p, reference, list[i]);
       // Embree does not see the same crossing for rays that begin at the surface or inside.
       if (c.value(0) <= 1e-3 * radius) continue;
-      const bool deep = reference::margin(witness, c.ray) > 1e-3 * radius;
+      const bool deep = reference::margin(reference, c.ray) > 1e-3 * radius;
       for (int k = 0; k <= deep; ++k) ours[k].add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, c.bound);
       out.held = out.held && judge(c, listed[i], 8).wrong.empty();
 #ifdef CAPLET_EMBREE
@@ -303,7 +303,7 @@ void far_spheres(const Device& device, int rays, Anchors& out) {
           RayRecord ray = make_ray(past - maker.uniform(2, 5) * d, d);
           if (!near) ray = make_ray(dvec3(0), past / 1e4);
           // As rounded, it has to pass where it is said to.
-          const reference::Ray bits = witness_ray(ray);
+          const reference::Ray bits = reference_ray(ray);
           const double passes = glm::length(glm::cross(exact - bits.origin, bits.direction)) / glm::length(bits.direction);
           if (passes >= ring.low && passes <= ring.high) list.push_back(ray);
         }

@@ -60,9 +60,8 @@ caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const s
   return report;
 }
 
-}  // namespace
-
-void bind_render(nb::module_& m) {
+/// Binds devices, and verify on them.
+void bind_devices(nb::module_& m) {
   m.def("devices", [] {
     std::vector<caplet::DeviceInfo> found;
     {
@@ -96,7 +95,9 @@ void bind_render(nb::module_& m) {
     const Released released;
     return choice.empty() ? std::vector{caplet::choose_device()} : caplet::choose_devices(choice);
   });
+}
 
+void bind_film(nb::module_& m) {
   using caplet::Film;
   nb::class_<Film>(m, "Film")
       .def_prop_ro("width", &Film::width)
@@ -158,7 +159,9 @@ void bind_render(nb::module_& m) {
     for (const caplet::Overlay& one : caplet::overlays()) out.emplace_back(one.name, one.values, one.help);
     return out;
   });
+}
 
+void bind_session(nb::module_& m) {
   nb::class_<HeldSession>(m, "Session")
       .def("__init__",
            [](HeldSession* self, HeldScene& of, const std::vector<caplet::Device>& devices) {
@@ -225,6 +228,14 @@ void bind_render(nb::module_& m) {
         const auto turn = turn_of(held);
         held.session.resume(film);
       });
+}
+
+}  // namespace
+
+void bind_render(nb::module_& m) {
+  bind_devices(m);
+  bind_film(m);
+  bind_session(m);
 }
 
 }  // namespace caplet_python

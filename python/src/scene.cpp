@@ -216,8 +216,12 @@ std::vector<std::uint32_t> numbers_of(const Array& array) {
   return out;
 }
 
-void bind_scene(nb::module_& m) {
-  using caplet::Scene;
+namespace {
+
+using caplet::Scene;
+
+/// Binds what is known without a scene: types and parameters of statements, formats, files.
+void bind_lists(nb::module_& m) {
   m.def("statement_types", [](const std::string& kind) { return caplet::statement_types(statement_named(kind)); });
   m.def("statement_parameters", [](const std::string& kind, const std::string& type) {
     nb::list out;
@@ -255,9 +259,11 @@ void bind_scene(nb::module_& m) {
         return HeldScene(*std::move(scene));
       },
       nb::arg("file"), nb::arg("options") = std::map<std::string, std::string>(), "Reads a scene of any known format.");
+}
 
-  nb::class_<HeldScene>(m, "Scene")
-      .def(nb::init<>())
+/// Binds copies, counts, options, size and camera of a scene.
+void bind_settings(nb::class_<HeldScene>& held) {
+  held.def(nb::init<>())
       .def("copy", [](HeldScene& held) { return HeldScene(held.now()); })
       .def("save",
            [](HeldScene& held, const std::string& file) {
@@ -304,8 +310,12 @@ void bind_scene(nb::module_& m) {
       .def("set_camera_medium", in_turn(&Scene::set_camera_medium), nb::arg("medium").none())
       .def("set_option", in_turn([](Scene& scene, const std::string& kind, const std::string& type, const nb::dict& given) {
              scene.set_option(statement_named(kind), type, parameters_of(given));
-           }))
-      .def("transform", in_turn([](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); }))
+           }));
+}
+
+/// Binds places, materials, textures, media and lights.
+void bind_statements(nb::class_<HeldScene>& held) {
+  held.def("transform", in_turn([](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); }))
       .def("set_transform",
            in_turn([](Scene& scene, std::uint32_t shape, const Array& to) { scene.set_transform(shape, transform_of(to)); }))
       .def("instance", in_turn([](const Scene& scene, std::uint32_t number) { return transform_array(scene.instance(number)); }))
@@ -339,8 +349,12 @@ void bind_scene(nb::module_& m) {
       .def("set_emission", in_turn([](Scene& scene, std::uint32_t shape, const std::array<double, 3>& rgb, double scale) {
              scene.set_emission(shape, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
            }))
-      .def("set_shape_materials", in_turn(&Scene::set_shape_materials))
-      .def("add_shape", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const nb::dict& options) {
+      .def("set_shape_materials", in_turn(&Scene::set_shape_materials));
+}
+
+/// Binds shapes by parameters, and capsules by arrays.
+void bind_shapes(nb::class_<HeldScene>& held) {
+  held.def("add_shape", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const nb::dict& options) {
              return scene.add_shape(type, parameters_of(given), options_of(options));
            }))
       .def("add_shapes",
@@ -384,8 +398,12 @@ void bind_scene(nb::module_& m) {
                                    array_of<float, 1>(std::move(arrays.radius0), {count}),
                                    array_of<float, 1>(std::move(arrays.radius1), {count}),
                                    array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}), rows_array(arrays.u));
-           }))
-      .def("add_mesh",
+           }));
+}
+
+/// Binds meshes by arrays.
+void bind_meshes(nb::class_<HeldScene>& held) {
+  held.def("add_mesh",
            in_turn([](Scene& scene, const Array& positions, const Array& triangles, const std::optional<Array>& normals,
                       const std::optional<Array>& uvs, const nb::dict& options) {
              const caplet::ShapeOptions given = options_of(options);
@@ -400,6 +418,17 @@ void bind_scene(nb::module_& m) {
              return scene.add_mesh(mesh, given);
            }),
            nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("options"));
+}
+
+}  // namespace
+
+void bind_scene(nb::module_& m) {
+  bind_lists(m);
+  nb::class_<HeldScene> held(m, "Scene");
+  bind_settings(held);
+  bind_statements(held);
+  bind_shapes(held);
+  bind_meshes(held);
 }
 
 }  // namespace caplet_python

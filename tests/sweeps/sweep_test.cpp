@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The sweeps of docs/numerics-sweeps.md with fewer rays: in every cell all hits are within the bound that docs/numerics.md
+// The sweeps of ./run sweeps with fewer rays: in every cell all hits are within the bound that docs/numerics.md
 // states, and no hit or miss differs from the reference but where the referee says that the ray touches. CAPLET_TEST_SCALE=N: N
 // times the rays.
 #include <gtest/gtest.h>
