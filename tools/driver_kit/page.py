@@ -125,13 +125,19 @@ def of_pictures(results):
                       "|---|---|---|---|---|---|---|", *lines])
 
 
-def tables(results):
+def table(results):
+    """One row a driver and encoding."""
     head = ["| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
-    return "\n".join([*head, *map(row, results)]) + "\n" + of_pictures(results)
+    return "\n".join([*head, *map(row, results)])
+
+
+def tables(results):
+    """The table, and the pictures that differ most: for the terminal."""
+    return table(results) + "\n" + of_pictures(results)
 
 
 def write(path, results):
     text = path.read_text()
     before, rest = text.split(BEGIN)
     _, after = rest.split(END)
-    path.write_text(f"{before}{BEGIN}\n{tables(results).rstrip()}\n{END}{after}")
+    path.write_text(f"{before}{BEGIN}\n{table(results)}\n{END}{after}")
