@@ -20,7 +20,7 @@
 namespace {
 
 constexpr std::array stage_names = {
-#define STAGE(name, groups) std::string_view(#name),
+#define STAGE(name, launch, is_used, groups) std::string_view(#name),
 #include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE

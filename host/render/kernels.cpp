@@ -4,51 +4,37 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include <algorithm>
+#include <chrono>
+#include <iterator>
 #include <string_view>
 
 #include "base/check.h"
-#include "render/detail/launch_policy.h"
 #include "render/detail/known_rays.h"
+#include "render/detail/launch_policy.h"
 
 namespace caplet {
 
 namespace {
 
-constexpr const char* stage_names[] = {
-#define STAGE(name, groups) #name,
+enum class Launch { items, shares, one, one_on_cpus };
+
+struct StageRow {
+  const char* name;
+  Launch launch;
+  bool (*is_used)(const StageNeeds& s);
+  const char* groups;
+};
+
+constexpr StageRow stage_rows[] = {
+#define STAGE(name, launch, is_used, groups) \
+  {#name, Launch::launch, []([[maybe_unused]] const StageNeeds& s) { return is_used; }, #groups},
 #include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE
 };
 
-/// These are the groups of each stage, by name.
-constexpr const char* stage_groups[] = {
-#define STAGE(name, groups) #groups,
-#include "shared/queries.def"
-#include "shared/stages.def"
-#undef STAGE
-};
-
-/// These say whether each stage does a share of the items at a time, in the wide encoding.
-constexpr bool stage_shares[] = {
-#define STAGE(name, groups) false,
-#define SHARING_STAGE(name, groups) true,
-#include "shared/queries.def"
-#define SHARING_STAGE(name, groups) true,
-#include "shared/stages.def"
-#undef STAGE
-};
-
-constexpr Stage stages_of_a_render[] = {
-#define STAGE(name, groups) Stage::name,
-#include "shared/stages.def"
-#undef STAGE
-};
-
-const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
+const StageRow& row_of(Stage stage) { return stage_rows[static_cast<std::size_t>(stage)]; }
 
 /// Sets the buffers of a stage's groups and returns the number of the argument after them.
 cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
@@ -60,9 +46,9 @@ cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
 #define GROUP_END(Type) }
   switch (stage) {
-#define STAGE(name, groups) \
-  case Stage::name: {       \
-    groups                  \
+#define STAGE(name, launch, is_used, groups) \
+  case Stage::name: {                        \
+    groups                                   \
   } break;
 #include "shared/queries.def"
 #include "shared/stages.def"
@@ -78,14 +64,25 @@ cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
 
 }  // namespace
 
-std::span<const Stage> render_stages() { return stages_of_a_render; }
+std::vector<Stage> render_stages(const StageNeeds& needs) {
+  std::vector<Stage> out;
+  for (std::size_t i = 0; i < std::size(stage_rows); ++i)
+    if (stage_rows[i].is_used(needs)) out.push_back(static_cast<Stage>(i));
+  return out;
+}
+
+Stage first_needed(std::initializer_list<Stage> stages, const StageNeeds& needs) {
+  const auto* const found = std::ranges::find_if(stages, [&](Stage stage) { return row_of(stage).is_used(needs); });
+  CHECK_EQ_(found != stages.end(), true);
+  return *found;
+}
 
 std::size_t buffer_count(Stage stage) {
 #define GROUP_BEGIN(Type, group)
 #define BUFFER(name, type, access) +1
 #define GROUP_END(Type)
   constexpr std::size_t counts[] = {
-#define STAGE(name, groups) 0 groups,
+#define STAGE(name, launch, is_used, groups) 0 groups,
 #include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE
@@ -97,11 +94,11 @@ std::size_t buffer_count(Stage stage) {
 }
 
 std::string stage_source(Stage stage, const RowMasks& rows) {
-  const std::string_view groups = stage_groups[static_cast<std::size_t>(stage)];
+  const std::string_view groups = row_of(stage).groups;
   return flatten_kernels(
       fmt::format("#define STAGE_NAME {0}\n{2}#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
                   "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
-                  name_of(stage), groups, groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
+                  row_of(stage).name, groups, groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
       rows);
 }
 
@@ -133,17 +130,18 @@ Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device), options_(std::move(options)), local_size_(launch_policy_of(device.profile()).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
-  return stage_shares[static_cast<std::size_t>(stage)] && device_.encoding() == Encoding::wide;
+  return row_of(stage).launch == Launch::shares && device_.encoding() == Encoding::wide;
 }
 
 void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
   for (const Stage stage : stages) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
-    const std::string name = name_of(stage);
+    const std::string name = row_of(stage).name;
     Program program = Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
     cl::Kernel kernel = program.kernel(name);
-    const bool is_one = stage == Stage::advance || (stage == Stage::sort_prefix && device_.profile() == Profile::cpu);
+    const Launch launch = row_of(stage).launch;
+    const bool is_one = launch == Launch::one || (launch == Launch::one_on_cpus && device_.profile() == Profile::cpu);
     const std::size_t local = is_one || takes_shares(stage) ? 1 : local_size_for(device_, kernel, local_size_);
     program.prepare(name, local, is_one ? 1 : takes_shares(stage) ? share_count(device_, most) : most);
     compile_seconds_ += program.build_seconds();
@@ -173,7 +171,7 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
 std::vector<std::pair<std::string, double>> Kernels::seconds_by_stage() const {
   std::vector<std::pair<std::string, double>> out;
   for (std::size_t i = 0; i < compiled_.size(); ++i)
-    if (compiled_[i]) out.emplace_back(stage_names[i], compiled_[i]->seconds);
+    if (compiled_[i]) out.emplace_back(stage_rows[i].name, compiled_[i]->seconds);
   return out;
 }
 

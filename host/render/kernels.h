@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,15 +18,25 @@
 namespace caplet {
 
 enum class Stage {
-#define STAGE(name, groups) name,
+#define STAGE(name, launch, is_used, groups) name,
 #include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE
   count
 };
 
-/// Returns the stages of a render: those of stages.def.
-std::span<const Stage> render_stages();
+/// StageNeeds are the properties of a render that decide which stages it needs.
+struct StageNeeds {
+  bool camera_stage = false;  // camera rays have a traversal of their own
+  bool alpha = false;         // shapes let rays through
+  bool media = false;
+  bool counts_on_device = false;  // rounds are launched without asking how many paths are left
+};
+
+/// Returns the stages that a render needs, in the order of stages.def.
+std::vector<Stage> render_stages(const StageNeeds& needs);
+/// Returns the first of these stages that a render needs. There must be one.
+Stage first_needed(std::initializer_list<Stage> stages, const StageNeeds& needs);
 
 /// Returns the number of buffers that the stage's kernel takes.
 std::size_t buffer_count(Stage stage);

@@ -12,20 +12,20 @@ namespace {
 // rounds; they take 60 MB of state (decision 26). One work-item at a time suits PoCL's tracing; a
 // CPU adds up its bins one after the other.
 constexpr LaunchPolicy of_cpus{.batch_paths = std::size_t{1} << 18,
-                        .local_size = 64,
-                        .counts_on_device = false,
-                        .by_sample = false,
-                        .layers_apart = false,
-                        .sort_fan = 1u << 31,
-                        .first_chunk = 0};
+                               .local_size = 64,
+                               .counts_on_device = false,
+                               .by_sample = false,
+                               .layers_apart = false,
+                               .sort_fan = 1u << 31,
+                               .first_chunk = 0};
 // GPUs need whole wavefronts, and a query from the host stops all of them.
 constexpr LaunchPolicy of_gpus{.batch_paths = std::size_t{1} << 20,
-                        .local_size = 64,
-                        .counts_on_device = true,
-                        .by_sample = true,
-                        .layers_apart = true,
-                        .sort_fan = 64,
-                        .first_chunk = std::size_t{1} << 16};
+                               .local_size = 64,
+                               .counts_on_device = true,
+                               .by_sample = true,
+                               .layers_apart = true,
+                               .sort_fan = 64,
+                               .first_chunk = std::size_t{1} << 16};
 
 constexpr std::size_t least_chunk = std::size_t{1} << 10, most_chunk = std::size_t{1} << 30;
 

@@ -55,28 +55,9 @@ PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
   return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media()};
 }
 
-/// RoundStages are the stages of a round; which ones depends on the scene.
-struct RoundStages {
-  Stage first, later;  // that trace camera rays, and all others
-  Stage shade, connect;
-};
-RoundStages round_stages(const DeviceScene& scene) {
-  RoundStages out{scene.has_camera_stage() ? Stage::extend_camera : Stage::extend, Stage::extend, Stage::shade, Stage::connect};
-  if (scene.has_alpha()) out = {Stage::extend_alpha, Stage::extend_alpha, Stage::shade, Stage::connect_alpha};
-  if (scene.has_media()) {
-    out.shade = Stage::shade_media;
-    out.connect = Stage::connect_media;
-  }
-  return out;
-}
-/// Returns whether renders of such a scene do not use a stage.
-bool is_idle(Stage stage, const DeviceScene& scene) {
-  if (stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance) return !scene.has_media();
-  constexpr std::array choices{Stage::extend,      Stage::extend_camera, Stage::extend_alpha,  Stage::shade,
-                               Stage::shade_media, Stage::connect,       Stage::connect_alpha, Stage::connect_media};
-  if (std::ranges::find(choices, stage) == choices.end()) return false;
-  const RoundStages used = round_stages(scene);
-  return stage != used.first && stage != used.later && stage != used.shade && stage != used.connect;
+StageNeeds stage_needs(const DeviceScene& scene) {
+  return {scene.has_camera_stage(), scene.has_alpha(), scene.has_media(),
+          launch_policy_of(scene.device().profile()).counts_on_device};
 }
 
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
@@ -161,11 +142,11 @@ void Renderer::reset(const FlatView& view) {
   film_.layout = layout;
   film_.parts.clear();
   is_old_ = true;
-  std::vector<Stage> stages(render_stages().begin(), render_stages().end());
-  std::erase_if(stages, [&](Stage stage) { return is_idle(stage, scene_); });
-  if (!launch_policy_of(scene_.device().profile()).counts_on_device)
-    std::erase_if(stages, [](Stage stage) { return stage == Stage::advance || stage == Stage::sort_sums; });
-  scene_.kernels().compile(stages, batch_paths_);
+  const StageNeeds needs = stage_needs(scene_);
+  stages_ = {first_needed({Stage::extend_alpha, Stage::extend_camera, Stage::extend}, needs),
+             first_needed({Stage::extend_alpha, Stage::extend}, needs), first_needed({Stage::shade, Stage::shade_media}, needs),
+             first_needed({Stage::connect, Stage::connect_alpha, Stage::connect_media}, needs)};
+  scene_.kernels().compile(render_stages(needs), batch_paths_);
 }
 
 // Clearing takes megabytes: it is left to the first pass if that covers the whole film.
@@ -241,29 +222,34 @@ void Renderer::batch(const BatchRecord& record) {
   rays_.not_finite += counters[counter_not_finite];
 }
 
-void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
+void Renderer::trace_and_shade(Bindings& bindings, Stage extend, std::size_t paths, cl_uint counter) {
   Kernels& kernels = scene_.kernels();
-  const bool sorts = sort_bits_ != CAPLET_NONE;
+  if (sort_bits_ != CAPLET_NONE) paths_.sort.sort_bins.clear();
+  kernels.run(extend, bindings, paths, 0, counter);
+  if (scene_.has_media()) {
+    kernels.run(Stage::recount_media, bindings, paths, 0, counter);
+    kernels.run(Stage::sample_distance, bindings, paths, 0, counter);
+  }
+  kernels.run(stages_.shade, bindings, paths, 0, counter);
+}
+
+void Renderer::connect_and_sort(Bindings& bindings, Launched shadows, Launched next) {
+  scene_.kernels().run(stages_.connect, bindings, shadows.count, 0, shadows.counter);
+  if (sort_bits_ == CAPLET_NONE)
+    std::swap(paths_.queues.queue, paths_.queues.queue_next);
+  else if (next.count > 0)
+    sort(bindings, next);
+}
+
+void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
   std::array<uint, counter_count> counters{};
-  const RoundStages stages = round_stages(scene_);
-  Stage extend = stages.first;
+  Stage extend = stages_.extend_camera;
   while (paths > 0) {
-    if (sorts) paths_.sort.sort_bins.clear();
-    kernels.run(extend, bindings, paths);
-    extend = stages.later;
-    if (scene_.has_media()) {
-      kernels.run(Stage::recount_media, bindings, paths);
-      kernels.run(Stage::sample_distance, bindings, paths);
-    }
-    kernels.run(stages.shade, bindings, paths);
+    trace_and_shade(bindings, std::exchange(extend, stages_.extend), paths, CAPLET_NONE);
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
     const uint next = counters[counter_next], shadow = counters[counter_shadow];
-    kernels.run(stages.connect, bindings, shadow);
-    if (!sorts)
-      std::swap(paths_.queues.queue, paths_.queues.queue_next);
-    else if (next > 0)
-      sort(bindings, next, CAPLET_NONE);
+    connect_and_sort(bindings, {shadow}, {next});
     counters = {};
     paths_.counters.counters.write(counters);
     rays_.bounce += next;
@@ -273,34 +259,20 @@ void Renderer::rounds_by_host(Bindings& bindings, std::size_t paths) {
 }
 
 void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
-  Kernels& kernels = scene_.kernels();
-  const bool sorts = sort_bits_ != CAPLET_NONE;
   std::array<uint, counter_count> counters{};
   uint bounces = 0, shadows = 0;
-  const RoundStages stages = round_stages(scene_);
-  Stage extend = stages.first;
+  Stage extend = stages_.extend_camera;
   while (paths > 0) {
     const Clock::time_point start = Clock::now();
     for (int round = 0; round < rounds_unasked; ++round) {
-      if (sorts) paths_.sort.sort_bins.clear();
-      kernels.run(extend, bindings, paths, 0, counter_queued);
-      extend = stages.later;
-      if (scene_.has_media()) {
-        kernels.run(Stage::recount_media, bindings, paths, 0, counter_queued);
-        kernels.run(Stage::sample_distance, bindings, paths, 0, counter_queued);
-      }
-      kernels.run(stages.shade, bindings, paths, 0, counter_queued);
-      kernels.run(stages.connect, bindings, paths, 0, counter_shadow);
-      if (sorts)
-        sort(bindings, paths, counter_next);
-      else
-        std::swap(paths_.queues.queue, paths_.queues.queue_next);
-      kernels.run(Stage::advance, bindings, 1);
+      trace_and_shade(bindings, std::exchange(extend, stages_.extend), paths, counter_queued);
+      connect_and_sort(bindings, {paths, counter_shadow}, {paths, counter_next});
+      scene_.kernels().run(Stage::advance, bindings, 1);
     }
     paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
     ++beats_;
     chunk_ = next_chunk(chunk_, paths, seconds_since(start));
-    kernels.set_chunk(chunk_);
+    scene_.kernels().set_chunk(chunk_);
     rays_.bounce += counters[counter_bounces] - std::exchange(bounces, counters[counter_bounces]);
     rays_.shadow += counters[counter_shadows] - std::exchange(shadows, counters[counter_shadows]);
     paths = counters[counter_queued];
@@ -308,12 +280,12 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
 }
 
 /// Sorts queue_next into queue.
-void Renderer::sort(const Bindings& bindings, std::size_t paths, cl_uint counter) {
+void Renderer::sort(const Bindings& bindings, Launched paths) {
   Kernels& kernels = scene_.kernels();
   const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device().profile()).sort_fan);
   for (std::size_t i = 0; i + 1 < levels.size(); ++i) kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
   for (std::size_t i = levels.size(); i-- > 0;) kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
-  kernels.run(Stage::sort_scatter, bindings, paths, 0, counter);
+  kernels.run(Stage::sort_scatter, bindings, paths.count, 0, paths.counter);
 }
 
 std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path({Layers::all(), true, true, true}) * least_batch_paths; }

@@ -16,6 +16,7 @@
 #include "lower/flat_scene.h"
 #include "render/buffers.h"
 #include "render/device_scene.h"
+#include "render/kernels.h"
 
 namespace caplet {
 
@@ -73,7 +74,14 @@ class Renderer {
   /// round, or launches several rounds at a time for the most paths there may be.
   void rounds_by_host(Bindings& bindings, std::size_t paths);
   void rounds_on_device(Bindings& bindings, std::size_t paths);
-  void sort(const Bindings& bindings, std::size_t paths, cl_uint counter);
+  /// Launched is how many work-items a stage has: `count`, or fewer where the counter says so.
+  struct Launched {
+    std::size_t count;
+    cl_uint counter = CAPLET_NONE;
+  };
+  void trace_and_shade(Bindings& bindings, Stage extend, std::size_t paths, cl_uint counter);
+  void connect_and_sort(Bindings& bindings, Launched shadows, Launched next);
+  void sort(const Bindings& bindings, Launched paths);
   void clear_film() const;
 
   DeviceScene& scene_;
@@ -82,7 +90,10 @@ class Renderer {
   PathBuffers paths_;
   std::uint32_t sort_bits_;
   bool origins_differ_ = false;  // of camera rays
-  std::size_t chunk_;            // Kernels::set_chunk
+  struct {
+    Stage extend_camera, extend, shade, connect;
+  } stages_{};         // those of a round, of this scene
+  std::size_t chunk_;  // Kernels::set_chunk
   SensorBuffers sensor_;
   mutable DeviceFilm film_;
   mutable bool is_old_ = true;  // the film's words are those of before a reset: they count as zeros

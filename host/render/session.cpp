@@ -12,8 +12,8 @@
 #include "base/check.h"
 #include "base/clock.h"
 #include "base/log.h"
-#include "render/detail/worker_pool.h"
 #include "render/detail/work_queue.h"
+#include "render/detail/worker_pool.h"
 #include "render/renderer.h"
 
 namespace caplet {

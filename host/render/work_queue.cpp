@@ -57,7 +57,7 @@ FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples
 }
 
 WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
-               std::vector<Worker> workers)
+                     std::vector<Worker> workers)
     : begin_(begin), end_(begin + count), begun_end_(begin), open_(again.begin(), again.end()), workers_(std::move(workers)) {
   if (count > 0) open_.push_back({window, begin, count});
 }

@@ -17,7 +17,7 @@ namespace caplet::test {
 namespace {
 
 constexpr std::pair<Stage, const char*> stages[] = {
-#define STAGE(name, groups) {Stage::name, #name},
+#define STAGE(name, launch, is_used, groups) {Stage::name, #name},
 #include "shared/queries.def"
 #include "shared/stages.def"
 #undef STAGE
@@ -25,8 +25,8 @@ constexpr std::pair<Stage, const char*> stages[] = {
 
 // Stages of scenes with media carry what paths are within, and all that shading takes.
 bool is_of_media(Stage stage) {
-  return stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance || stage == Stage::shade_media ||
-         stage == Stage::connect_media;
+  return stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance ||
+         stage == Stage::shade_media || stage == Stage::connect_media;
 }
 
 TEST(Kernels, TakeWhatTheyUse) {
