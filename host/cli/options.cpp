@@ -22,7 +22,6 @@ namespace caplet::cli {
 
 namespace {
 
-constexpr long long max_pixels = 1LL << 28;
 constexpr const char* usual_device = "a GPU where there is one";
 
 /// Parses `text` as integers separated by `separator`; empty if it is anything else.
@@ -50,7 +49,7 @@ ImageSize parse_size(const std::string& text) {
   const std::vector<long long> sides = whole_numbers(text, 'x');
   if (sides.size() != 2) refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 960x540", text));
   if (sides[0] < 1 || sides[1] < 1) refuse("--size", fmt::format("'{}': both sides must be at least 1", text));
-  if (sides[0] > max_pixels || sides[1] > max_pixels || sides[0] * sides[1] > max_pixels)
+  if (sides[0] > most_image_pixels || sides[1] > most_image_pixels || sides[0] * sides[1] > most_image_pixels)
     refuse("--size", fmt::format("'{}' is more than 2^28 pixels", text));
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
@@ -59,7 +58,7 @@ std::array<int, 4> parse_crop(const std::string& text) {
   const std::vector<long long> corners = whole_numbers(text, ',');
   if (corners.size() != 4) refuse("--crop", fmt::format("'{}' is not x0,y0,x1,y1 in pixels", text));
   for (const long long corner : corners)
-    if (corner < 0 || corner > max_pixels) refuse("--crop", fmt::format("'{}': {} is out of range", text, corner));
+    if (corner < 0 || corner > most_image_pixels) refuse("--crop", fmt::format("'{}': {} is out of range", text, corner));
   if (corners[0] >= corners[2] || corners[1] >= corners[3])
     refuse("--crop", fmt::format("'{}' is empty: x0 < x1 and y0 < y1 are needed", text));
   return {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2]), static_cast<int>(corners[3])};
@@ -69,7 +68,7 @@ std::array<int, 2> parse_pixel(const std::string& text) {
   const std::vector<long long> numbers = whole_numbers(text, ',');
   if (numbers.size() != 2) refuse("--pixel", fmt::format("'{}' is not X,Y in whole pixels", text));
   for (const long long number : numbers)
-    if (number < 0 || number > max_pixels) refuse("--pixel", fmt::format("'{}' is outside of any image", text));
+    if (number < 0 || number > most_image_pixels) refuse("--pixel", fmt::format("'{}' is outside of any image", text));
   return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/reading.h"
+#include "scene/film.h"
 
 namespace caplet {
 
@@ -28,7 +29,7 @@ std::uintmax_t readable_file_bytes(const fs::path& path) {
 void check_image_size(const fs::path& path, std::int64_t width, std::int64_t height, std::uint64_t bytes_per_pixel,
                       std::uint64_t file_bytes) {
   if (width < 1 || height < 1 || width > max_image_side || height > max_image_side ||
-      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > max_image_pixels)
+      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > std::uint64_t{most_image_pixels})
     throw InputError(fmt::format("{}: an image of {} x {} pixels is not supported (at most 2^28 in all, 2^20 a side)",
                                  path.string(), width, height));
   const std::uint64_t needed = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * bytes_per_pixel;

@@ -25,7 +25,6 @@ namespace caplet::v0 {
 namespace {
 
 constexpr int most_samples = 1 << 24, most_events = 1 << 16;
-constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 // A session with more edits to catch up on takes the whole scene again.
 constexpr std::size_t most_logged = 1 << 16;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
@@ -99,8 +98,8 @@ int Scene::width() const { return data_->model.film.width; }
 int Scene::height() const { return data_->model.film.height; }
 
 void Scene::set_size(int width, int height) {
-  check_range("width", width, 1, most_pixels);
-  check_range("height", height, 1, most_pixels / width);
+  check_range("width", width, 1, most_image_pixels);
+  check_range("height", height, 1, most_image_pixels / width);
   set_film_size(changed().model, width, height);
 }
 

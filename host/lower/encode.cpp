@@ -162,7 +162,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
       } else if (from.child[i] != 0x7fffffff) {
         child += out.root;
       }
-      to[48 + i] = std::bit_cast<float>(child);
+      to[CAPLET_NODE_CHILDREN + i] = std::bit_cast<float>(child);
     }
   });
 

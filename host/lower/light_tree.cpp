@@ -238,7 +238,7 @@ class LightTreeWriter {
 
   const TreeLights::One& light(std::size_t ordered) const { return lights_.lights[tree_.order[ordered]]; }
   uint& reference_at(std::size_t node, std::uint32_t slot) {
-    return out_.light_nodes[node * std::size_t{CAPLET_LIGHT_NODE} + 48 + slot];
+    return out_.light_nodes[node * std::size_t{CAPLET_LIGHT_NODE} + CAPLET_LIGHT_NODE_CHILDREN + slot];
   }
   Child of_light(std::size_t ordered) const {
     const TreeLights::One& one = light(ordered);
@@ -290,7 +290,7 @@ class LightTreeWriter {
     rows[24] = octahedral_bits(of.axis);
     rows[32] = cosines.cone(of.cos_cone) | cosines.reach(of.cos_reach) << 16;
     rows[40] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
-    rows[48] = child.reference;
+    rows[CAPLET_LIGHT_NODE_CHILDREN] = child.reference;
     const bool is_light = (child.reference & CAPLET_LIGHT_LEAF) != 0;
     const std::size_t place = is_light ? child.reference & ~CAPLET_LIGHT_LEAF : light_count_ + child.reference;
     out_.light_places[place] = narrow<uint>(node * width + slot);

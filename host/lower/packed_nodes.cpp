@@ -74,7 +74,7 @@ PackedAxis pack_axis(const float* low, const float* high, std::uint32_t children
 void pack_node(std::span<const float, CAPLET_NODE_FLOATS> node, std::span<float, CAPLET_PACKED_NODE_FLOATS> packed) {
   std::uint32_t children = 0;
   for (std::uint32_t i = 0; i < CAPLET_WIDTH; ++i)
-    if (std::bit_cast<std::uint32_t>(node[48 + i]) != no_child) children |= 1u << i;
+    if (std::bit_cast<std::uint32_t>(node[CAPLET_NODE_CHILDREN + i]) != no_child) children |= 1u << i;
   std::array<std::uint32_t, CAPLET_PACKED_NODE_FLOATS> words{};
   words[3] = children << 24;
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -86,7 +86,7 @@ void pack_node(std::span<const float, CAPLET_NODE_FLOATS> node, std::span<float,
       words[10 + 2 * k + i / 4] |= std::uint32_t{axis.high[i]} << (8 * (i % 4));
     }
   }
-  for (std::uint32_t i = 0; i < CAPLET_WIDTH; ++i) words[16 + i] = std::bit_cast<std::uint32_t>(node[48 + i]);
+  for (std::uint32_t i = 0; i < CAPLET_WIDTH; ++i) words[16 + i] = std::bit_cast<std::uint32_t>(node[CAPLET_NODE_CHILDREN + i]);
   std::ranges::transform(words, packed.begin(), [](std::uint32_t word) { return std::bit_cast<float>(word); });
 }
 

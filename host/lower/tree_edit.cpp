@@ -65,7 +65,8 @@ TreeEdit::TreeEdit(FlatScene& flat, LoweredGeometry& geometry)
   const std::uint32_t row_mask = (1u << (31 - flat.leaf_kind_bits)) - 1;
   for (std::uint32_t node = 0; node < node_parent_.size(); ++node)
     for (std::uint32_t i = 0; i < 8; ++i) {
-      const auto child = std::bit_cast<std::uint32_t>(flat.nodes[std::size_t{node} * CAPLET_NODE_FLOATS + 48 + i]);
+      const auto child =
+          std::bit_cast<std::uint32_t>(flat.nodes[std::size_t{node} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + i]);
       if (child == no_child) continue;
       (child >> 31 ? row_parent_[child & row_mask] : node_parent_[child]) = node * 8 + i;
     }
@@ -108,7 +109,7 @@ void TreeEdit::set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& 
 ReferenceBox TreeEdit::leaf_box(const Subtree& subtree, std::uint32_t row) const {
   const std::uint32_t parent = row_parent_[row];
   const auto reference =
-      std::bit_cast<std::uint32_t>(flat_.nodes[std::size_t{parent / 8} * CAPLET_NODE_FLOATS + 48 + parent % 8]);
+      std::bit_cast<std::uint32_t>(flat_.nodes[std::size_t{parent / 8} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + parent % 8]);
   const std::uint32_t kind = reference >> (31 - flat_.leaf_kind_bits) & ((1u << flat_.leaf_kind_bits) - 1);
   ReferenceBox box = nothing;
   for (std::uint32_t lane = 0; lane < 8; ++lane) {
@@ -146,7 +147,7 @@ void TreeEdit::move(Subtree& subtree, std::size_t at, SceneChanges& changes) {
     const std::uint32_t node = link / 8;
     if (same(box, box_of(node, link % 8))) return;
     set_box(node, link % 8, box, cost);
-    changes.nodes.add(std::size_t{node} * CAPLET_NODE_FLOATS, 48);
+    changes.nodes.add(std::size_t{node} * CAPLET_NODE_FLOATS, CAPLET_NODE_CHILDREN);
     box = bounds_of_node(node);
     link = node_parent_[node];
   }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,9 @@
 #include "scene/spectrum.h"
 
 namespace caplet {
+
+/// The most pixels of an image, a film or a texture.
+inline constexpr std::int64_t most_image_pixels = std::int64_t{1} << 28;
 
 /// Lists the names in scene files and pbrt-v4's default radii, in the order of PixelFilter::Kind.
 inline constexpr std::array filter_names = {"box", "triangle", "gaussian", "mitchell", "sinc"};
@@ -57,8 +61,8 @@ struct FilmSettings {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit.integer({"xresolution", "width", 1, 1 << 28, "pixels"}, self.width);
-    visit.integer({"yresolution", "height", 1, 1 << 28, "pixels"}, self.height);
+    visit.integer({"xresolution", "width", 1, most_image_pixels, "pixels"}, self.width);
+    visit.integer({"yresolution", "height", 1, most_image_pixels, "pixels"}, self.height);
     visit.number({"iso", "sensitivity; 100 changes nothing", 0, no_limit, "", true}, self.iso);
     visit.number({"maxcomponentvalue", "the most that a sample adds; 0: any", 0}, self.max_component_value);
     visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0, 25000, "kelvin"},

@@ -18,8 +18,6 @@ namespace caplet {
 
 namespace {
 
-constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
-
 template <class Vector>
 bool finite(const Vector& v) {
   for (glm::length_t i = 0; i < v.length(); ++i)
@@ -526,7 +524,7 @@ class Validator {
     const FilmSettings& f = scene_.film;
     if (f.width <= 0 || f.height <= 0)
       error(file, "the image size must be positive");
-    else if (std::int64_t{f.width} * f.height > most_pixels)
+    else if (std::int64_t{f.width} * f.height > most_image_pixels)
       error(file,
             "the image of " + std::to_string(f.width) + " x " + std::to_string(f.height) + " pixels is larger than 2^28 pixels");
     if (scene_.sampler.samples_per_pixel <= 0) error(file, "the samples per pixel must be positive");

@@ -152,7 +152,7 @@ static inline uint light_of_tree(const Lights* lights, const LightReceiver* at, 
     *chance *= chances[slot];
     bits = hash_mix(bits);
     u = fmin((u - before + (float)(bits >> 8) * 0x1p-48f) / chances[slot], 0x1.fffffep-1f);
-    const uint child = lights->light_nodes[(size_t)number * CAPLET_LIGHT_NODE + 48u + slot];
+    const uint child = lights->light_nodes[(size_t)number * CAPLET_LIGHT_NODE + CAPLET_LIGHT_NODE_CHILDREN + slot];
     if (child & CAPLET_LIGHT_LEAF) return child & ~CAPLET_LIGHT_LEAF;
     number = child;
   }

@@ -21,11 +21,13 @@
 // These are sizes of the tree.
 #define CAPLET_WIDTH 8
 #define CAPLET_NODE_FLOATS 56     // six rows of eight bounds (lox loy loz hix hiy hiz), one row of eight child references
+#define CAPLET_NODE_CHILDREN 48   // the first child reference of a node
 #define CAPLET_PACKED_NODE_FLOATS 24  // the same in bytes, for rays that are traced one at a time (kernels/trace/packed.cl)
 #define CAPLET_TREE_DEPTH_MAX 40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on it)
 
 // These are sizes of the light tree (kernels/lights/tree.cl).
 #define CAPLET_LIGHT_NODE 56            // numbers a node
+#define CAPLET_LIGHT_NODE_CHILDREN 48   // the first child reference of these
 #define CAPLET_LIGHT_LEAF 0x80000000u   // of a child: a light
 #define CAPLET_LIGHT_TREE_FROM 16       // lights: fewer are chosen by the table alone
 

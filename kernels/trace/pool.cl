@@ -84,7 +84,7 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   const uint met = mask_bits(permuted(boxes, lanes));
   const int8 order = convert_int8(as_uchar8(set_bits[met])) ^ (int8)(r->flip);
   vstore8(permuted(as_int8(near), order), 0, r->enter + r->top);
-  vstore8(permuted(vload8(0, (__global const int*)(node + 48)), order), 0, r->child + r->top);
+  vstore8(permuted(vload8(0, (__global const int*)(node + CAPLET_NODE_CHILDREN)), order), 0, r->child + r->top);
   r->top += (int)popcount(met);
 }
 

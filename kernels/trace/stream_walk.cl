@@ -39,7 +39,7 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
       }
       vstore8((uchar8)(0), 0, l->met + n);
       int end = at + n;
-      __global const int* child = (__global const int*)(node + 48);
+      __global const int* child = (__global const int*)(node + CAPLET_NODE_CHILDREN);
       for (int s = 7; s >= 0; s--) {
         const int k = s ^ flip;
         if ((any >> k & 1u) == 0) continue;

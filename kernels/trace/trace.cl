@@ -91,7 +91,7 @@ static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(e
 // on the stack, nearest on top. Returns 0 if none is met.
 static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min, float t_best, ulong* stack, int* stack_top,
                              int* next) {
-  __global const int* child = (__global const int*)(node + 48);
+  __global const int* child = (__global const int*)(node + CAPLET_NODE_CHILDREN);
   float enter[8];
   uint bits = node_hits(node, slab, t_min, t_best, enter);
   if (bits == 0) return 0;
