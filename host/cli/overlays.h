@@ -10,7 +10,7 @@
 
 namespace caplet::cli {
 
-/// Adds an option for each row of post/overlays.def; its values are stored in `overlays`.
+/// Adds an option for each row of post::overlay_rows(); its values are stored in `overlays`.
 void add_overlays(CLI::App& command, post::Overlays& overlays);
 
 }  // namespace caplet::cli

@@ -31,7 +31,7 @@ struct Imported {
 struct Format {
   std::string name;                     // "pbrt-v4"
   std::vector<std::string> extensions;  // ".pbrt"
-  std::vector<std::string> options;     // names in import_options.def that it knows
+  std::vector<std::string> options;     // names of import_option_rows() that it knows
   /// Throws InputError.
   Imported (*import)(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options);
   // The default for files that do not state it.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The import options that a user sets beside the file: texts by name (import_options.def).
+// The import options that a user sets beside the file: texts by name.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,13 @@
 
 namespace caplet {
 
+/// ImportOptionRow is what a user may set beside a file: --name on the command line. `values` holds the alternatives between |;
+/// those without capitals are typed as they are (host/cli/description.h). A test compares them with what importers accept.
 struct ImportOptionRow {
   std::string name, values, help;
-  enum class Of { format, picture, reading } of = Of::format;  // options of some formats; of all: the picture, reading
+  /// format: of the importers that list it (importers.def; docs/formats says what it does). picture: of any file's picture
+  /// (docs/pictures.md). reading: how files of any format are read; the command line has yes|no as --name alone, for yes.
+  enum class Of { format, picture, reading } of = Of::format;
 };
 
 const std::vector<ImportOptionRow>& import_option_rows();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Options of the picture, for scenes of any format: the PICTURE_OPTIONs of import_options.def.
+// Options of the picture, for scenes of any format: the rows `picture` of import_option_rows().
 #pragma once
 
 #include "import/import_options.h"

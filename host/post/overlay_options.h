@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Overlays by name (overlays.def).
+// Overlays of written pictures by name: --NAME in the program, the same names in the library and in Python (docs/pictures.md).
 #pragma once
 
 #include <string>
