@@ -19,7 +19,7 @@ static void stage_item(const Stage* g, uint item) {
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   const PathSample at = path_sample(g->batch.batch, g->view.view, path);
-  MediumNumbers numbers = {hash_combine(path_hash(at, g->carried.path_flags[path]), 0x5bd1e995u), 0u};
+  MediumNumbers numbers = {hash_combine(path_hash(at, g->carried.path_flags[path]), HASHED_SAMPLE(shadow)), 0u};
   MediumWeights weights;
   weights.throughput = g->shadows.path_shadow_radiance[path];
   weights.scattering = weights.light = g->medium_stacks.path_ratio[path];

@@ -8,9 +8,7 @@
 #include "media/medium_stack.cl"
 #include "media/passing.cl"
 #include "shapes/surface.cl"
-#include "stages/outbox.cl"
-#include "stages/path.cl"
-#include "stages/sort_key.cl"
+#include "stages/path_state.cl"
 #include "stages/within.cl"
 
 static inline MediumStack path_medium_stack(const Stage* g, uint path) {
@@ -25,13 +23,6 @@ static inline void set_shadow_medium_stack(const Stage* g, uint path, MediumStac
   g->medium_stacks.shadow_near[path] = is_alone ? CAPLET_ALONE : CAPLET_RECOUNT;
   g->medium_stacks.shadow_inside[path] = stack.inside;
   g->medium_stacks.shadow_around[path] = stack.around;
-}
-
-// Puts the path, whose next ray is in path_ray, into the queue of the next round. `from`: about
-// where the ray begins.
-static inline void media_goes_on(const Stage* g, Outbox* out, uint path, float3 from, float3 direction) {
-  const uint bits = g->batch.batch->sort_bits;
-  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
 }
 
 // Returns the boundaries of a path that goes through its hit. Where other surfaces are at the same
@@ -60,23 +51,23 @@ static inline int media_passes(const Stage* g, Outbox* out, uint path, uint mate
   media_crossed(g, path, hit);
   g->rays.path_ray[path].t_min = hit->t;
   const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
-  media_goes_on(g, out, path, o + hit->t * d, d);
+  append_path(g, out, path, o + hit->t * d, d);
   return 1;
 }
 
-// Stores what connect_media needs of a light sample beside its radiance: the boundaries of its ray,
-// and the densities.
-static inline void media_shadow(const Stage* g, uint path, const HitRecord* hit, const Surface* s, float3 wo, const LightSample* light, float bsdf_pdf) {
-  const int crosses = dot(light->wi, s->ng) * dot(wo, s->ng) < 0.0f;
+// Keeps what connect_media needs of a light sample beside its radiance: the boundaries of its ray,
+// and the densities, by which it weights the sample. Returns the weight here, which is 1.
+static inline float media_light_weight(const Stage* g, uint path, const HitRecord* hit, const LightSample* light, int crosses, float bsdf_pdf) {
   set_shadow_medium_stack(g, path, crosses ? medium_stack_behind(g, path, hit) : path_medium_stack(g, path), g->medium_stacks.path_near[path] == CAPLET_ALONE);
   g->medium_stacks.shadow_pdfs[path] = (float2)(light->pdf, light->delta ? 0.0f : bsdf_pdf);
+  return 1.0f;
 }
 
 // Keeps the hero wavelength alone for a direction that no other wavelength could have made.
-static inline void media_hero_alone(const Stage* g, uint path, float4* throughput, float4 wavelengths) {
-  throughput->x /= g->medium_stacks.path_ratio[path].x;
+static inline void media_hero_alone(const Stage* g, uint path, PathState* state) {
+  state->throughput.x /= g->medium_stacks.path_ratio[path].x;
   g->medium_stacks.path_ratio[path] = (float4)(1.0f);
-  g->carried.path_wavelengths[path] = (float4)(wavelengths.x);
+  g->carried.path_wavelengths[path] = (float4)(state->wavelengths.x);
 }
 
 // Updates the state for a path that goes on from a scattering at a surface, maybe through it.
@@ -87,5 +78,14 @@ static inline void media_scattered(const Stage* g, uint path, const HitRecord* h
   else
     media_leave_hit(g, path);
 }
+
+// Returns the density of the path's last direction for weighting against light samples: media
+// weight the wavelengths of light samples by their own.
+static inline float media_last_pdf(const Stage* g, uint path, float pdf) { return pdf / mean4(g->medium_stacks.path_light_ratio[path]); }
+
+// Returns how many scatterings of the path do not count towards its depth.
+static inline uint media_uncounted(const Stage* g, uint path) { return g->medium_stacks.path_within[path]; }
+
+enum { in_media = 1 };
 
 #endif

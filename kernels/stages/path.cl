@@ -35,8 +35,27 @@ enum {
 #undef SCATTERING_DIMENSION
   scattering_dimension_count
 };
+enum {
+#define CAMERA_DIMENSION(name)
+#define SCATTERING_DIMENSION(name)
+#define MEDIUM_DIMENSION(name, address) medium_dimension_##name = address,
+#define HASHED_DIMENSION(name, salt)
+#include "shared/dimensions.def"
+#undef CAMERA_DIMENSION
+#undef SCATTERING_DIMENSION
+  no_medium_dimension
+};
+#define CAMERA_DIMENSION(name)
+#define SCATTERING_DIMENSION(name)
+#define HASHED_DIMENSION(name, salt) \
+  static inline uint hashed_dimension_##name(void) { return salt; }
+#include "shared/dimensions.def"
+#undef CAMERA_DIMENSION
+#undef SCATTERING_DIMENSION
 #define CAMERA_SAMPLE(name) camera_dimension_##name
 #define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
+#define MEDIUM_SAMPLE(name, depth) (medium_dimension_##name + (depth))
+#define HASHED_SAMPLE(name) hashed_dimension_##name()
 
 // Returns the density of a scattered direction for weighting against light samples. Without MIS it
 // is so small that scattered rays find only lights that samples cannot find.
@@ -49,9 +68,9 @@ static inline uint path_flag(__global const ViewRecord* view, int specular) {
   return specular || (view->strategy & CAPLET_STRATEGY_NO_LIGHTS) != 0u ? PATH_SPECULAR : 0u;
 }
 
-// Returns a key for numbers that a scattering takes beside those of dimensions.def.
+// Returns a key for the HASHED_DIMENSIONs of a scattering.
 static inline uint path_hash(PathSample at, uint depth) {
-  return hash_combine(hash_combine(at.seed ^ 0xb5297a4du, at.sample), depth);
+  return hash_combine(hash_combine(at.seed ^ HASHED_SAMPLE(scattering), at.sample), depth);
 }
 
 // Returns the place of pixel number `pixel` of a batch in the full image. A window's pixels are

@@ -13,11 +13,10 @@
 #include "lights/lights.cl"
 #include "stages/cone.cl"
 #include "stages/layers.cl"
-#include "stages/outbox.cl"
-#include "stages/path.cl"
-#include "stages/sort_key.cl"
 #ifdef SHADE_IN_MEDIA
 #include "stages/media.cl"
+#else
+#include "stages/no_media.cl"
 #endif
 
 // Returns the white of the film's colour space, of luminance 1.
@@ -80,38 +79,47 @@ static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int
   return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u && ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));
 }
 
+// A hit that is shaded: the surface, and the path's direction there.
+typedef struct {
+  uint path;
+  RayRecord ray;
+  HitRecord hit;
+  Surface surface;
+  TexturePlace place;
+  uint material;
+  int bumped;
+  Frame frame;      // of the shading normal
+  Bsdf bsdf;
+  float3 wo, wo_local;
+  float2 cone;      // of the ray at the hit
+  uint side;        // that light samples see
+  int by_shading;   // directions go by the shading normal alone
+} ShadingPoint;
+
 // Takes one light sample; its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, uint path, const HitRecord* hit, const Surface* s, const Frame* frame,
-                                const Bsdf* bsdf, uint side, int by_shading, float3 wo_local, float3 wo, float4 throughput, float4 wavelengths, uint u_select,
-                                float2 u) {
+static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, const ShadingPoint* point, const PathState* state, PathSample at) {
+  const Surface* s = &point->surface;
   LightSample light;
   // The origin is on the side of wo, as for the density of a reflected ray that meets the light:
   // this matters within an emitting solid.
-  const LightReceiver at = {offset_origin(s->p, s->ng, s->error, wo), side};
-  if (!light_sample(scene, at, wavelengths, u_select, u, &light)) return;
-  const float3 wi_local = to_local(frame, light.wi);
-  const int transmitted = wi_local.z * wo_local.z < 0.0f;
-  const int crosses = dot(light.wi, s->ng) * dot(wo, s->ng) < 0.0f;
-  if (transmitted != crosses && !by_shading) return;
+  const LightReceiver receiver = {offset_origin(s->p, s->ng, s->error, point->wo), point->side};
+  if (!light_sample(scene, receiver, state->wavelengths, sampler_bits(at, SCATTERING_SAMPLE(choices, state->depth)),
+                    sampler_2d(at, SCATTERING_SAMPLE(light, state->depth)), &light))
+    return;
+  const float3 wi_local = to_local(&point->frame, light.wi);
+  const int transmitted = wi_local.z * point->wo_local.z < 0.0f;
+  const int crosses = dot(light.wi, s->ng) * dot(point->wo, s->ng) < 0.0f;
+  if (transmitted != crosses && !point->by_shading) return;
   // A ray that crosses sees its own primitive from the other side than this sample did, so only
   // that ray finds the light.
   if (crosses && light.index == s->primitive_light) return;
   float bsdf_pdf;
-  const float4 f = bsdf_eval(bsdf, wo_local, wi_local, &bsdf_pdf);
+  const float4 f = bsdf_eval(&point->bsdf, point->wo_local, wi_local, &bsdf_pdf);
   bsdf_pdf = path_pdf(g->view.view, bsdf_pdf);
-#ifdef SHADE_IN_MEDIA
-  const float weight = 1.0f;  // connect_media knows it
-  media_shadow(g, path, hit, s, wo, &light, bsdf_pdf);
-#else
-  const float weight = light.delta ? 1.0f : power_heuristic(light.pdf, bsdf_pdf);
-#endif
-  const float4 contribution = throughput * f * light.radiance * (weight / light.pdf);
+  const float weight = media_light_weight(g, point->path, &point->hit, &light, crosses, bsdf_pdf);
+  const float4 contribution = state->throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
-  ShadowTarget target;
-  g->shadows.path_shadow[path] = shadow_ray(&light, offset_origin(s->p, s->ng, s->error, light.wi), &target);
-  g->shadows.path_shadow_target[path] = target;
-  g->shadows.path_shadow_radiance[path] = contribution;
-  append_shadow(g, out, path);
+  send_shadow_ray(g, out, point->path, &light, offset_origin(s->p, s->ng, s->error, light.wi), contribution);
 }
 
 // Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the
@@ -133,29 +141,23 @@ static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_loca
 
 // Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it
 // does not meet within the greatest distance is white.
-static inline void send_occlusion_ray(const Stage* g, Outbox* out, uint path, const HitRecord* hit, const Surface* s,
-                                      float3 wo) {
+static inline void send_occlusion_ray(const Stage* g, Outbox* out, const ShadingPoint* point, PathState* state) {
   __global const ViewRecord* view = g->view.view;
-  const float2 u = sampler_2d(path_sample(g->batch.batch, view, path), SCATTERING_SAMPLE(bsdf, 0));
+  const Surface* s = &point->surface;
+  const float2 u = sampler_2d(path_sample(g->batch.batch, view, point->path), SCATTERING_SAMPLE(bsdf, 0));
   float3 wi_local = sample_cosine_hemisphere(u);
   if ((view->strategy & CAPLET_STRATEGY_UNIFORM) != 0u) {
     const float across = sqrt(1.0f - u.x * u.x), phi = 2.0f * CAPLET_PI * u.y;
     wi_local = (float3)(across * cos(phi), across * sin(phi), u.x);
-    g->carried.path_throughput[path] *= 2.0f * u.x;  // the cosine over pi and the density
+    state->throughput *= 2.0f * u.x;  // the cosine over pi and the density
   }
-  const Frame frame = frame_from_normal(dot(wo, s->ng) < 0.0f ? -s->ng : s->ng);
-  const float3 wi = to_world(&frame, wi_local), origin = offset_origin(s->p, s->ng, s->error, wi);
-  RayRecord ray = path_onward(origin, wi);
-  ray.t_max = view->max_distance;
-  g->rays.path_ray[path] = ray;
-  g->carried.path_flags[path] = (1u << PATH_DEPTH_SHIFT) | PATH_SPECULAR;
-#ifdef SHADE_IN_MEDIA
-  media_scattered(g, path, hit, 0);
-#else
-  (void)hit;
-#endif
-  const uint bits = g->batch.batch->sort_bits;
-  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);
+  const Frame frame = frame_from_normal(dot(point->wo, s->ng) < 0.0f ? -s->ng : s->ng);
+  const float3 wi = to_world(&frame, wi_local);
+  state->depth = 1u;
+  state->specular = 1;
+  media_scattered(g, point->path, &point->hit, 0);
+  continue_path(g, out, point->path, state, CAPLET_NONE, offset_origin(s->p, s->ng, s->error, wi), wi);
+  g->rays.path_ray[point->path].t_max = view->max_distance;
 }
 
 #if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
@@ -185,170 +187,161 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
 }
 #endif
 
-static void sending_item(const Stage* g, Outbox* out, uint item) {
-  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
-  const uint path = g->queues.queue[item];
-  const RayRecord ray = g->rays.path_ray[path];
-  const HitRecord hit = g->rays.path_hit[path];
-  float4 throughput = g->carried.path_throughput[path];
-  const float4 wavelengths = g->carried.path_wavelengths[path];
-  float4 pdfs = g->carried.path_wavelength_pdfs[path];
-  float4 scatter = g->carried.path_scatter[path];  // last pdf, eta scale, bits of the light that was crossed
-  const uint flags = g->carried.path_flags[path];
-  const uint depth = flags >> PATH_DEPTH_SHIFT;
-  const int specular = (flags & PATH_SPECULAR) != 0;
-  const uint strategy = g->view.view->strategy;
-  const int is_occlusion = (strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
-  const float3 direction = (float3)(ray.dx, ray.dy, ray.dz);
-#ifdef SHADE_IN_MEDIA
-  if (hit.slot == CAPLET_SCATTERED) return;
-  scatter.x /= mean4(g->medium_stacks.path_light_ratio[path]);
-#endif
-
-  if (hit.slot == CAPLET_NONE) {
+// Adds the light of the sky to a path that met nothing.
+static inline void add_sky(const Stage* g, uint path, const PathState* state, const RayRecord* ray) {
+  const int is_occlusion = (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
 #ifdef CAPLET_UNSEEN_SKY
-    if (depth == 0u) return;  // a backdrop takes its place
+  if (state->depth == 0u) return;  // a backdrop takes its place
 #endif
-    float4 sky = (float4)(0.0f);
-    if (!is_occlusion)
-      sky = light_infinite(&g->spectra, &g->lights, (float3)(ray.ox, ray.oy, ray.oz), direction, wavelengths, scatter.x,
-                           specular);
-    else if (depth > 0u)
-      sky = film_white(g, wavelengths);
-    g->radiance.path_radiance[path] += throughput * sky;
-    return;
-  }
+  float4 sky = (float4)(0.0f);
+  if (!is_occlusion)
+    sky = light_infinite(&g->spectra, &g->lights, (float3)(ray->ox, ray->oy, ray->oz), (float3)(ray->dx, ray->dy, ray->dz),
+                         state->wavelengths, state->last_pdf, state->specular);
+  else if (state->depth > 0u)
+    sky = film_white(g, state->wavelengths);
+  g->radiance.path_radiance[path] += state->throughput * sky;
+}
 
-  if (is_occlusion && depth > 0u) return;
-  Surface s = surface_at(&g->tree, &g->surfaces, &ray, &hit);
-  const float3 wo = -direction;
-  if (any_surface_light && s.light != CAPLET_NONE && !is_occlusion) {
-    const float4 emitted = light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, wo, wavelengths);
-    if (max4(emitted) > 0.0f) {
-      float weight = 1.0f;
-      // Only this strategy finds light of the primitive that the ray crossed.
-      if (!specular && as_uint(scatter.z) != s.light) {
-#ifdef CAPLET_LIGHT_TREE
-        const uint before = g->carried.path_normal[path];
-#else
-        const uint before = CAPLET_NONE;
-#endif
-        const LightReceiver from = {(float3)(ray.ox, ray.oy, ray.oz), before};
-        weight = power_heuristic(scatter.x, light_area_pdf(&scene, s.light, from, &s, direction));
-      }
-      g->radiance.path_radiance[path] += throughput * emitted * weight;
-    }
+// Adds the light that a surface emits towards the path, weighted against light samples.
+static inline void add_emission(const Stage* g, const Scene* scene, const ShadingPoint* point, const PathState* state) {
+  const Surface* s = &point->surface;
+  const float4 emitted = light_emitted(&g->spectra, &g->lights, s->light, s->ng, s->uv, point->wo, state->wavelengths);
+  if (!(max4(emitted) > 0.0f)) return;
+  float weight = 1.0f;
+  // Only this strategy finds light of the primitive that the ray crossed.
+  if (!state->specular && state->crossed_light != s->light) {
+    const LightReceiver from = {(float3)(point->ray.ox, point->ray.oy, point->ray.oz), path_side(g, point->path)};
+    weight = power_heuristic(state->last_pdf, light_area_pdf(scene, s->light, from, s, -point->wo));
   }
+  g->radiance.path_radiance[point->path] += state->throughput * emitted * weight;
+}
 
-  TexturePlace place = texture_place(s.uv);
-  place.p = s.p;
-  place.n = s.ng;
-  float2 cone = (float2)(0.0f);
+// Finds where textures are looked up, the ray's cone there, and the material.
+static inline void find_material(const Stage* g, ShadingPoint* point, const PathState* state) {
+  const Surface* s = &point->surface;
+  const float3 direction = -point->wo;
+  point->place = texture_place(s->uv);
+  point->place.p = s->p;
+  point->place.n = s->ng;
+  point->cone = (float2)(0.0f);
   if (has_cones) {
-    cone = g->cones.path_cone[path];
-    cone.x = fabs(cone.x + cone.y * (hit.t * length(direction)));
-    cone_footprint(&place, direction, cone.x, s.dpdu, s.dpdv);
+    point->cone = g->cones.path_cone[point->path];
+    point->cone.x = fabs(point->cone.x + point->cone.y * (point->hit.t * length(direction)));
+    cone_footprint(&point->place, direction, point->cone.x, s->dpdu, s->dpdv);
   }
-  uint material = s.material;
+  point->material = s->material;
   if (any_choice_material) {
-    const PathSample here = path_sample(g->batch.batch, g->view.view, path);
-    const float u = sampler_2d(here, SCATTERING_SAMPLE(roulette, depth)).y;
-    material = bsdf_chosen(&g->materials, &g->spectra, material, &place, wavelengths, u);
+    const PathSample at = path_sample(g->batch.batch, g->view.view, point->path);
+    const float u = sampler_2d(at, SCATTERING_SAMPLE(roulette, state->depth)).y;
+    point->material = bsdf_chosen(&g->materials, &g->spectra, point->material, &point->place, state->wavelengths, u);
   }
-#ifdef SHADE_IN_MEDIA
-  if (media_passes(g, out, path, material, &ray, &hit)) return;
-#endif
-  const int bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
-  if (bumped) {
+}
+
+// Makes the shading frame, after bumps, and the BSDF.
+static inline void make_bsdf(const Stage* g, ShadingPoint* point, const PathState* state) {
+  Surface* s = &point->surface;
+  const uint material = point->material;
+  point->bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
+  if (point->bumped) {
     float3 dndu = (float3)(0.0f), dndv = dndu;
     if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
-      normal_derivatives(&g->tree, &g->surfaces, &ray, &hit, &s, &dndu, &dndv);
-    s.ns = bump_normal(&g->materials, &g->spectra, material, &place, s.ns, s.dpdu, s.dpdv, dndu, dndv);
+      normal_derivatives(&g->tree, &g->surfaces, &point->ray, &point->hit, s, &dndu, &dndv);
+    s->ns = bump_normal(&g->materials, &g->spectra, material, &point->place, s->ns, s->dpdu, s->dpdv, dndu, dndv);
   }
-  const Frame frame = frame_from_tangent(s.ns, bsdf_tangent(&g->materials, material, s.dpdu, s.ns, s.along_u));
-  const float3 wo_local = to_local(&frame, wo);
-  Bsdf bsdf = bsdf_make(&g->materials, &g->spectra, material, &place, wavelengths);
-  if (depth == 0) store_layers(g, path, &hit, &s, &bsdf, wo_local, wo, wavelengths, pdfs);
-  if (is_occlusion) return send_occlusion_ray(g, out, path, &hit, &s, wo);
-#ifdef SHADE_IN_MEDIA
-  const uint within = g->medium_stacks.path_within[path];
-  const int is_within = boundary_is_met_within(g, path, &hit);
-  if (!is_within && depth - within >= g->view.view->max_depth) return;
-#else
-  if (depth >= g->view.view->max_depth) return;
-#endif
-  if (bsdf_is_dispersive(&bsdf) && pdfs.y > 0.0f) {
-    // A direction that depends on wavelength belongs to the hero wavelength alone: the others end
-    // here, whatever the samples contribute.
-    pdfs = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
-    throughput = (float4)(throughput.x, 0.0f, 0.0f, 0.0f);
-#ifdef SHADE_IN_MEDIA
-    media_hero_alone(g, path, &throughput, wavelengths);
-#endif
-    g->carried.path_wavelength_pdfs[path] = pdfs;
-  }
+  point->frame = frame_from_tangent(s->ns, bsdf_tangent(&g->materials, material, s->dpdu, s->ns, s->along_u));
+  point->wo_local = to_local(&point->frame, point->wo);
+  point->bsdf = bsdf_make(&g->materials, &g->spectra, material, &point->place, state->wavelengths);
+}
 
-  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
-  if (any_stochastic_material) bsdf.random = path_hash(at, depth);
-  const float2 choices = sampler_2d(at, SCATTERING_SAMPLE(choices, depth));
-  const uint side = receiving_side(&frame, &bsdf, wo_local);
-  const int by_shading = goes_by_shading_normal(&s, &bsdf, bumped);
-  if (g->lights.lighting->sampled_light_count > 0 && (strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u &&
-      !bsdf_is_specular(&bsdf))
-    sample_light(g, out, &scene, path, &hit, &s, &frame, &bsdf, side, by_shading, wo_local, wo, throughput, wavelengths,
-                 sampler_bits(at, SCATTERING_SAMPLE(choices, depth)), sampler_2d(at, SCATTERING_SAMPLE(light, depth)));
+// Drops all wavelengths but the hero where a direction depends on the wavelength: the others end
+// here, whatever the samples contribute.
+static inline void keep_hero_wavelength(const Stage* g, uint path, PathState* state, float4 pdfs) {
+  g->carried.path_wavelength_pdfs[path] = (float4)(pdfs.x * 0.25f, 0.0f, 0.0f, 0.0f);
+  state->throughput = (float4)(state->throughput.x, 0.0f, 0.0f, 0.0f);
+  media_hero_alone(g, path, state);
+}
 
+// Samples the BSDF and sends the path on. is_within: it met the boundary of a subsurface from
+// within, after `uncounted` scatterings there.
+static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* point, PathState* state, PathSample at, int is_within) {
+  const Surface* s = &point->surface;
+  const uint path = point->path, depth = state->depth, strategy = g->view.view->strategy;
   BsdfSample sample;
-  const float2 u_bsdf = sampler_2d(at, SCATTERING_SAMPLE(bsdf, depth));
-  if ((strategy & CAPLET_STRATEGY_UNIFORM) == 0u ? !bsdf_sample(&bsdf, wo_local, choices.y, u_bsdf, &sample)
-                                                 : !uniform_sample(&bsdf, strategy, wo_local, u_bsdf, &sample))
+  const float u_lobe = sampler_2d(at, SCATTERING_SAMPLE(choices, depth)).y;
+  const float2 u = sampler_2d(at, SCATTERING_SAMPLE(bsdf, depth));
+  if ((strategy & CAPLET_STRATEGY_UNIFORM) == 0u ? !bsdf_sample(&point->bsdf, point->wo_local, u_lobe, u, &sample)
+                                                 : !uniform_sample(&point->bsdf, strategy, point->wo_local, u, &sample))
     return;
-  float3 wi = to_world(&frame, sample.wi);
-  int crosses = dot(wi, s.ng) * dot(wo, s.ng) < 0.0f;
-  if (sample.transmitted != crosses && !by_shading) {
+  float3 wi = to_world(&point->frame, sample.wi);
+  int crosses = dot(wi, s->ng) * dot(point->wo, s->ng) < 0.0f;
+  if (sample.transmitted != crosses && !point->by_shading) {
     // Rims of mirrors would be black: a reflection that goes beneath the surface is mirrored to
     // above it.
-    if (!sample.specular || (s.flags & CAPLET_GEOMETRY_NORMALS) == 0u) return;
-    wi -= 2.0f * dot(wi, s.ng) * s.ng;
+    if (!sample.specular || (s->flags & CAPLET_GEOMETRY_NORMALS) == 0u) return;
+    wi -= 2.0f * dot(wi, s->ng) * s->ng;
     crosses = 0;
   }
-  throughput *= sample.weight;
-  scatter.x = path_pdf(g->view.view, sample.pdf);
-  scatter.y *= sample.eta_scale;
-  scatter.z = as_float(crosses ? s.primitive_light : CAPLET_NONE);
-
-  if (!path_survives(at, depth, scatter.y, &throughput)) return;
-  if (!(max4(fabs(throughput)) > 0.0f)) return;
-#ifdef SHADE_IN_MEDIA
-  if (is_within) {
-    if (!within_survives(within, within_number(path_hash(at, depth), within), &throughput)) return;
-    g->medium_stacks.path_within[path] = within + 1u;
-  }
-#endif
-
+  state->throughput *= sample.weight;
+  state->last_pdf = path_pdf(g->view.view, sample.pdf);
+  state->eta_scale *= sample.eta_scale;
+  state->crossed_light = crosses ? s->primitive_light : CAPLET_NONE;
+  if (!path_survives(at, depth, state->eta_scale, &state->throughput)) return;
+  if (!(max4(fabs(state->throughput)) > 0.0f)) return;
+  if (is_within && !path_survives_within(g, path, media_uncounted(g, path), path_hash(at, depth), &state->throughput)) return;
+  state->depth = depth + 1u;
+  state->specular = sample.specular;
   if (has_cones) {
+    float2 cone = point->cone;
     if (sample.specular) {
-      const float side = dot(wo, s.ng) < 0.0f ? -1.0f : 1.0f;
-      const float reach = fmax(cone.x, 1e3f * s.error);
+      const float side = dot(point->wo, s->ng) < 0.0f ? -1.0f : 1.0f;
+      const float bend = surface_bend(&g->tree, &g->surfaces, &point->ray, &point->hit, s, fmax(cone.x, 1e3f * s->error));
       // eta_scale is the squared index of the side of wi over that of wo.
-      cone = cone_turned(cone.x, cone.y, side * surface_bend(&g->tree, &g->surfaces, &ray, &hit, &s, reach), fabs(dot(wo, s.ng)),
+      cone = cone_turned(cone.x, cone.y, side * bend, fabs(dot(point->wo, s->ng)),
                          sample.transmitted ? rsqrt(sample.eta_scale) : 0.0f);
     }
     g->cones.path_cone[path] = cone;
   }
-  const float3 origin = offset_origin(s.p, s.ng, s.error, wi);
-  g->rays.path_ray[path] = path_onward(origin, wi);
-  g->carried.path_throughput[path] = throughput;
-  g->carried.path_scatter[path] = scatter;
-#ifdef CAPLET_LIGHT_TREE
-  g->carried.path_normal[path] = side;
-#endif
-  g->carried.path_flags[path] = ((depth + 1) << PATH_DEPTH_SHIFT) | path_flag(g->view.view, sample.specular);
-#ifdef SHADE_IN_MEDIA
-  media_scattered(g, path, &hit, crosses);
-#endif
-  const uint bits = g->batch.batch->sort_bits;
-  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, origin, wi) : 0u);
+  media_scattered(g, path, &point->hit, crosses);
+  continue_path(g, out, path, state, point->side, offset_origin(s->p, s->ng, s->error, wi), wi);
+}
+
+static void sending_item(const Stage* g, Outbox* out, uint item) {
+  const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
+  const int is_occlusion = (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
+  ShadingPoint point;
+  const uint path = point.path = g->queues.queue[item];
+  point.ray = g->rays.path_ray[path];
+  point.hit = g->rays.path_hit[path];
+  if (in_media && point.hit.slot == CAPLET_SCATTERED) return;
+  PathState state = load_path_state(g, path);
+  state.last_pdf = media_last_pdf(g, path, state.last_pdf);
+  if (point.hit.slot == CAPLET_NONE) {
+    add_sky(g, path, &state, &point.ray);
+    return;
+  }
+  if (is_occlusion && state.depth > 0u) return;
+  point.surface = surface_at(&g->tree, &g->surfaces, &point.ray, &point.hit);
+  point.wo = -(float3)(point.ray.dx, point.ray.dy, point.ray.dz);
+  if (any_surface_light && point.surface.light != CAPLET_NONE && !is_occlusion) add_emission(g, &scene, &point, &state);
+  find_material(g, &point, &state);
+  if (media_passes(g, out, path, point.material, &point.ray, &point.hit)) return;
+  make_bsdf(g, &point, &state);
+  const float4 pdfs = g->carried.path_wavelength_pdfs[path];
+  if (state.depth == 0u) store_layers(g, path, &point.hit, &point.surface, &point.bsdf, point.wo_local, point.wo, state.wavelengths, pdfs);
+  if (is_occlusion) {
+    send_occlusion_ray(g, out, &point, &state);
+    return;
+  }
+  const int is_within = boundary_is_met_within(g, path, &point.hit);
+  if (!is_within && state.depth - media_uncounted(g, path) >= g->view.view->max_depth) return;
+  if (bsdf_is_dispersive(&point.bsdf) && pdfs.y > 0.0f) keep_hero_wavelength(g, path, &state, pdfs);
+
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
+  if (any_stochastic_material) point.bsdf.random = path_hash(at, state.depth);
+  point.side = receiving_side(&point.frame, &point.bsdf, point.wo_local);
+  point.by_shading = goes_by_shading_normal(&point.surface, &point.bsdf, point.bumped);
+  if (takes_light_sample(g) && !bsdf_is_specular(&point.bsdf)) sample_light(g, out, &scene, &point, &state, at);
+  scatter(g, out, &point, &state, at, is_within);
 }
 
 #include "stages/sending.cl"

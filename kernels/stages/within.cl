@@ -9,6 +9,7 @@
 
 #include "math/rng.cl"
 #include "media/medium_stack.cl"
+#include "stages/path.cl"
 
 static inline int medium_is_within(const Media* media, uint medium) {
   return medium != CAPLET_NONE && (media->mediums[medium].flags & CAPLET_MEDIUM_SUBSURFACE) != 0u;
@@ -36,6 +37,13 @@ static inline int within_survives(uint within, float u, float4* throughput) {
   *throughput /= 1.0f - ends;
   return 1;
 }
-static inline float within_number(uint path_hash, uint within) { return (float)(hash_mix(hash_combine(path_hash ^ 0x51ed270bu, within)) >> 8) * 0x1p-24f; }
+
+// The same for the path, whose random numbers have the key `hash`; counts the scattering.
+static inline int path_survives_within(const Stage* g, uint path, uint within, uint hash, float4* throughput) {
+  const float u = (float)(hash_mix(hash_combine(hash ^ HASHED_SAMPLE(within), within)) >> 8) * 0x1p-24f;
+  if (!within_survives(within, u, throughput)) return 0;
+  g->medium_stacks.path_within[path] = within + 1u;
+  return 1;
+}
 
 #endif

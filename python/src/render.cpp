@@ -60,6 +60,8 @@ caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const s
   return report;
 }
 
+using caplet::Film;
+
 /// Binds devices, and verify on them.
 void bind_devices(nb::module_& m) {
   m.def("devices", [] {
@@ -98,7 +100,6 @@ void bind_devices(nb::module_& m) {
 }
 
 void bind_film(nb::module_& m) {
-  using caplet::Film;
   nb::class_<Film>(m, "Film")
       .def_prop_ro("width", &Film::width)
       .def_prop_ro("height", &Film::height)

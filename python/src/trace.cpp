@@ -74,8 +74,8 @@ class Rays {
 
 /// `out`: bytes of as many crossings, which a structured array lends.
 template <class Owner>
-void nearest(Owner& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min, const Array& t_max,
-             nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
+void nearest(Owner& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
+             const Array& t_max, nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
   const Rays rays(count, origins, directions, t_min, t_max);
   if (out.shape(0) != count * sizeof(Crossing)) throw nb::value_error("room for other rays");
   std::uint8_t* const to = out.data();
@@ -88,7 +88,7 @@ void nearest(Owner& held, std::size_t count, const Array& origins, const Array& 
     chunk.resize(std::min(rays_in_a_chunk, count - first));
     rays.read(first, chunk);
     hits.resize(chunk.size());
-    owner.session.nearest(chunk, hits);
+    held.session.nearest(chunk, hits);
     for (std::size_t i = 0; i < hits.size(); ++i) hits[i].ray = static_cast<std::uint32_t>(first + i);
     std::memcpy(to + first * sizeof(Crossing), hits.data(), hits.size() * sizeof(Crossing));
   }
@@ -109,7 +109,7 @@ auto crossings(Owner& held, std::size_t count, const Array& origins, const Array
       if (first > 0) released.check_signals();
       chunk.resize(std::min(at_once, count - first));
       rays.read(first, chunk);
-      std::vector<Crossing> hits = owner.session.crossings(chunk, most);
+      std::vector<Crossing> hits = held.session.crossings(chunk, most);
       for (Crossing& hit : hits) hit.ray += static_cast<std::uint32_t>(first);
       const std::size_t before = bytes.size();
       bytes.resize(before + hits.size() * sizeof(Crossing));
@@ -156,12 +156,12 @@ void bind_trace(nb::module_& m) {
            })
       .def("nearest", &nearest<HeldPicker>)
       .def("crossings", &crossings<HeldPicker>)
-      .def("pixel", [](HeldPicker& owner, int x, int y) -> nb::object {
+      .def("pixel", [](HeldPicker& held, int x, int y) -> nb::object {
         std::optional<caplet::Hit> hit;
         {
           const Released released;
           const auto turn = turn_of(held);
-          hit = owner.session.pixel(x, y);
+          hit = held.session.pixel(x, y);
         }
         if (!hit) return nb::none();
         nb::dict out;
