@@ -106,106 +106,133 @@ static inline float area_error(const Tree* tree, __global const LightRecord* lig
   return 16.0f * CAPLET_EPS * (world + norm1(x - p));
 }
 
+// A light, and what sampling it asks of its geometry.
+typedef struct {
+  __global const LightRecord* light;
+  __global const GeometryRecord* geometry;
+  __global const float* data;
+  uint shape;
+  int both, flip, placed;  // it emits on both sides; its normal is turned round; it is within an instance
+} AreaLight;
+
+// These sample a light as area_sample does. Those that do not set s->pdf return a density by area.
+
+// A light that has a ball around it: directions towards the ball.
+static inline int area_sample_ball(const Scene* scene, const AreaLight* of, __global const float* ball, float3 p, float2 u, AreaSample* s) {
+  __global const LightRecord* light = of->light;
+  const float3 wi = ball_sample(ball, p, u);
+  HitRecord hit;
+  if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &hit)) return 0;
+  // Rays do not stop at an unseen light, so light from its far side passes through its near side.
+  const uint crossings =
+      light->flags & CAPLET_LIGHT_UNSEEN ? choose_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit) : 1u;
+  const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
+  const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
+  if (found.light == CAPLET_NONE || (!of->both && !(dot(found.ng, wi) < 0.0f))) return 0;
+  s->p = found.p;
+  s->n = found.ng;
+  s->surface = hit.surface;
+  s->error = area_error(&scene->tree, light, norm1(load3(ball)) + ball[3], found.p, p);
+  s->pdf = fmin(ball_pdf(ball, p) / (float)crossings, CAPLET_MAX_DENSITY);
+  return 1;
+}
+
+// A sphere outside: the cone that it fills, of 2 pi `cone` steradians.
+static inline int area_sample_sphere(const AreaLight* of, float cone, float3 p, float2 u, AreaSample* s) {
+  if (of->flip && !of->both) return 0;
+  const float3 axis = sphere_c(of->data) - p;
+  const float distance = sqrt(dot(axis, axis));
+  s->n = sphere_cone_sample(axis / distance, sphere_r(of->data) / distance, cone, u);
+  s->p = sphere_c(of->data) + s->n * sphere_r(of->data);
+  s->pdf = 1.0f / (2.0f * CAPLET_PI * cone);
+  return 1;
+}
+
+// A triangle: by solid angle, or by area where that is too small or too large.
+static inline int area_sample_triangle(const Scene* scene, const AreaLight* of, float3 p, float2 u, AreaSample* s, float* per_area) {
+  const TriangleView view = area_triangle(&scene->tree, of->light, of->data, p);
+  if (!(view.area > 0.0f)) return 0;
+  const int mirrored = of->placed && (scene->tree.instances[of->light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
+  s->n = view.cross / (2.0f * view.area);
+  if (of->flip != mirrored) s->n = -s->n;
+  if (!of->both && !(dot(s->n, view.v0) < 0.0f)) return 0;
+  float pdf;
+  const float2 b = triangle_sample(&view, u, &pdf);
+  s->p = p + (view.v0 + (b.x * (view.v1 - view.v0) + b.y * (view.v2 - view.v0)));
+  if (view.solid_angle > 0.0f)
+    s->pdf = pdf;
+  else
+    *per_area = pdf;
+  return 1;
+}
+
+// Disks, cylinders, spheres and capsules: by area, in the light's own space.
+static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, float3 p, float2 u, AreaSample* s, float* per_area) {
+  __global const float* data = of->data;
+  float3 x, n;
+  const float3 q = of->placed ? transform_point(scene->tree.instances[of->light->instance].object_from_world, p) : p;
+  if (of->shape == shape_disk) {
+    const float3 center = disk_c(data);
+    n = disk_n(data);
+    const Frame frame = frame_from_normal(n);
+    const float2 d = disk_r(data) * sample_disk(u);
+    x = center + (frame.s * d.x + frame.t * d.y);
+    if (of->flip) n = -n;
+    if (!of->both && !(dot(q - center, n) > 0.0f)) return 0;
+    *per_area = CAPLET_INV_PI / sqr(disk_r(data));
+  } else if (CAPLET_HAS_SHAPE(shape_cylinder) && of->shape == shape_cylinder) {
+    *per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, of->geometry, data), u, &x, &n, &s->surface);
+    if (!(*per_area > 0.0f)) return 0;
+    if (of->flip) n = -n;
+  } else {
+    const RoundCone k = area_round_cone(of->shape, of->light, data);
+    const RoundConeView view = round_cone_view(&k, q);
+    if (view.inside != of->flip && !of->both) return 0;  // turned inside out, a solid emits inward
+    *per_area = round_cone_sample(&k, &view, u, &x, &n);
+    if (!(*per_area > 0.0f)) return 0;
+    if (of->flip) n = -n;
+  }
+  if (of->placed) {
+    __global const InstanceRecord* instance = scene->tree.instances + of->light->instance;
+    *per_area /= area_scale(instance, n);
+    x = transform_point(instance->world_from_object, x);
+    n = unit_or(transform_transposed(instance->object_from_world, n), n);
+  }
+  s->p = x;
+  s->n = n;
+  return 1;
+}
+
 // Samples primitive light `light` as seen from p. Returns 0 when no part of it that emits and that
 // rays see ("onesided") faces p.
 static inline int area_sample(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
   __global const GeometryRecord* geometry = scene->surfaces.geometries + light->geometry;
-  __global const float* data = area_data(&scene->tree, light);
-  const uint shape = geometry->shape;
-  const int both = (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0;
-  const int flip = (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
-  const int placed = light->instance != CAPLET_NONE;
+  const AreaLight of = {light, geometry, area_data(&scene->tree, light), geometry->shape, (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0,
+                        (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, light->instance != CAPLET_NONE};
   float per_area = 0.0f;
   s->pdf = 0.0f;
   s->surface = 0u;
-
   __global const float* ball = area_ball(&scene->lights, light);
-  if (ball) {
-    const float3 wi = ball_sample(ball, p, u);
-    HitRecord hit;
-    if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &hit)) return 0;
-    // Rays do not stop at an unseen light, so light from its far side passes through its near side.
-    const uint crossings =
-        light->flags & CAPLET_LIGHT_UNSEEN ? choose_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit) : 1u;
-    const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
-    const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
-    if (found.light == CAPLET_NONE || (!both && !(dot(found.ng, wi) < 0.0f))) return 0;
-    s->p = found.p;
-    s->n = found.ng;
-    s->surface = hit.surface;
-    s->error = area_error(&scene->tree, light, norm1(load3(ball)) + ball[3], found.p, p);
-    s->pdf = fmin(ball_pdf(ball, p) / (float)crossings, CAPLET_MAX_DENSITY);
-    return 1;
-  }
-  const float cone = area_sphere_cone(light, shape, data, p);
-  if (cone > 0.0f) {
-    if (flip && !both) return 0;
-    const float3 axis = sphere_c(data) - p;
-    const float distance = sqrt(dot(axis, axis));
-    s->n = sphere_cone_sample(axis / distance, sphere_r(data) / distance, cone, u);
-    s->p = sphere_c(data) + s->n * sphere_r(data);
-    s->pdf = 1.0f / (2.0f * CAPLET_PI * cone);
-  } else if (shape == shape_triangle) {
-    const TriangleView view = area_triangle(&scene->tree, light, data, p);
-    if (!(view.area > 0.0f)) return 0;
-    const int mirrored = placed && (scene->tree.instances[light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
-    s->n = view.cross / (2.0f * view.area);
-    if (flip != mirrored) s->n = -s->n;
-    if (!both && !(dot(s->n, view.v0) < 0.0f)) return 0;
-    float pdf;
-    const float2 b = triangle_sample(&view, u, &pdf);
-    s->p = p + (view.v0 + (b.x * (view.v1 - view.v0) + b.y * (view.v2 - view.v0)));
-    if (view.solid_angle > 0.0f)
-      s->pdf = pdf;
-    else
-      per_area = pdf;
-  } else {
-    float3 x, n;
-    const float3 q = placed ? transform_point(scene->tree.instances[light->instance].object_from_world, p) : p;
-    if (shape == shape_disk) {
-      const float3 center = disk_c(data);
-      n = disk_n(data);
-      const Frame frame = frame_from_normal(n);
-      const float2 d = disk_r(data) * sample_disk(u);
-      x = center + (frame.s * d.x + frame.t * d.y);
-      if (flip) n = -n;
-      if (!both && !(dot(q - center, n) > 0.0f)) return 0;
-      per_area = CAPLET_INV_PI / sqr(disk_r(data));
-    } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
-      per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, geometry, data), u, &x, &n, &s->surface);
-      if (!(per_area > 0.0f)) return 0;
-      if (flip) n = -n;
-    } else {
-      const RoundCone k = area_round_cone(shape, light, data);
-      const RoundConeView view = round_cone_view(&k, q);
-      if (view.inside != flip && !both) return 0;  // turned inside out, a solid emits inward
-      per_area = round_cone_sample(&k, &view, u, &x, &n);
-      if (!(per_area > 0.0f)) return 0;
-      if (flip) n = -n;
-    }
-    if (placed) {
-      __global const InstanceRecord* instance = scene->tree.instances + light->instance;
-      per_area /= area_scale(instance, n);
-      x = transform_point(instance->world_from_object, x);
-      n = unit_or(transform_transposed(instance->object_from_world, n), n);
-    }
-    s->p = x;
-    s->n = n;
-  }
+  if (ball) return area_sample_ball(scene, &of, ball, p, u, s);
+  const float cone = area_sphere_cone(light, of.shape, of.data, p);
+  const int sampled = cone > 0.0f                  ? area_sample_sphere(&of, cone, p, u, s)
+                      : of.shape == shape_triangle ? area_sample_triangle(scene, &of, p, u, s, &per_area)
+                                                   : area_sample_by_area(scene, &of, p, u, s, &per_area);
+  if (!sampled) return 0;
 
   const float3 away = s->p - p;
   const float distance_squared = dot(away, away);
   if (!(distance_squared > 0.0f)) return 0;
   const float facing = -dot(s->n, away) / sqrt(distance_squared);
-  if (both ? facing == 0.0f : !(facing > 0.0f)) return 0;
+  if (of.both ? facing == 0.0f : !(facing > 0.0f)) return 0;
   // This is before ReverseOrientation, when a ray enters against the normal.
-  if ((facing > 0.0f) == flip) s->surface |= CAPLET_LEAVING;
-  if (placed) {
-    const uint unseen = (facing > 0.0f) != flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
+  if ((facing > 0.0f) == of.flip) s->surface |= CAPLET_LEAVING;
+  if (of.placed) {
+    const uint unseen = (facing > 0.0f) != of.flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
     if (scene->tree.instances[light->instance].flags & unseen) return 0;
   }
   if (per_area > 0.0f) s->pdf = per_area * distance_squared / fabs(facing);
-  s->error = area_error(&scene->tree, light, area_magnitude(shape, data), s->p, p);
+  s->error = area_error(&scene->tree, light, area_magnitude(of.shape, of.data), s->p, p);
   s->pdf = fmin(s->pdf, CAPLET_MAX_DENSITY);
   return s->pdf > 0.0f;
 }

@@ -63,21 +63,32 @@ static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, re
   return along ? (free <= 0.0f) & (rest >= 0.0f) : (across ? (disc >= 0.0f) & (rest >= 0.0f) : slope != 0.0f);
 }
 
-// Returns the span of the hull of the ends at p0 and p0 + b, for a ray from p0 + w. Caps:
-// CAPLET_CAP_*.
-static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, real bx, real by, real bz, real r0, real r1,
-                                real cap0, real cap1) {
-  const real zero = real_of(0.0f), one = real_of(1.0f), far = real_of(INFINITY);
-  const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
+// ConeEnds are the two ends: the first at height 0 of the axis, the second at `length`.
+typedef struct {
+  real length, r0, r1, taper;  // taper: r0 - r1
+  real_mask round0, round1;
+  real_mask mixed;             // one is round, the other a disk
+  real ball, rim;              // radii of these two
+} ConeEnds;
 
-  // The ray's point nearest to p0 is computed in cylinder coordinates.
+// JoiningCone is the nappe c |e| <= D - k y that touches both ends, at heights `low` and `high`.
+typedef struct {
+  real c, k, D, low, high;
+  real w;                      // length of its generator from end to end
+  real dd;                     // length^2 + rim^2
+  real_mask all0, all1;        // the ball of this end holds the other end, and is the whole solid
+} JoiningCone;
+
+// BallSpan is where a line meets the ball of a round end.
+typedef struct {
+  real enter, exit;
+  real_mask met;
+} BallSpan;
+
+// Returns a line through p, which lies near the origin, in cylinder coordinates of the unit axis m.
+static inline AxisLine axis_line(const ShapeRay* ray, real px, real py, real pz, real mx, real my, real mz) {
+  const real zero = real_of(0.0f);
   AxisLine l;
-  const CAPLET_WAITS real shift = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
-  const real px = wx + shift * ray->dx, py = wy + shift * ray->dy, pz = wz + shift * ray->dz;
-  const real bb = real_dot(bx, by, bz, bx, by, bz);
-  const real inv_length = 1.0f / (bb > 0.0f ? sqrt(bb) : one);
-  const real mx = bx * inv_length, my = by * inv_length, mz = bz * inv_length;
-  const real length = bb * inv_length;  // as heights along m are measured
   l.u = real_dot(px, py, pz, mx, my, mz);
   l.v = real_dot(mx, my, mz, ray->dx, ray->dy, ray->dz);
   l.ex = px - l.u * mx;
@@ -94,6 +105,136 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   l.fz = crosses ? l.fz : zero;
   l.ff = crosses ? l.ff : zero;
   l.nearest = crosses ? -real_dot(l.ex, l.ey, l.ez, l.fx, l.fy, l.fz) / l.ff : zero;
+  return l;
+}
+
+// Returns the cone that joins the ends. From a rim of radius s to a ball of radius R its generator
+// has the length w, w^2 = L^2 + s^2 - R^2; between two balls w^2 = L^2 - (r0 - r1)^2, between two
+// rims L^2 + (r0 - r1)^2.
+static inline JoiningCone joining_cone(const ConeEnds* e) {
+  const real zero = real_of(0.0f);
+  const real length = e->length, taper = e->taper, ball = e->ball, rim = e->rim, product = taper * (e->r0 + e->r1);
+  const real_mask balls = e->round0 & e->round1;
+  const real ww = balls ? (length - taper) * (length + taper)
+                        : (e->mixed ? length * length + (e->round0 ? -product : product) : length * length + taper * taper);
+  JoiningCone out;
+  out.w = sqrt(real_max(ww, zero));
+  out.dd = length * length + rim * rim;
+  const real inv = 1.0f / (balls ? length : (e->mixed ? out.dd : out.w));
+  out.c = (balls ? out.w : (e->mixed ? rim * ball + length * out.w : length)) * inv;
+  out.k = e->mixed ? product / real_max(length * ball + rim * out.w, real_of(FLT_MIN)) : taper * inv;  // 0 without radii
+  out.D = e->round0 ? e->r0 : out.c * e->r0;
+  out.low = e->round0 ? e->r0 * out.k : zero;
+  out.high = e->round1 ? length + e->r1 * out.k : length;
+  const real_mask one_ball = (e->round0 | e->round1) & (ww <= 0.0f);
+  out.all0 = one_ball & e->round0 & ((taper >= 0.0f) | (e->round1 == 0));
+  out.all1 = one_ball & (out.all0 == 0);
+  return out;
+}
+
+// Intersects the joining cone, whose parts beyond the circles are the balls of round ends. Returns
+// the lanes that meet it.
+static inline real_mask side_span(const AxisLine* l, const ConeEnds* e, const JoiningCone* cone, const BallSpan* ball0,
+                                  const BallSpan* ball1, Span* span) {
+  const real low = cone->low, high = cone->high;
+  const real_mask all0 = cone->all0, all1 = cone->all1;
+  real y_enter, y_exit;
+  real_mask hit = nappe_span(l, cone->c, cone->k, cone->D, e->taper > 0.0f ? high : low, &span->t_enter, &span->t_exit, &y_enter, &y_exit);
+  hit = (hit & (e->length > 0.0f)) | all0 | all1;
+  const real_mask enter_at0 = all0 | (e->round0 & (y_enter < low) & (all1 == 0)),
+                  exit_at0 = all0 | (e->round0 & (y_exit < low) & (all1 == 0));
+  const real_mask enter_at1 = all1 | (e->round1 & (y_enter > high) & (all0 == 0)),
+                  exit_at1 = all1 | (e->round1 & (y_exit > high) & (all0 == 0));
+  hit &= ((enter_at0 | exit_at0) == 0) | ball0->met;
+  hit &= ((enter_at1 | exit_at1) == 0) | ball1->met;
+  span->t_enter = enter_at0 ? ball0->enter : (enter_at1 ? ball1->enter : span->t_enter);
+  span->t_exit = exit_at0 ? ball0->exit : (exit_at1 ? ball1->exit : span->t_exit);
+  // A shallow ray may meet a ball on the other side of the circle than the cone: the side where it
+  // meets it counts.
+  y_enter = l->u + l->v * span->t_enter;
+  y_exit = l->u + l->v * span->t_exit;
+  const real_mask side = int_of(0), one_end = int_of(1), other_end = int_of(2);
+  span->surface_enter =
+      (all0 | (enter_at0 & (y_enter < low))) ? one_end : ((all1 | (enter_at1 & (y_enter > high))) ? other_end : side);
+  span->surface_exit = (all0 | (exit_at0 & (y_exit < low))) ? one_end : ((all1 | (exit_at1 & (y_exit > high))) ? other_end : side);
+  span->enter = span->exit = int_of(-1);
+  return hit;
+}
+
+// Limits a span to the tube through the rim of a wide flat end. There two surfaces of a short cone
+// meet in a sharp edge, and roundings of both can move it far out. tube: the square of half the
+// chord across the axis.
+static inline void clip_to_tube(const AxisLine* l, const ConeEnds* e, real tube, Span* span) {
+  const real_mask sharp = ((e->taper > 0.0f) & (e->round0 == 0)) | ((e->taper < 0.0f) & (e->round1 == 0));
+  const real h = l->ff > 0.0f ? sqrt(real_max(tube, real_of(0.0f)) / l->ff) : real_of(INFINITY);
+  const real_mask enter_tube = sharp & (l->nearest - h > span->t_enter), exit_tube = sharp & (l->nearest + h < span->t_exit);
+  const real_mask side = int_of(0);
+  span->t_enter = enter_tube ? l->nearest - h : span->t_enter;
+  span->t_exit = exit_tube ? l->nearest + h : span->t_exit;
+  span->surface_enter = enter_tube ? side : span->surface_enter;
+  span->surface_exit = exit_tube ? side : span->surface_exit;
+}
+
+// Limits a span to the half-spaces of the flat ends `flat0` and `flat1`. A line along them stays on
+// its side for ever.
+static inline void clip_to_flat_ends(const AxisLine* l, real length, real_mask flat0, real_mask flat1, real cap0, real cap1, Span* span) {
+  const real far = real_of(INFINITY);
+  const real_mask one_end = int_of(1), other_end = int_of(2), up = l->v >= 0.0f;
+  const real v = l->v == 0.0f ? real_of(FLT_MIN) : l->v;
+  const real at0 = -l->u / v, at1 = (length - l->u) / v;
+  const real flat_enter = (up ? flat0 : flat1) ? (up ? at0 : at1) : -far,
+             flat_exit = (up ? flat1 : flat0) ? (up ? at1 : at0) : far;
+  const real_mask enter_flat = flat_enter > span->t_enter, exit_flat = flat_exit < span->t_exit;
+  const real_mask open0 = cap0 == CAPLET_CAP_OPEN, open1 = cap1 == CAPLET_CAP_OPEN;
+  span->t_enter = enter_flat ? flat_enter : span->t_enter;
+  span->t_exit = exit_flat ? flat_exit : span->t_exit;
+  span->surface_enter = enter_flat ? (up ? one_end : other_end) : span->surface_enter;
+  span->surface_exit = exit_flat ? (up ? other_end : one_end) : span->surface_exit;
+  span->enter &= (enter_flat & (up ? open0 : open1)) == 0;
+  span->exit &= (exit_flat & (up ? open1 : open0)) == 0;
+}
+
+// Limits a span, in the lanes `second`, to the second cone: from the rim to the ball that reaches
+// through the rim's disk. Returns the lanes that meet it, or are not of `second`.
+static inline real_mask clip_to_second_cone(const AxisLine* l, const ConeEnds* e, const JoiningCone* cone, const BallSpan* ball0,
+                                            const BallSpan* ball1, real_mask second, Span* span) {
+  const real length = e->length, ball = e->ball, rim = e->rim;
+  const real_mask round0 = e->round0, side = int_of(0), number = round0 ? int_of(1) : int_of(2);
+  const real c = (ball - length) * (ball + length) / (rim * ball + length * cone->w);
+  const real turned = (length * ball + rim * cone->w) / cone->dd;
+  const real k = round0 ? turned : -turned;
+  const real circle = round0 ? ball * k : length + ball * k;
+  const real D = round0 ? ball : ball + length * k;
+  real t_enter, t_exit, y_enter, y_exit;
+  const real_mask within = nappe_span(l, c, k, D, circle, &t_enter, &t_exit, &y_enter, &y_exit);
+  const real_mask enter_beyond = round0 ? y_enter > circle : y_enter < circle;
+  const real_mask exit_beyond = round0 ? y_exit > circle : y_exit < circle;
+  const real_mask met = (second == 0) | (within & (((enter_beyond | exit_beyond) == 0) | (round0 ? ball0->met : ball1->met)));
+  t_enter = enter_beyond ? (round0 ? ball0->enter : ball1->enter) : t_enter;
+  t_exit = exit_beyond ? (round0 ? ball0->exit : ball1->exit) : t_exit;
+  y_enter = l->u + l->v * t_enter;
+  y_exit = l->u + l->v * t_exit;
+  const real_mask enter_ball = enter_beyond & (round0 ? y_enter > circle : y_enter < circle);
+  const real_mask exit_ball = exit_beyond & (round0 ? y_exit > circle : y_exit < circle);
+  const real_mask later = second & (t_enter > span->t_enter), earlier = second & (t_exit < span->t_exit);
+  span->t_enter = later ? t_enter : span->t_enter;
+  span->t_exit = earlier ? t_exit : span->t_exit;
+  span->surface_enter = later ? (enter_ball ? number : side) : span->surface_enter;
+  span->surface_exit = earlier ? (exit_ball ? number : side) : span->surface_exit;
+  return met;
+}
+
+// Returns the span of the hull of the ends at p0 and p0 + b, for a ray from p0 + w. Caps:
+// CAPLET_CAP_*.
+static inline Span cone_span_of(const ShapeRay* ray, RealVector from, RealVector b, real r0, real r1, real cap0, real cap1) {
+  const real one = real_of(1.0f);
+  // The ray's point nearest to p0 is computed in cylinder coordinates.
+  const CAPLET_WAITS real shift = -real_dot(from.x, from.y, from.z, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
+  const real px = from.x + shift * ray->dx, py = from.y + shift * ray->dy, pz = from.z + shift * ray->dz;
+  const real bb = real_dot(b.x, b.y, b.z, b.x, b.y, b.z);
+  const real inv_length = 1.0f / (bb > 0.0f ? sqrt(bb) : one);
+  const real length = bb * inv_length;  // as heights along m are measured
+  const AxisLine l = axis_line(ray, px, py, pz, b.x * inv_length, b.y * inv_length, b.z * inv_length);
   const real qx = l.ex + l.nearest * l.fx, qy = l.ey + l.nearest * l.fy, qz = l.ez + l.nearest * l.fz;
   // Nothing lies outside the tube of the larger radius.
   const real wide = real_max(r0, r1);
@@ -107,102 +248,21 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
   real ball_enter, ball_exit;
   const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &ball_enter, &ball_exit);
   CAPLET_WAITS real enter0 = ball_enter, exit0 = ball_exit;
-  const real_mask met1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &ball_enter, &ball_exit);
+  const real_mask met1 = sphere_span_within(ray, px - b.x, py - b.y, pz - b.z, r1, room, &ball_enter, &ball_exit);
   CAPLET_WAITS real enter1 = ball_enter, exit1 = ball_exit;
+  const BallSpan ball0 = {enter0, exit0, met0}, ball1 = {enter1, exit1, met1};
 
-  // This is the joining cone. From a rim of radius s to a ball of radius R its generator has the
-  // length w, w^2 = L^2 + s^2 - R^2; between two balls w^2 = L^2 - (r0 - r1)^2, between two rims
-  // L^2 + (r0 - r1)^2.
-  const real taper = r0 - r1, product = taper * (r0 + r1);
-  const real_mask balls = round0 & round1, mixed = (round0 | round1) & (balls == 0);
-  const real ball = round0 ? r0 : r1, rim = round0 ? r1 : r0;
-  const real ww = balls ? (length - taper) * (length + taper)
-                        : (mixed ? length * length + (round0 ? -product : product) : length * length + taper * taper);
-  const real w = sqrt(real_max(ww, zero));
-  const real dd = length * length + rim * rim;
-  const real inv = 1.0f / (balls ? length : (mixed ? dd : w));
-  const real c = (balls ? w : (mixed ? rim * ball + length * w : length)) * inv;
-  const real k = mixed ? product / real_max(length * ball + rim * w, real_of(FLT_MIN)) : taper * inv;  // 0 without radii
-  const real D = round0 ? r0 : c * r0;
-  const real low = round0 ? r0 * k : zero, high = round1 ? length + r1 * k : length;
-  const real_mask one_ball = (round0 | round1) & (ww <= 0.0f);
-  const real_mask all0 = one_ball & round0 & ((taper >= 0.0f) | (round1 == 0)), all1 = one_ball & (all0 == 0);
-
+  const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
+  const ConeEnds ends = {length, r0, r1, r0 - r1, round0, round1, (round0 | round1) & ((round0 & round1) == 0),
+                         round0 ? r0 : r1, round0 ? r1 : r0};
+  const JoiningCone cone = joining_cone(&ends);
+  const real_mask one_ball = cone.all0 | cone.all1, pierced = ends.mixed & (ends.ball > length);
   Span span;
-  real y_enter, y_exit;
-  real_mask hit = nappe_span(&l, c, k, D, taper > 0.0f ? high : low, &span.t_enter, &span.t_exit, &y_enter, &y_exit);
-  hit = (hit & (bb > 0.0f)) | one_ball;
-  const real_mask enter_at0 = all0 | (round0 & (y_enter < low) & (all1 == 0)),
-                  exit_at0 = all0 | (round0 & (y_exit < low) & (all1 == 0));
-  const real_mask enter_at1 = all1 | (round1 & (y_enter > high) & (all0 == 0)),
-                  exit_at1 = all1 | (round1 & (y_exit > high) & (all0 == 0));
-  hit &= ((enter_at0 | exit_at0) == 0) | met0;
-  hit &= ((enter_at1 | exit_at1) == 0) | met1;
-  span.t_enter = enter_at0 ? enter0 : (enter_at1 ? enter1 : span.t_enter);
-  span.t_exit = exit_at0 ? exit0 : (exit_at1 ? exit1 : span.t_exit);
-  // A shallow ray may meet a ball on the other side of the circle than the cone: the side where it
-  // meets it counts.
-  y_enter = l.u + l.v * span.t_enter;
-  y_exit = l.u + l.v * span.t_exit;
-  const real_mask side = int_of(0), one_end = int_of(1), other_end = int_of(2);
-  span.surface_enter =
-      (all0 | (enter_at0 & (y_enter < low))) ? one_end : ((all1 | (enter_at1 & (y_enter > high))) ? other_end : side);
-  span.surface_exit = (all0 | (exit_at0 & (y_exit < low))) ? one_end : ((all1 | (exit_at1 & (y_exit > high))) ? other_end : side);
-  span.enter = span.exit = int_of(-1);
-
-  // At a wide flat end of a short cone two surfaces meet in a sharp edge, and roundings of both can
-  // move it far out. The tube through that rim limits it.
-  const real_mask sharp = ((taper > 0.0f) & (round0 == 0)) | ((taper < 0.0f) & (round1 == 0));
-  const real h = crosses ? sqrt(real_max(tube, zero) / l.ff) : far;
-  const real_mask enter_tube = sharp & (l.nearest - h > span.t_enter), exit_tube = sharp & (l.nearest + h < span.t_exit);
-  span.t_enter = enter_tube ? l.nearest - h : span.t_enter;
-  span.t_exit = exit_tube ? l.nearest + h : span.t_exit;
-  span.surface_enter = enter_tube ? side : span.surface_enter;
-  span.surface_exit = exit_tube ? side : span.surface_exit;
-
-  // Flat ends are half-spaces. A line along them stays on its side for ever.
-  const real_mask pierced = mixed & (ball > length);
-  const real_mask flat0 = (round0 | pierced | one_ball) == 0, flat1 = (round1 | pierced | one_ball) == 0;
-  const real_mask up = l.v >= 0.0f;
-  const real v = l.v == 0.0f ? real_of(FLT_MIN) : l.v;
-  const real at0 = -l.u / v, at1 = (length - l.u) / v;
-  const real flat_enter = (up ? flat0 : flat1) ? (up ? at0 : at1) : -far,
-             flat_exit = (up ? flat1 : flat0) ? (up ? at1 : at0) : far;
-  const real_mask enter_flat = flat_enter > span.t_enter, exit_flat = flat_exit < span.t_exit;
-  const real_mask open0 = cap0 == CAPLET_CAP_OPEN, open1 = cap1 == CAPLET_CAP_OPEN;
-  span.t_enter = enter_flat ? flat_enter : span.t_enter;
-  span.t_exit = exit_flat ? flat_exit : span.t_exit;
-  span.surface_enter = enter_flat ? (up ? one_end : other_end) : span.surface_enter;
-  span.surface_exit = exit_flat ? (up ? other_end : one_end) : span.surface_exit;
-  span.enter &= (enter_flat & (up ? open0 : open1)) == 0;
-  span.exit &= (exit_flat & (up ? open1 : open0)) == 0;
-
+  real_mask hit = side_span(&l, &ends, &cone, &ball0, &ball1, &span);
+  clip_to_tube(&l, &ends, tube, &span);
+  clip_to_flat_ends(&l, length, (round0 | pierced | one_ball) == 0, (round1 | pierced | one_ball) == 0, cap0, cap1, &span);
   const real_mask second = pierced & (one_ball == 0);
-  if (mask_bits(second) != 0) {
-    const real c2 = (ball - length) * (ball + length) / (rim * ball + length * w);
-    const real turned = (length * ball + rim * w) / dd;
-    const real k2 = round0 ? turned : -turned;
-    const real circle = round0 ? ball * k2 : length + ball * k2;
-    const real D2 = round0 ? ball : ball + length * k2;
-    real t_enter, t_exit;
-    const real_mask within = nappe_span(&l, c2, k2, D2, circle, &t_enter, &t_exit, &y_enter, &y_exit);
-    const real_mask enter_beyond = round0 ? y_enter > circle : y_enter < circle;
-    const real_mask exit_beyond = round0 ? y_exit > circle : y_exit < circle;
-    hit &= (second == 0) | (within & (((enter_beyond | exit_beyond) == 0) | (round0 ? met0 : met1)));
-    t_enter = enter_beyond ? (round0 ? enter0 : enter1) : t_enter;
-    t_exit = exit_beyond ? (round0 ? exit0 : exit1) : t_exit;
-    y_enter = l.u + l.v * t_enter;
-    y_exit = l.u + l.v * t_exit;
-    const real_mask number = round0 ? one_end : other_end;
-    const real_mask enter_ball = enter_beyond & (round0 ? y_enter > circle : y_enter < circle);
-    const real_mask exit_ball = exit_beyond & (round0 ? y_exit > circle : y_exit < circle);
-    const real_mask later = second & (t_enter > span.t_enter), earlier = second & (t_exit < span.t_exit);
-    span.t_enter = later ? t_enter : span.t_enter;
-    span.t_exit = earlier ? t_exit : span.t_exit;
-    span.surface_enter = later ? (enter_ball ? number : side) : span.surface_enter;
-    span.surface_exit = earlier ? (exit_ball ? number : side) : span.surface_exit;
-  }
-
+  if (mask_bits(second) != 0) hit &= clip_to_second_cone(&l, &ends, &cone, &ball0, &ball1, second, &span);
   hit &= near_axis & (span.t_enter <= span.t_exit);
   span.enter &= hit;
   span.exit &= hit;
@@ -213,8 +273,8 @@ static inline Span cone_span_of(const ShapeRay* ray, real wx, real wy, real wz, 
 
 static inline Span cone_span(const ShapeRay* ray, __global const float* block, uint lane) {
   const RealVector p0 = cone_p0_lanes(block, lane), p1 = cone_p1_lanes(block, lane);
-  return cone_span_of(ray, ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z, p1.x - p0.x, p1.y - p0.y, p1.z - p0.z,
-                      cone_r0_lanes(block, lane), cone_r1_lanes(block, lane), cone_cap0_lanes(block, lane),
+  const RealVector from = {ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z}, b = {p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
+  return cone_span_of(ray, from, b, cone_r0_lanes(block, lane), cone_r1_lanes(block, lane), cone_cap0_lanes(block, lane),
                       cone_cap1_lanes(block, lane));
 }
 

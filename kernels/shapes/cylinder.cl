@@ -45,8 +45,8 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
 static inline Span cylinder_hull(const ShapeRay* ray, __global const float* block, uint lane) {
   const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
   const real r = cylinder_r_lanes(block, lane);
-  return cone_span_of(ray, ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z, p1.x - p0.x, p1.y - p0.y, p1.z - p0.z, r, r,
-                      cylinder_cap0_lanes(block, lane), cylinder_cap1_lanes(block, lane));
+  const RealVector from = {ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z}, b = {p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
+  return cone_span_of(ray, from, b, r, r, cylinder_cap0_lanes(block, lane), cylinder_cap1_lanes(block, lane));
 }
 
 static inline Span cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
