@@ -34,18 +34,18 @@ def driver_name(facts):
 
 
 def self_test_cell(facts):
-    return f"fails: {facts['fails'][:160]}" if "fails" in facts else "passes"
+    return f"fails: {facts['fails'][:60]}" if "fails" in facts else "passes"
 
 
 def verify_cell(facts):
     if "fails" in facts:
-        return f"fails: {facts['fails'][:160]}"
+        return f"fails: {facts['fails'][:60]}"
     return f"{'none' if facts['wrong'] == 0 else count(facts['wrong'])} of {count(facts['rays'])} wrong"
 
 
 def hits_cell(facts):
     if bad := [each["fails"] for each in facts.values() if "fails" in each]:
-        return f"fails: {bad[0][:160]}"
+        return f"fails: {bad[0][:60]}"
     rays, same, other = (sum(each[key] for each in facts.values()) for key in ("rays", "t", "other"))
     if same == rays:
         return f"all {count(rays)} equal"
@@ -61,7 +61,7 @@ def tests_cell(facts):
     if facts["skipped"]:
         parts.append(f"{facts['skipped']} skipped")
     if "fails" in facts:
-        parts.append(facts["fails"][:160])
+        parts.append(facts["fails"][:60])
     return ", ".join(parts)
 
 
@@ -81,7 +81,7 @@ def pictures_cell(facts):
         if within < len(other):
             parts.append(f"{len(other) - within} beyond it")
     if bad:
-        parts.append(f"{len(bad)} fail: {bad[0][:160]}")
+        parts.append(f"{len(bad)} fail: {bad[0][:60]}")
     return ", ".join(parts)
 
 
