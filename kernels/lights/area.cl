@@ -7,12 +7,12 @@
 #define CAPLET_LIGHTS_AREA_CL
 
 #include "groups.cl"
-#include "lights/ball.cl"
-#include "lights/cylinder.cl"
 #include "lights/light_types.cl"
-#include "lights/round_cone.cl"
-#include "lights/sphere.cl"
-#include "lights/triangle.cl"
+#include "lights/shapes/ball.cl"
+#include "lights/shapes/cylinder.cl"
+#include "lights/shapes/round_cone.cl"
+#include "lights/shapes/sphere.cl"
+#include "lights/shapes/triangle.cl"
 #include "math/spectrum.cl"
 #include "math/vector.cl"
 #include "shapes/surface.cl"

@@ -25,7 +25,7 @@ enum {
   trait_sheet = 2,     // open: its two sides are told apart by a normal alone
   trait_compound = 4,  // made of other shapes
   trait_own_light = 8,    // as a light sampled by itself (lights/area.cl)
-  trait_ball_light = 16,  // as a light sampled by a ball around it (lights/ball.cl)
+  trait_ball_light = 16,  // as a light sampled by a ball around it (lights/shapes/ball.cl)
   trait_kept_box = 32,    // its data do not tell its box: the host keeps it behind them
   trait_stands_straight = 64,  // its data do not hold a rotation: turned it is placed by an instance
   trait_rare = 128  // its test takes so many registers that it is done apart where rays are traced one at a time (trace/single.cl)

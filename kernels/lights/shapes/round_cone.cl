@@ -3,8 +3,8 @@
 //
 // Samples points on the hull of two spheres (capsule, tapered capsule; one sphere as the special
 // case), only on the side that faces a point q. The derivation is in docs/lights.md.
-#ifndef CAPLET_LIGHTS_ROUND_CONE_CL
-#define CAPLET_LIGHTS_ROUND_CONE_CL
+#ifndef CAPLET_LIGHTS_SHAPES_ROUND_CONE_CL
+#define CAPLET_LIGHTS_SHAPES_ROUND_CONE_CL
 
 #include "math/filter.cl"
 #include "math/vector.cl"

@@ -3,8 +3,8 @@
 //
 // Samples points on a triangle, uniformly in solid angle (Arvo, "Stratified sampling of spherical
 // triangles", 1995) where that is large, otherwise uniformly in area.
-#ifndef CAPLET_LIGHTS_TRIANGLE_CL
-#define CAPLET_LIGHTS_TRIANGLE_CL
+#ifndef CAPLET_LIGHTS_SHAPES_TRIANGLE_CL
+#define CAPLET_LIGHTS_SHAPES_TRIANGLE_CL
 
 #include "math/vector.cl"
 

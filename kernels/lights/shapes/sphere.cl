@@ -3,8 +3,8 @@
 //
 // Samples directions to a sphere, uniformly in the solid angle it fills (Shirley, Wang and
 // Zimmerman, "Monte Carlo techniques for direct lighting calculations", 1996).
-#ifndef CAPLET_LIGHTS_SPHERE_CL
-#define CAPLET_LIGHTS_SPHERE_CL
+#ifndef CAPLET_LIGHTS_SHAPES_SPHERE_CL
+#define CAPLET_LIGHTS_SHAPES_SPHERE_CL
 
 #include "math/vector.cl"
 

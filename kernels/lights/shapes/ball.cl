@@ -5,11 +5,11 @@
 // the ball fills (from within the ball: any direction), and the point is the first crossing of that
 // one primitive along it. The density does not depend on the shape, so every shape is sampled
 // exactly; directions that miss it are black.
-#ifndef CAPLET_LIGHTS_BALL_CL
-#define CAPLET_LIGHTS_BALL_CL
+#ifndef CAPLET_LIGHTS_SHAPES_BALL_CL
+#define CAPLET_LIGHTS_SHAPES_BALL_CL
 
 #include "groups.cl"
-#include "lights/sphere.cl"
+#include "lights/shapes/sphere.cl"
 #include "math/rng.cl"
 #include "math/vector.cl"
 #include "shapes/shapes.cl"

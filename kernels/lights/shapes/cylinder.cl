@@ -3,8 +3,8 @@
 //
 // Samples points on a cylinder with flat or open ends, uniformly over the area that emits. A long
 // tube fills little of the ball around it, so it is not sampled by that ball.
-#ifndef CAPLET_LIGHTS_CYLINDER_CL
-#define CAPLET_LIGHTS_CYLINDER_CL
+#ifndef CAPLET_LIGHTS_SHAPES_CYLINDER_CL
+#define CAPLET_LIGHTS_SHAPES_CYLINDER_CL
 
 #include "groups.cl"
 #include "math/vector.cl"
