@@ -31,18 +31,23 @@ typedef struct {
   real nearest;  // t of the point nearest to the axis
 } AxisLine;
 
-// Returns the lanes whose line meets the nappe c |e| <= D - k y, and both crossings: t (infinite
-// where the line stays within) and height. `thin`: height of the circle at the thin end of the part
-// that matters.
-static inline real_mask nappe_span(const AxisLine* l, real c, real k, real D, real thin, real* t_enter, real* t_exit,
-                                   real* y_enter, real* y_exit) {
+// Nappe is the solid c |e| <= D - k y, one half of a double cone. `thin`: height of the circle at
+// the thin end of the part that matters.
+typedef struct {
+  real c, k, D, thin;
+} Nappe;
+
+// Returns the lanes whose line meets the nappe, and both crossings: t (infinite where the line stays
+// within) and height. They solve c^2 (e + t f)^2 = (D - k (u + v t))^2, expanded about the point
+// nearest to the axis or about the thin circle (docs/numerics.md, "Cones").
+static inline real_mask nappe_span(const AxisLine* l, const Nappe* n, real* t_enter, real* t_exit, real* y_enter, real* y_exit) {
   const real zero = real_of(0.0f), far = real_of(INFINITY);
-  const real cc = c * c, slope = l->v * k;
+  const real cc = n->c * n->c, slope = l->v * n->k;
   const real a = cc * l->ff - slope * slope;
   const real_mask across = a > 0.0f;  // steeper to the axis than the cone: both crossings are on one nappe
-  const real base = (across | (slope == 0.0f)) ? l->nearest : (thin - l->u) / l->v;
+  const real base = (across | (slope == 0.0f)) ? l->nearest : (n->thin - l->u) / l->v;
   const real qx = l->ex + base * l->fx, qy = l->ey + base * l->fy, qz = l->ez + base * l->fz;
-  const real y = l->u + base * l->v, rest = D - y * k;
+  const real y = l->u + base * l->v, rest = n->D - y * n->k;
   const real b = cc * real_dot(qx, qy, qz, l->fx, l->fy, l->fz) + rest * slope;
   const real free = cc * real_dot(qx, qy, qz, qx, qy, qz) - rest * rest;
   const real disc = b * b - a * free;
@@ -139,7 +144,8 @@ static inline real_mask side_span(const AxisLine* l, const ConeEnds* e, const Jo
   const real low = cone->low, high = cone->high;
   const real_mask all0 = cone->all0, all1 = cone->all1;
   real y_enter, y_exit;
-  real_mask hit = nappe_span(l, cone->c, cone->k, cone->D, e->taper > 0.0f ? high : low, &span->t_enter, &span->t_exit, &y_enter, &y_exit);
+  const Nappe nappe = {cone->c, cone->k, cone->D, e->taper > 0.0f ? high : low};
+  real_mask hit = nappe_span(l, &nappe, &span->t_enter, &span->t_exit, &y_enter, &y_exit);
   hit = (hit & (e->length > 0.0f)) | all0 | all1;
   const real_mask enter_at0 = all0 | (e->round0 & (y_enter < low) & (all1 == 0)),
                   exit_at0 = all0 | (e->round0 & (y_exit < low) & (all1 == 0));
@@ -206,7 +212,8 @@ static inline real_mask clip_to_second_cone(const AxisLine* l, const ConeEnds* e
   const real circle = round0 ? ball * k : length + ball * k;
   const real D = round0 ? ball : ball + length * k;
   real t_enter, t_exit, y_enter, y_exit;
-  const real_mask within = nappe_span(l, c, k, D, circle, &t_enter, &t_exit, &y_enter, &y_exit);
+  const Nappe nappe = {c, k, D, circle};
+  const real_mask within = nappe_span(l, &nappe, &t_enter, &t_exit, &y_enter, &y_exit);
   const real_mask enter_beyond = round0 ? y_enter > circle : y_enter < circle;
   const real_mask exit_beyond = round0 ? y_exit > circle : y_exit < circle;
   const real_mask met = (second == 0) | (within & (((enter_beyond | exit_beyond) == 0) | (round0 ? ball0->met : ball1->met)));
