@@ -86,7 +86,7 @@ typedef struct {
 
 // BallSpan is where a line meets the ball of a round end.
 typedef struct {
-  real enter, exit;
+  CAPLET_WAITS real enter, exit;
   real_mask met;
 } BallSpan;
 
@@ -254,10 +254,9 @@ static inline Span cone_span_of(const ShapeRay* ray, RealVector from, RealVector
   const real room = 0x1p-22f * (length + wide);
   real ball_enter, ball_exit;
   const real_mask met0 = sphere_span_within(ray, px, py, pz, r0, room, &ball_enter, &ball_exit);
-  CAPLET_WAITS real enter0 = ball_enter, exit0 = ball_exit;
+  const BallSpan ball0 = {ball_enter, ball_exit, met0};
   const real_mask met1 = sphere_span_within(ray, px - b.x, py - b.y, pz - b.z, r1, room, &ball_enter, &ball_exit);
-  CAPLET_WAITS real enter1 = ball_enter, exit1 = ball_exit;
-  const BallSpan ball0 = {enter0, exit0, met0}, ball1 = {enter1, exit1, met1};
+  const BallSpan ball1 = {ball_enter, ball_exit, met1};
 
   const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
   const ConeEnds ends = {length, r0, r1, r0 - r1, round0, round1, (round0 | round1) & ((round0 & round1) == 0),

@@ -121,7 +121,7 @@
   BUFFER(path_wavelengths, float4, STATE)      /* nm */                                                         \
   BUFFER(path_wavelength_pdfs, float4, STATE)  /* 1/nm; 0: wavelength dropped */                                \
   /* pdf of the last direction (solid angle), product of eta scales, bits of the light of the primitive that it */ \
-  /* refracted through (or CAPLET_NONE), filter weight */                                                       \
+  /* refracted through (or CAPLET_NONE), unused */                                                              \
   BUFFER(path_scatter, float4, STATE)                                                                           \
   BUFFER(path_normal, uint, STATE_SIDES) /* with a light tree: normal_bits of the last scattering, or CAPLET_NONE */ \
   BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \

@@ -25,7 +25,7 @@ static void stage_item(const Stage* g, uint path) {
   g->carried.path_wavelengths[path] = wavelengths;
   g->carried.path_wavelength_pdfs[path] = pdf;
   g->carried.path_throughput[path] = (float4)(filter_weight);
-  g->carried.path_scatter[path] = (float4)(0.0f, 1.0f, 0.0f, filter_weight);
+  g->carried.path_scatter[path] = (float4)(0.0f, 1.0f, 0.0f, 0.0f);
   g->carried.path_flags[path] = PATH_SPECULAR;
   g->radiance.path_radiance[path] = (float4)(0.0f);
   layers_of_nothing(g->batch.batch, path, g->layers.path_layers);
