@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "export/detail/families.h"
 #include "export/export.h"
+#include "scene/camera_fields.h"
 #include "scene/transform.h"
 
 namespace caplet {
@@ -142,15 +144,12 @@ class SceneWriter {
     if (medium) stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
     const auto* perspective = std::get_if<PerspectiveProjection>(&projection);
     const auto* spherical = std::get_if<SphericalProjection>(&projection);
-    Statement out(perspective ? "Camera \"perspective\""
-                  : spherical ? "Camera \"spherical\""
-                              : "Camera \"orthographic\"",
-                  nullptr, where);
-    if (perspective) out.number("fov", degrees_of(perspective->fov));
+    Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"", nullptr, where);
+    if (perspective) out.number(fov_field.name, degrees_of(perspective->fov));
     if (spherical)
       out.text(SphericalProjection::mapping_field.name,
                SphericalProjection::mapping_names[static_cast<std::size_t>(spherical->mapping)]);
-    if (frame_aspect_ratio) out.number("frameaspectratio", *frame_aspect_ratio);
+    if (frame_aspect_ratio) out.number(frame_aspect_ratio_field.name, *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;
       out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});

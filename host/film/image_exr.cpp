@@ -36,6 +36,7 @@
 #include "base/utf8.h"
 #include "film/chromaticities.h"
 #include "film/detail/limits.h"
+#include "film/exr_bytes.h"
 #include "film/image.h"
 
 namespace caplet {
@@ -185,6 +186,26 @@ class CheckedFile : public Imf::OStream {
   int failure_ = 0;
 };
 
+/// MemoryFile keeps what OpenEXR writes.
+class MemoryFile : public Imf::OStream {
+ public:
+  MemoryFile() : Imf::OStream("an EXR in memory") {}
+
+  void write(const char* bytes, int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
+    std::memcpy(bytes_.data() + at_, bytes, size);
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t to) override { at_ = to; }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
 void check_channels(const std::vector<Channel>& channels, int width, int rows) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(rows);
   CHECK_LT_(std::size_t{0}, pixels);
@@ -217,21 +238,25 @@ Imf::FrameBuffer frame_of(const LayeredImage& whole, const std::vector<Channel>&
   return frame;
 }
 
-void write_bands(const fs::path& path, const LayeredImage& whole, int step, ExrCompression compression,
-                 const std::function<const LayeredImage&(int first, int rows)>& band_of) {
+using BandOf = std::function<const LayeredImage&(int first, int rows)>;
+
+void write_bands(Imf::OStream& stream, const LayeredImage& whole, int step, ExrCompression compression, const BandOf& band_of) {
+  std::optional<Imf::OutputFile> file;
+  for (int first = 0; first < whole.data_height; first += step) {
+    const int rows = std::min(step, whole.data_height - first);
+    const std::vector<Channel>& channels = band_of(first, rows).channels;
+    check_channels(channels, whole.data_width, rows);
+    if (!file) file.emplace(stream, header_of(whole, channels, compression), thread_count());
+    file->setFrameBuffer(frame_of(whole, channels, std::int64_t{whole.y} + first));
+    file->writePixels(rows);
+  }
+}
+
+void write_bands(const fs::path& path, const LayeredImage& whole, int step, ExrCompression compression, const BandOf& band_of) {
   try {
     write_atomically(path, [&](const fs::path& temporary) {
       CheckedFile stream(temporary, path);
-      std::optional<Imf::OutputFile> file;
-      for (int first = 0; first < whole.data_height; first += step) {
-        const int rows = std::min(step, whole.data_height - first);
-        const std::vector<Channel>& channels = band_of(first, rows).channels;
-        check_channels(channels, whole.data_width, rows);
-        if (!file) file.emplace(stream, header_of(whole, channels, compression), thread_count());
-        file->setFrameBuffer(frame_of(whole, channels, std::int64_t{whole.y} + first));
-        file->writePixels(rows);
-      }
-      file.reset();
+      write_bands(stream, whole, step, compression, band_of);
       stream.close();
     });
   } catch (const Iex::BaseExc& error) {
@@ -281,6 +306,16 @@ void write_exr(const fs::path& path, const BandedImage& image, ExrCompression co
 void write_exr(const fs::path& path, const LayeredImage& image, ExrCompression compression) {
   check_channels(image.channels, image.data_width, image.data_height);
   write_bands(path, image, image.data_height, compression, [&](int, int) -> const LayeredImage& { return image; });
+}
+
+std::string exr_bytes(const LayeredImage& image) try {
+  check_channels(image.channels, image.data_width, image.data_height);
+  MemoryFile stream;
+  const auto all = [&](int, int) -> const LayeredImage& { return image; };
+  write_bands(stream, image, image.data_height, ExrCompression::zip, all);
+  return stream.take();
+} catch (const Iex::BaseExc& error) {
+  throw RunError(fmt::format("an EXR cannot be made: {}", first_line(error.what())));
 }
 
 LayeredImage read_exr(const fs::path& path) {

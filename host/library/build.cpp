@@ -444,7 +444,7 @@ void Scene::set_option(Statement statement, const std::string& type, const Param
 }
 
 void Scene::present() {
-  if (data_->presented == data_->origin) return;
+  if (data_->presented == data_->log.origin()) return;
   Data& data = changed();
   caplet::Scene& model = data.model;
   if (model.shapes.empty() && model.instances.empty() && data.open_camera && !is_lit(model))
@@ -468,7 +468,7 @@ void Scene::present() {
   }
   data.studio_light = needs_light;
   if (needs_light || data.open_camera) data.as_a_whole();
-  data.presented = data.origin;
+  data.presented = data.log.origin();
 }
 
 }  // namespace caplet::v0

@@ -46,22 +46,19 @@ std::uint64_t next_serial() {
 
 void Scene::Data::edit(const SceneEdit& edit) {
   apply_edit(model, edit);
-  if (edits.size() == most_logged) {
+  if (log.size() == most_logged) {
     as_a_whole();
   } else {
-    edits.push_back({next_serial(), edit});
+    log.add(edit, next_serial());
   }
 }
 
-void Scene::Data::as_a_whole() {
-  edits.clear();
-  origin = next_serial();
-}
+void Scene::Data::as_a_whole() { log.restart(next_serial()); }
 
 void Scene::Data::as_a_whole_in_view() {
-  const bool is_presented = presented == origin;
+  const bool is_presented = presented == log.origin();
   as_a_whole();
-  if (is_presented) presented = origin;
+  if (is_presented) presented = log.origin();
 }
 
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {

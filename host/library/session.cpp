@@ -2,7 +2,6 @@
 // Copyright Caplet authors
 #include "caplet/session.h"
 
-#include <algorithm>
 #include <chrono>
 
 #include "device/forked.h"
@@ -58,12 +57,7 @@ struct Session::Data {
       : devices(inner(on)),
         live(*Inside::model(of)),
         session(live.flat(), live.view(), tried(devices, live.flat()), {.layers = Layers::all()}),
-        at(state_of(of)) {}
-
-  static std::uint64_t state_of(const Scene& scene) {
-    const Inside::SceneData& data = Inside::data(scene);
-    return data.edits.empty() ? data.origin : data.edits.back().serial;
-  }
+        at(Inside::data(of).log.state()) {}
 
   void send() {
     if (live.flat().shapes != tried_shapes) tried(devices, live.flat());
@@ -100,20 +94,16 @@ void Session::update(const Scene& scene) {
   begin_opencl();
   Data& d = *data_;
   const Inside::SceneData& now = Inside::data(scene);
-  auto next = now.edits.begin();
-  if (d.at != now.origin) {
-    next = std::ranges::find(now.edits, d.at, &Inside::SceneData::Logged::serial);
-    if (next == now.edits.end()) {
-      d.live.replace(now.model);
-      d.at = Data::state_of(scene);
-      return d.send();
-    }
-    ++next;
+  const auto missing = now.log.since(d.at);
+  if (!missing) {
+    d.live.replace(now.model);
+    d.at = now.log.state();
+    return d.send();
   }
   try {
-    for (; next != now.edits.end(); ++next) {
-      d.live.edit(next->edit);
-      d.at = next->serial;
+    for (const auto& [edit, state] : *missing) {
+      d.live.put(edit);
+      d.at = state;
     }
     d.live.edit(view_of(now.model));
   } catch (...) {

@@ -46,28 +46,6 @@ void add_differences(const std::vector<T>& before, const std::vector<T>& now, Ch
   out.add(begin, end - begin);
 }
 
-/// Returns the edit that restores what stands there now.
-SceneEdit undo_of(const Scene& scene, const SceneEdit& edit) {
-  return std::visit(
-      [&](const auto& one) -> SceneEdit {
-        auto back = one;
-        using Edit = decltype(back);
-        if constexpr (std::is_same_v<Edit, CapsuleEdit>) back.to = capsule_at(scene, one.at, one.capsule);
-        if constexpr (std::is_same_v<Edit, TransformEdit>) back.world_from_object = shape_at(scene, one.at).world_from_object;
-        if constexpr (std::is_same_v<Edit, EmissionEdit>) back.to = *shape_at(scene, one.at).emission;
-        if constexpr (std::is_same_v<Edit, InstanceEdit>)
-          back.world_from_object = scene.instances[one.instance].world_from_object;
-        if constexpr (std::is_same_v<Edit, MaterialEdit>) {
-          back.to = scene.materials[one.material].model;
-          back.textures = scene.materials[one.material].textures;
-        }
-        if constexpr (std::is_same_v<Edit, LightEdit>) back.to = scene.lights[one.light];
-        if constexpr (std::is_same_v<Edit, ViewEdit>) back = view_of(scene);
-        return back;
-      },
-      edit);
-}
-
 }  // namespace
 
 struct LiveScene::State {
@@ -241,8 +219,8 @@ struct LiveScene::State {
   void place_again(PlacedSubtree& placed) {
     const Subtree& subtree = *placed.subtree;
     placed.world_from_subtree = placed.scene_instance == CAPLET_NONE
-                                 ? subtree.placed
-                                 : scene.instances[placed.scene_instance].world_from_object * subtree.placed;
+                                    ? subtree.placed
+                                    : scene.instances[placed.scene_instance].world_from_object * subtree.placed;
     InstanceRecord& record = flat().instances[placed.instance];
     InstanceRecord fresh = instance_record(subtree, placed.world_from_subtree, record.object);
     fresh.light_base = record.light_base;
@@ -329,18 +307,21 @@ struct LiveScene::State {
            });
   }
 
-  void edit(const SceneEdit& edit) {
-    check_edit(scene, edit);
-    const SceneEdit before = undo_of(scene, edit);
+  SceneEdit put(const SceneEdit& edit) {
+    SceneEdit before = inverse(scene, edit);
     put_edit(scene, edit);
     try {
       const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
       const bool followed =
           !parts_media(edit, before) &&
           std::visit([&](const auto& one) { return follow(one, std::get<std::decay_t<decltype(one)>>(before)); }, edit);
-      if (!followed || has_bad_tree()) return lower_all();
+      if (!followed || has_bad_tree()) {
+        lower_all();
+        return before;
+      }
       changes.spectra.add(spectra, flat().spectra.size() - spectra);
       changes.spectrum_tables.add(tables, flat().spectrum_tables.size() - tables);
+      return before;
     } catch (...) {
       put_edit(scene, before);
       lower_all();
@@ -365,7 +346,11 @@ const Scene& LiveScene::scene() const { return state_->scene; }
 const FlatScene& LiveScene::flat() const { return state_->lowering->flat; }
 FlatView LiveScene::view() const { return lower_view(state_->scene); }
 
-void LiveScene::edit(const SceneEdit& edit) { state_->edit(edit); }
+SceneEdit LiveScene::edit(const SceneEdit& edit) {
+  check_edit(state_->scene, edit);
+  return state_->put(edit);
+}
+SceneEdit LiveScene::put(const SceneEdit& edit) { return state_->put(edit); }
 
 void LiveScene::replace(Scene scene) {
   auto fresh = std::make_unique<State>(std::move(scene));

@@ -75,9 +75,14 @@ void check(const Scene& scene, const TransformEdit& edit) {
   check_alone(std::move(one), scene);
 }
 
-void check(const Scene& scene, const EmissionEdit& edit) {
-  const Shape& shape = shape_at(scene, edit.at);
+const Shape& light_at(const Scene& scene, const ShapeAt& place) {
+  const Shape& shape = shape_at(scene, place);
   if (!shape.emission) throw InputError(shape.where, "the shape is no light");
+  return shape;
+}
+
+void check(const Scene& scene, const EmissionEdit& edit) {
+  const Shape& shape = light_at(scene, edit.at);
   Shape one;
   one.geometry = shape.geometry;
   one.emission = edit.to;
@@ -156,6 +161,23 @@ void put(Scene& scene, const MaterialEdit& edit) {
 }
 void put(Scene& scene, const LightEdit& edit) { scene.lights[edit.light] = edit.to; }
 
+CapsuleEdit inverse_of(const Scene& scene, const CapsuleEdit& edit) {
+  return {edit.at, edit.capsule, capsule_at(scene, edit.at, edit.capsule)};
+}
+TransformEdit inverse_of(const Scene& scene, const TransformEdit& edit) {
+  return {edit.at, shape_at(scene, edit.at).world_from_object};
+}
+EmissionEdit inverse_of(const Scene& scene, const EmissionEdit& edit) { return {edit.at, *light_at(scene, edit.at).emission}; }
+InstanceEdit inverse_of(const Scene& scene, const InstanceEdit& edit) {
+  return {edit.instance, at(scene.instances, edit.instance, "instance").world_from_object};
+}
+MaterialEdit inverse_of(const Scene& scene, const MaterialEdit& edit) {
+  const Material& material = at(scene.materials, edit.material, "material");
+  return {edit.material, material.model, material.textures};
+}
+LightEdit inverse_of(const Scene& scene, const LightEdit& edit) { return {edit.light, at(scene.lights, edit.light, "light")}; }
+ViewEdit inverse_of(const Scene& scene, const ViewEdit&) { return view_of(scene); }
+
 }  // namespace
 
 void check_edit(const Scene& scene, const SceneEdit& edit) {
@@ -169,6 +191,10 @@ void apply_edit(Scene& scene, const SceneEdit& edit) {
 
 void put_edit(Scene& scene, const SceneEdit& edit) {
   std::visit([&](const auto& one) { put(scene, one); }, edit);
+}
+
+SceneEdit inverse(const Scene& scene, const SceneEdit& edit) {
+  return std::visit([&](const auto& one) { return SceneEdit(inverse_of(scene, one)); }, edit);
 }
 
 const Shape& shape_at(const Scene& scene, const ShapeAt& place) {

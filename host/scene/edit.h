@@ -77,6 +77,9 @@ void apply_edit(Scene& scene, const SceneEdit& edit);
 /// Applies an edit that check_edit has already passed.
 void put_edit(Scene& scene, const SceneEdit& edit);
 
+/// Returns the edit that restores what `edit` would replace. Throws InputError when the place does not exist.
+SceneEdit inverse(const Scene& scene, const SceneEdit& edit);
+
 /// Returns the shape that an edit names. Throws InputError when there is none.
 const Shape& shape_at(const Scene& scene, const ShapeAt& at);
 /// Returns a capsule in its present state. Throws InputError when there is none, or when the shape has no capsules.

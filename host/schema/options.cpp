@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "scene/camera_fields.h"
 #include "schema/detail/describe.h"
 #include "schema/detail/rows.h"
 
@@ -25,12 +26,10 @@ bool is_one_of(const std::string& type, std::initializer_list<const char*> names
   return std::ranges::find(names, type) != names.end();
 }
 
-constexpr std::array fov_rows = {
-    Row{{"fov", "field of view of the picture's shorter side", 0, 180, "degrees", true}, "float", "90"},
-    Row{{"halffov", "half of it; above 0 it counts", -no_limit, 90, "degrees"}, "float", "-1"}};
+constexpr std::array fov_rows = {Row{fov_field, "float", "90"},
+                                 Row{{"halffov", "half of it; above 0 it counts", -no_limit, 90, "degrees"}, "float", "-1"}};
 constexpr std::array window_rows = {
-    Row{{"frameaspectratio", "width over height of what the camera sees; else that of the picture", 0, no_limit, "", true},
-        "float"},
+    Row{frame_aspect_ratio_field, "float"},
     Row{{"screenwindow", "x min, x max, y min, y max of the picture on the plane z = 1; else the shorter side is -1 to 1"},
         "float"}};
 constexpr std::array camera_rows = {

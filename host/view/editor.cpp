@@ -24,23 +24,6 @@ void check_thing(const Scene& scene, std::uint32_t id) {
   if (id >= count) throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
 }
 
-/// Returns the edit that restores the present state.
-SceneEdit as_it_is(const Scene& scene, const SceneEdit& edit) {
-  if (const auto* capsule = std::get_if<CapsuleEdit>(&edit))
-    return CapsuleEdit{capsule->at, capsule->capsule, capsule_at(scene, capsule->at, capsule->capsule)};
-  if (const auto* transform = std::get_if<TransformEdit>(&edit))
-    return TransformEdit{transform->at, shape_at(scene, transform->at).world_from_object};
-  if (const auto* material = std::get_if<MaterialEdit>(&edit)) {
-    const Material& now = scene.materials.at(material->material);
-    return MaterialEdit{material->material, now.model, now.textures};
-  }
-  if (const auto* light = std::get_if<LightEdit>(&edit)) return LightEdit{light->light, scene.lights.at(light->light)};
-  if (const auto* emission = std::get_if<EmissionEdit>(&edit))
-    return EmissionEdit{emission->at, shape_at(scene, emission->at).emission.value()};
-  const auto& instance = std::get<InstanceEdit>(edit);
-  return InstanceEdit{instance.instance, scene.instances.at(instance.instance).world_from_object};
-}
-
 /// Two edits with the same key replace each other.
 std::tuple<std::size_t, std::uint32_t, std::size_t> place_of(const SceneEdit& edit) {
   if (const auto* capsule = std::get_if<CapsuleEdit>(&edit)) return {edit.index(), capsule->at.shape, capsule->capsule};
@@ -172,61 +155,49 @@ Editor::Step Editor::take(const Step& step) {
     hidden_ = std::move(hidden);
     return back;
   }
-  if (const auto* view = std::get_if<ViewEdit>(&step)) {
-    check_edit(live_.scene(), *view);
-    live_.edit(*view);
-    return std::exchange(view_, *view);
-  }
+  if (const auto* setting = std::get_if<Setting>(&step)) return take_setting(*setting);
   const InPlace& edits = std::get<InPlace>(step);
   InPlace back;
   try {
-    for (const SceneEdit& edit : edits) {
-      check_edit(live_.scene(), edit);
-      SceneEdit before = as_it_is(live_.scene(), edit);
-      live_.edit(edit);
-      back.insert(back.begin(), std::move(before));
-    }
+    for (const SceneEdit& edit : edits) back.insert(back.begin(), live_.edit(edit));
   } catch (const InputError&) {
-    for (const SceneEdit& before : back) live_.edit(before);
+    for (const SceneEdit& before : back) live_.put(before);
     throw;
   }
   return back;
 }
 
-void Editor::make(const Change& change, bool goes_on) {
-  Step back = take(step_of(change));
-  undone_.clear();
-  ++states_;
-  made_ = made_by(change);
-  const bool is_new = std::exchange(ends_here_, false);
-  if (goes_on && !is_new && !done_.empty() && have_same_places(done_.back().step, back))
-    done_.back().state = states_;  // the existing entry undoes both
-  else
-    done_.push_back({std::move(back), states_});
+Editor::Step Editor::take_setting(const Setting& setting) {
+  ViewEdit to = view_;
+  if (setting.part == FormSubject::Kind::camera) to.camera = setting.to.camera;
+  if (setting.part == FormSubject::Kind::film) to.film = setting.to.film;
+  if (setting.part == FormSubject::Kind::filter) to.filter = setting.to.filter;
+  if (setting.part == FormSubject::Kind::sampler) to.sampler = setting.to.sampler;
+  if (setting.part == FormSubject::Kind::integrator) to.integrator = setting.to.integrator;
+  live_.edit(to);
+  if (setting.part == FormSubject::Kind::camera) ++camera_changes_;
+  return Setting{setting.part, std::exchange(view_, std::move(to))};
 }
 
-std::optional<bool> Editor::way_to(std::uint64_t state) const {
-  const auto has = [state](const std::vector<Done>& of) {
-    return std::ranges::any_of(of, [state](const Done& each) { return each.state == state; });
-  };
-  if (state == 0 || has(done_)) return false;
-  return has(undone_) ? std::optional(true) : std::nullopt;
+void Editor::make(const Change& change, bool goes_on) {
+  Step back = take(step_of(change));
+  made_ = made_by(change);
+  ++states_;
+  const Step* before = goes_on ? log_.open() : nullptr;
+  if (before && have_same_places(*before, back))
+    log_.merge(states_);
+  else
+    log_.add(std::move(back), states_);
 }
 
 bool Editor::have_same_places(const Step& a, const Step& b) {
-  if (std::holds_alternative<ViewEdit>(a)) return std::holds_alternative<ViewEdit>(b);
+  const Setting* setting_of_a = std::get_if<Setting>(&a);
+  const Setting* setting_of_b = std::get_if<Setting>(&b);
+  if (setting_of_a && setting_of_b) return setting_of_a->part == setting_of_b->part;
   const InPlace* of_a = std::get_if<InPlace>(&a);
   const InPlace* of_b = std::get_if<InPlace>(&b);
   return of_a && of_b &&
          std::ranges::equal(*of_a, *of_b, [](const SceneEdit& x, const SceneEdit& y) { return place_of(x) == place_of(y); });
-}
-
-bool Editor::go(std::vector<Done>& from, std::vector<Done>& to) {
-  if (from.empty()) return false;
-  Done back{take(from.back().step), from.back().state};
-  from.pop_back();
-  to.push_back(std::move(back));
-  return true;
 }
 
 }  // namespace caplet::view

@@ -114,8 +114,8 @@ Editor::Step Editor::set(const Set& set) const {
       return reshaping<Rearrange>(number, std::make_shared<const Shape>(std::move(to)));
     }
     default: {
-      ViewEdit to = view_;
-      set_field(to, scene, set);
+      Setting to{set.part.kind, view_};
+      set_field(to.to, scene, set);
       return to;
     }
   }

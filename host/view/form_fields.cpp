@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
+#include "scene/camera_fields.h"
 #include "scene/field.h"
 
 namespace caplet::view {
@@ -55,6 +56,14 @@ Model model_of(std::size_t which) {
 
 void whole(FormFields& to, const Field& field, int& value) {
   to.whole(field.name, value, static_cast<int>(field.low), static_cast<int>(field.high));
+}
+
+/// Visits an angle in degrees.
+void angle(FormFields& to, const Field& field, double& radians) {
+  const double before = radians / degree;
+  double now = before;
+  to.number(field.name, now, field.low, field.high);
+  if (now != before) radians = now * degree;
 }
 
 /// Names the textures of fields as scene files do.
@@ -209,8 +218,8 @@ struct LightFields {
   void cone(double& total_angle, double& falloff_start_angle) {
     const double edge_before = std::max(0.0, total_angle - falloff_start_angle), total_before = total_angle;
     double edge = edge_before;
-    angle(SpotLight::cone_field, total_angle);
-    angle(SpotLight::delta_field, edge);
+    angle(to, SpotLight::cone_field, total_angle);
+    angle(to, SpotLight::delta_field, edge);
     if (edge != edge_before || total_angle != total_before) falloff_start_angle = std::max(0.0, total_angle - edge);
   }
   void sky(InfiniteLight& light) {
@@ -218,14 +227,6 @@ struct LightFields {
       image(InfiniteLight::image_field, light.image);
     else
       emission(InfiniteLight::radiance_field, light.radiance);
-  }
-
- private:
-  void angle(const Field& field, double& radians) {
-    const double before = radians / degree;
-    double now = before;
-    to.number(field.name, now, field.low, field.high);
-    if (now != before) radians = now * degree;
   }
 };
 
@@ -257,6 +258,25 @@ class OptionFields {
  private:
   FormFields& to_;
 };
+
+/// The place of the camera is no field.
+void visit_camera(FormFields& fields, Camera& camera) {
+  OptionFields options(fields);
+  const std::size_t kind = options.kind(kind_field, camera.projection.index(), projection_names);
+  if (kind != camera.projection.index()) {
+    camera.projection = model_of<Projection>(kind);
+    camera.screen_window.reset();  // its unit belongs to the projection
+    return;
+  }
+  if (auto* perspective = std::get_if<PerspectiveProjection>(&camera.projection)) angle(fields, fov_field, perspective->fov);
+  if (auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
+    const char* name = SphericalProjection::mapping_field.name;
+    spherical->mapping = options.kind(name, spherical->mapping, SphericalProjection::mapping_names);
+    return;
+  }
+  fields.option(frame_aspect_ratio_field.name, camera.frame_aspect_ratio);
+  Camera::fields(camera, options);
+}
 
 /// Properties that lights of different kinds share.
 struct LightTraits {
@@ -478,7 +498,9 @@ void visit_form(FormFields& fields, Shape& shape) {
 
 void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind of) {
   OptionFields options(fields);
-  if (of == FormSubject::Kind::film) {
+  if (of == FormSubject::Kind::camera) {
+    visit_camera(fields, view.camera);
+  } else if (of == FormSubject::Kind::film) {
     FilmSettings& film = view.film;
     const int width = film.width, height = film.height;
     FilmSettings::fields(film, options);

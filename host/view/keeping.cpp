@@ -46,26 +46,54 @@ Keeping::Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper
 bool Keeping::change(const Message& message) {
   if (const Edit* edit = std::get_if<Edit>(&message)) {
     editor_.make(edit->change, edit->goes_on);
+    follow_camera();
     return true;
   }
-  if (const Undo* undo = std::get_if<Undo>(&message)) return undo->again ? editor_.redo() : editor_.undo();
+  if (const Undo* undo = std::get_if<Undo>(&message)) return go(undo->again);
   return false;
+}
+
+/// Undoes or redoes a change.
+bool Keeping::go(bool again) {
+  const bool has_changed = again ? editor_.redo() : editor_.undo();
+  follow_camera();
+  return has_changed;
+}
+
+/// Takes the document's camera as the own one, if a change has set it.
+void Keeping::follow_camera() {
+  if (std::exchange(camera_changes_, editor_.camera_changes()) == editor_.camera_changes()) return;
+  set_own(look_of(editor_.view()));
+  own_is_new_ = false;
+}
+
+/// Sets the camera of the own look, which keeps its size.
+void Keeping::set_own(ShowView look) {
+  look.width = own_.width;
+  look.height = own_.height;
+  own_ = look;
+}
+
+/// Returns the document's camera as `own` has it, in the shape of the document's film.
+Camera Keeping::camera_of(ShowView own) const {
+  own.separation = 0;
+  own.width = editor_.view().film.width;
+  own.height = editor_.view().film.height;
+  return shown_view(editor_.view(), own, 1, 0).camera;
 }
 
 /// Returns whether the change could be made.
 bool Keeping::make_line(const std::string& line) try {
   if (!is_mark(line)) return change(parse_message(line));
   const Json text = Json::parse(line);
-  saved_ = editor_.state();
-  editor_.end_gesture();
+  editor_.mark_saved();
   if (const auto camera = text.find("camera"); camera != text.end()) {
     Json look = *camera;
     look["type"] = "look";
     look["width"] = look["height"] = 1;
-    const ShowView before = std::exchange(own_, std::get<ShowView>(parse_message(json_dump(look))));
-    own_.width = before.width;
-    own_.height = before.height;
+    set_own(std::get<ShowView>(parse_message(json_dump(look))));
     own_is_new_ = true;
+    editor_.adopt_camera(camera_of(own_));
   }
   return true;
 } catch (const InputError&) {
@@ -84,14 +112,14 @@ bool Keeping::make(const Message& message, const std::string& text) {
   if (std::holds_alternative<Discard>(message)) {
     const std::uint64_t state = editor_.state();
     // A discard is recorded as the undos that it consists of.
-    const auto go = [&](bool again) {
-      if (!(again ? editor_.redo() : editor_.undo())) return false;
+    const auto go_and_keep = [&](bool again) {
+      if (!go(again)) return false;
       if (keeper_) keeper_->keep(again ? redo_line : undo_line);
       return true;
     };
-    const std::optional<bool> way = editor_.way_to(saved_);
+    const std::optional<bool> way = editor_.way_to_saved();
     if (!way) throw InputError("the saved scene is not among the states that undo leads to any more");
-    while (editor_.state() != saved_ && go(*way)) {
+    while (editor_.has_unsaved() && go_and_keep(*way)) {
     }
     restored_ = 0;
     if (keeper_) keeper_->rest();
@@ -127,20 +155,14 @@ Json Keeping::save(const Save& save, const ShowView& look, const std::function<b
   const bool camera_is_new = save.camera || own_is_new_;
   const ShowView own = save.camera ? look : own_;
   Scene scene = editor_.document();
-  if (camera_is_new) {
-    ShowView one_eye = own;
-    one_eye.separation = 0;
-    one_eye.width = scene.film.width;
-    one_eye.height = scene.film.height;
-    scene.camera = shown_view(editor_.view(), one_eye, 1, 0).camera;
-  }
+  if (camera_is_new) scene.camera = camera_of(own);
   Json mark = Json::object();
   if (camera_is_new) mark["camera"] = camera_text(own);
   keeper_->save(scene, target, json_dump(mark), cancelled);
   own_ = own;
   own_is_new_ = camera_is_new;
-  saved_ = editor_.state();
-  editor_.end_gesture();
+  if (camera_is_new) editor_.adopt_camera(scene.camera);
+  editor_.mark_saved();
   restored_ = 0;
   log::info("wrote {}", target.string());
   return {{"type", "saved"}, {"name", target.filename().string()}, {"file", target.string()}};

@@ -20,11 +20,12 @@ namespace caplet::view {
 /// A material, texture or light by its index in the scene; the emission or the geometry of a shape of the world, by the shape's
 /// number; or a setting.
 struct FormSubject {
-  enum class Kind { material, texture, light, emission, shape, film, filter, sampler, integrator } kind = Kind::material;
+  enum class Kind { material, texture, light, emission, shape, camera, film, filter, sampler, integrator };
+  Kind kind = Kind::material;
   std::uint32_t number = 0;
 };
-inline constexpr std::array<const char*, 9> form_subject_names = {"material", "texture", "light",   "emission",  "shape",
-                                                          "film",     "filter",  "sampler", "integrator"};
+inline constexpr std::array form_subject_names = {"material", "texture", "light",  "emission", "shape",
+                                                  "camera",   "film",    "filter", "sampler",  "integrator"};
 
 /// A texture that replaces a value, by its index.
 struct TextureChoice {

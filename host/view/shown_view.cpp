@@ -15,17 +15,17 @@ constexpr double usual_fov = 0.7;  // used if an orthographic or spherical camer
 
 }  // namespace
 
-ShowView look_of_scene(const Scene& scene) {
-  const Camera& camera = scene.camera;
+ShowView look_of(const ViewEdit& own) {
+  const Camera& camera = own.camera;
   ShowView out;
-  out.width = scene.film.width;
-  out.height = scene.film.height;
+  out.width = own.film.width;
+  out.height = own.film.height;
   out.world_from_camera = camera.world_from_camera;
   out.fov = fov_of(camera) > 0 ? fov_of(camera) : usual_fov;
   out.lens_radius = camera.lens_radius;
   out.focal_distance = camera.focal_distance;
   if (!is_orthographic(camera)) return out;
-  const std::array<double, 4> window = screen_window_of(camera, scene.film);
+  const std::array<double, 4> window = screen_window_of(camera, own.film);
   out.orthographic = 0.5 * std::min(window[1] - window[0], window[3] - window[2]);
   return out;
 }
@@ -41,6 +41,8 @@ ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int ey
     const double x = pixel * look.width, y = pixel * look.height;
     view.camera.projection = OrthographicProjection{};
     view.camera.screen_window = {-x, x, -y, y};
+  } else if (is_orthographic(own.camera)) {
+    view.camera.screen_window.reset();  // it is in units of the scene
   }
   view.film.crop.reset();
   view.film.width = (look.width - 1) / scale + 1;

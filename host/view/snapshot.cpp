@@ -2,17 +2,13 @@
 // Copyright Caplet authors
 #include "view/detail/snapshot.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
-#include "base/error.h"
 #include "film/chromaticities.h"
 
 namespace caplet::view {
-
-namespace fs = std::filesystem;
 
 Picture shown_of(const LayeredImage& image, bool ids) {
   Picture out;
@@ -38,23 +34,6 @@ Picture shown_of(const LayeredImage& image, bool ids) {
   }
   const auto count = static_cast<double>(std::max<std::size_t>(1, g.size()));
   out.noise = sum > 0 ? static_cast<float>(std::sqrt(square / count) / (sum / count)) : 0.0f;
-  return out;
-}
-
-std::string exr_bytes(const LayeredImage& image) {
-  std::string folder = (fs::temp_directory_path() / "caplet-view-XXXXXX").string();
-  if (!::mkdtemp(folder.data())) throw RunError("no folder for temporary files: " + folder);
-  const fs::path file = fs::path(folder) / "snapshot.exr";
-  std::string out;
-  try {
-    write_exr(file, image);
-    std::ifstream in(file, std::ios::binary);
-    out.assign(std::istreambuf_iterator<char>(in), {});
-  } catch (...) {
-    fs::remove_all(folder);
-    throw;
-  }
-  fs::remove_all(folder);
   return out;
 }
 

@@ -12,18 +12,9 @@
 #include "device/device.h"
 #include "lower/live_scene.h"
 #include "view/keep.h"
-#include "view/server.h"
+#include "view/viewer_options.h"
 
 namespace caplet::view {
-
-struct ViewerOptions {
-  ServerOptions server;
-  bool read_only = false;                          // refuse changes
-  int samples = 0;                                 // per pixel of a finished picture; 0: the scene's own
-  double coarse_seconds = 0.08;                    // approximate time of a view's first picture
-  double step_seconds = 0.5;                       // approximate time between two pictures
-  std::size_t batch_paths = std::size_t{1} << 15;  // queries are answered between batches
-};
 
 /// Renders the latest requested view on its own thread: coarsely at first, then in full, then with more samples until it is done
 /// or no page is visible. Queries are answered between batches of paths. A new view ends the picture in progress.

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "film/exr_bytes.h"
 #include "film/image.h"
 #include "images.h"
 #include "support/broken_utf8.h"
@@ -52,6 +53,12 @@ TEST(Exr, KeepsEveryChannelToTheBit) {
     EXPECT_EQ(read->floats, channel.floats) << channel.name;
     EXPECT_EQ(read->uints, channel.uints) << channel.name;
   }
+}
+
+TEST(Exr, IsTheSameInMemory) {
+  const auto path = test::temporary_folder() / "memory.exr";
+  write_exr(path, layered_image());
+  EXPECT_EQ(exr_bytes(layered_image()), file_bytes(path));
 }
 
 TEST(Exr, KeepsWindowsAndMetadata) {

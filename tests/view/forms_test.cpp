@@ -290,7 +290,8 @@ Shape "cylinder" "point3 p0" [ 0 0 1 ] "point3 p1" [ 0 1 1 ] "float radius" [ 0.
   const auto lamp = static_cast<std::uint32_t>(live.scene().shapes.size() - 1);
   {
     Editor editor(live);
-    for (const Kind kind : {Kind::film, Kind::filter, Kind::sampler, Kind::integrator}) try_form(live, editor, {kind});
+    for (const Kind kind : {Kind::camera, Kind::film, Kind::filter, Kind::sampler, Kind::integrator})
+      try_form(live, editor, {kind});
     try_form(live, editor, {Kind::emission, lamp});
     try_form(live, editor, {Kind::emission, ball});
   }
@@ -339,6 +340,37 @@ TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   }
   EXPECT_EQ(editor.document().film.width, 32);
   EXPECT_EQ(live.scene().integrator.max_depth, 3);
+}
+
+TEST(Forms, SetTheCameraOfTheDocument) {
+  LiveScene live(scene_with(plain));
+  Editor editor(live);
+  const FormSubject camera{Kind::camera};
+  const std::string before = text_of(editor.document());
+  EXPECT_EQ(field_of(live, editor.view(), camera, "kind")["value"], "perspective");
+  EXPECT_NEAR(field_of(live, editor.view(), camera, "fov")["value"].get<double>(), 40, 1e-9);
+  editor.make(Set{camera, "fov", 60.0});
+  EXPECT_NEAR(fov_of(editor.document().camera), 3.14159265358979 / 3, 1e-12);
+  editor.make(Set{{Kind::film}, "iso", 200.0});
+  for (const char* kind : {"orthographic", "spherical"}) {
+    editor.make(Set{camera, "kind", std::string(kind)});
+    EXPECT_THAT(text_of(editor.document()), HasSubstr(fmt::format("Camera \"{}\"", kind)));
+    Editor again(live);
+    try_form(live, again, camera);
+  }
+  EXPECT_TRUE(field_of(live, editor.view(), camera, "fov").is_null());
+  EXPECT_EQ(editor.camera_changes(), 3u);
+  EXPECT_THROW(editor.make(Set{camera, "kind", std::string("realistic")}), InputError);
+  // A camera that is saved stays when other settings are undone.
+  Camera saved = editor.document().camera;
+  saved.world_from_camera[3].x += 2;
+  editor.adopt_camera(saved);
+  editor.make(Set{{Kind::film}, "iso", 300.0});
+  EXPECT_TRUE(editor.undo());
+  EXPECT_EQ(editor.document().camera.world_from_camera, saved.world_from_camera);
+  while (editor.undo()) {
+  }
+  EXPECT_EQ(text_of(editor.document()), before);
 }
 
 TEST(Forms, NameLightsThatComeAndGo) {

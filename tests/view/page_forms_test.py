@@ -294,7 +294,7 @@ def within_reach(program, scenes, out):
         shown.script("for (const d of document.querySelectorAll('details')) d.open = true")
         at.pick("light", "1")
         at.pick("texture", "0")
-        for form in ("material", "light", "texture", "film", "filter", "sampler", "integrator"):
+        for form in ("material", "light", "texture", "camera", "film", "filter", "sampler", "integrator"):
             shown.until(f"the form {form}", lambda: shown.driver.find_elements(By.CSS_SELECTOR, f"#form-{form} [name]"))
         controls = shown.script(NAMES)
         assert len(controls) > 70, len(controls)

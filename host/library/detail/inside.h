@@ -22,6 +22,7 @@
 #include "film/image.h"
 #include "post/scale_bar.h"
 #include "scene/edit.h"
+#include "scene/edit_log.h"
 #include "scene/scene.h"
 
 namespace caplet::v0 {
@@ -31,15 +32,10 @@ std::uint64_t next_serial();
 
 struct Scene::Data {
   caplet::Scene model;
-  /// One of the edits since the scene was read. A copy has those of its original up to the copy, and then its own.
-  struct Logged {
-    std::uint64_t serial;
-    SceneEdit edit;
-  };
-  std::uint64_t origin = next_serial();
-  std::vector<Logged> edits;
+  // The edits since the scene was read. A copy has those of its original up to the copy, and then its own.
+  EditLog<SceneEdit> log = EditLog<SceneEdit>(next_serial());
   // These belong to a scene that is built: whether it still lacks a camera or a light; whether present() has added its light; and
-  // the state (`origin`) that present() has processed.
+  // the state (the origin of `log`) that present() has processed.
   bool open_camera = false, open_light = false, studio_light = false;
   std::optional<std::uint64_t> presented = {};
 

@@ -52,7 +52,7 @@ void visit_form(FormFields& fields, Texture& texture, std::uint32_t own);
 void visit_form(FormFields& fields, Light& light);
 void visit_form(FormFields& fields, std::optional<AreaEmission>& emission);
 void visit_form(FormFields& fields, Shape& shape);
-/// Visits the film, the filter, the sampler or the integrator.
+/// Visits the camera (but for its place), the film, the filter, the sampler or the integrator.
 void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind kind);
 
 /// Lists the kinds that can be made without an existing part.

@@ -4,6 +4,7 @@
 // Makes and undoes changes, saves them, and replays them at the next start.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -36,20 +37,24 @@ class Keeping {
   nlohmann::ordered_json text() const;
   /// Returns the camera and the size that the scene is saved with.
   const ShowView& own_look() const { return own_; }
-  bool has_unsaved() const { return editor_.state() != saved_; }
+  bool has_unsaved() const { return editor_.has_unsaved(); }
   /// Returns the journal if changes remain in it.
   std::optional<std::filesystem::path> end();
 
  private:
   bool change(const Message& message);
+  bool go(bool again);
+  void follow_camera();
+  void set_own(ShowView look);
+  Camera camera_of(ShowView own) const;
   bool make_line(const std::string& line);
   std::size_t make_lines(const std::vector<std::string>& lines);
 
   Editor& editor_;
   std::unique_ptr<Keeper> keeper_;
   ShowView own_;
-  bool own_is_new_ = false;   // it was saved with a different camera
-  std::uint64_t saved_ = 0;   // state of the editor
+  bool own_is_new_ = false;  // it was saved with a different camera
+  std::uint64_t camera_changes_ = 0;
   std::size_t restored_ = 0;  // changes of an earlier session
 };
 

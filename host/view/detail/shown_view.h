@@ -9,8 +9,10 @@
 
 namespace caplet::view {
 
+/// Returns the look that shows what these settings say.
+ShowView look_of(const ViewEdit& own);
 /// Returns the scene's own view.
-ShowView look_of_scene(const Scene& scene);
+inline ShowView look_of_scene(const Scene& scene) { return look_of(view_of(scene)); }
 
 /// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the left of a stereo pair.
 ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Pictures for the page: those that it shows, and whole files.
+// Pictures that the page shows.
 #pragma once
-
-#include <string>
 
 #include "film/image.h"
 #include "view/picture.h"
@@ -13,8 +11,5 @@ namespace caplet::view {
 
 /// Returns colours in linear sRGB, ids if asked for, and the noise from the image's variance.
 Picture shown_of(const LayeredImage& image, bool ids);
-
-/// Returns the image as an EXR file. Throws RunError.
-std::string exr_bytes(const LayeredImage& image);
 
 }  // namespace caplet::view

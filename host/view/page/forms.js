@@ -3,7 +3,7 @@
 // Forms of the scene's parts. The program lists each part's fields with kind and range, and checks new values.
 import { texts } from "./texts.js";
 
-const SETTINGS = ["film", "filter", "sampler", "integrator"];
+const SETTINGS = ["camera", "film", "filter", "sampler", "integrator"];
 const node = (name, attributes = {}, ...inside) => {
   const out = Object.assign(document.createElement(name), attributes);
   out.append(...inside);

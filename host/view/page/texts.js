@@ -15,7 +15,7 @@ export const texts = {
   material_form: "This material", emission_form: "Light of this shape", shape_form: "This shape", light_form: "This light", texture_form: "This texture",
   lights: "Lights", light: "Light", remove_light: "Remove light", new_light: "New light…", no_light: "none", textures: "Textures", texture: "Texture", pick_texture: "none", new_texture: "New texture…",
   of_floats: "numbers", of_spectra: "colours", new_material: "New material…", copy_material: "copy of this one", palette: "Materials", paint: (name) => `Give it ${name}`,
-  settings: "Settings", film: "Film", filter: "Pixel filter", sampler: "Samples", integrator: "Paths",
+  settings: "Settings", camera_form: "Scene's camera", film: "Film", filter: "Pixel filter", sampler: "Samples", integrator: "Paths",
   no_texture: "no texture", none: "none", samples: (n) => `${n} samples`, spectra: { rgb: "colour", constant: "number", name: "by name", blackbody: "black body, K", samples: "samples" },
   parts_of_fields: { " texture": "texture", " slider": "slider", " kind": "kind of spectrum", " colour": "colour" },
   fields: {
@@ -26,6 +26,7 @@ export const texts = {
     base_color: "Base colour", metallic: "Metallic", roughness: "Roughness", anisotropic: "Anisotropic", spec_tint: "Specular tint", spec_trans: "Transmission", sheen: "Sheen", sheen_tint: "Sheen tint", coat: "Coat", coat_roughness: "Coat: roughness", coat_eta: "Coat: index", coat_color: "Coat: colour",
     I: "Intensity", L: "Radiance", from: "Place", direction: "Direction", coneangle: "Cone, degrees", conedeltaangle: "Edge of the cone, degrees", scale: "Scale", power: "Power", illuminance: "Illuminance", fov: "Field of view, degrees", filename: "File", emits: "Shines", twosided: "On both sides",
     onesided: "Seen from outside only", radius: "Radius", "radius 0": "Radius 0", "radius 1": "Radius 1", height: "Height", innerradius: "Inner radius", phimax: "Greatest angle, degrees", p0: "End or corner 0", p1: "End or corner 1", "cap 0": "End 0 is", "cap 1": "End 1 is", zmin: "Least z", zmax: "Greatest z",
+    lensradius: "Lens radius", focaldistance: "Distance in focus", frameaspectratio: "Width over height",
     xresolution: "Width, pixels", yresolution: "Height, pixels", iso: "ISO", "exposure time": "Exposure time", whitebalance: "White balance, K (0: none)", maxcomponentvalue: "Most of a sample (0: any)", colorspace: "Colour space", xradius: "Radius along x", yradius: "Radius along y", sigma: "Sigma", tau: "Tau",
     pixelsamples: "Samples per pixel", seed: "Seed", tex1: "First", tex2: "Second", tex: "Texture", octaves: "Octaves", wrap: "Beyond the image", mapping: "Mapping", invert: "Inverted",
   },

@@ -131,6 +131,7 @@ function edited(message) {
     fill_tree();
   }
   scene.samples = message.samples;
+  if (message.home) scene.home = message.home;
   forms.told(message.parts);
   edits.refresh();
   stage.dataset.edits = (+stage.dataset.edits || 0) + 1;

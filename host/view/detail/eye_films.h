@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The films of the picture that pages look at.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "lower/live_scene.h"
+#include "render/session.h"
+#include "view/editor.h"
+#include "view/messages.h"
+#include "view/picture.h"
+#include "view/viewer_options.h"
+
+namespace caplet::view {
+
+/// Renders one look, of one eye or two, coarsely at first. Both eyes share one session: the film of the other eye waits here.
+/// Only the renderer's thread calls it.
+class EyeFilms {
+ public:
+  /// The scene and its editor must outlive this. Sends the scene to the device.
+  EyeFilms(LiveScene& live, const Editor& editor, const Device& device, const ViewerOptions& options);
+
+  /// Returns the scene on the device, for queries.
+  DeviceScene& device_scene() const { return *session_.scene_on(0); }
+  const ShowView& look() const { return look_; }
+  std::size_t eyes() const { return look_.separation > 0 ? 2 : 1; }
+  /// Returns the samples per pixel of a finished picture.
+  std::uint32_t target() const;
+  bool has_more() const { return scale_ != 1 || samples_[eyes() - 1] < target(); }
+  bool has_snapshot() const { return scale_ == 1 && samples_[0] > 0; }
+  bool is_full() const { return scale_ == 1; }
+
+  /// Starts the picture of another look, or of a changed scene. Throws InputError.
+  void begin(const ShowView& look);
+  /// Drops the picture in progress.
+  void drop() { scale_ = 0; }
+  /// Renders the next samples. `between_batches` may throw to end it; its argument says whether the picture is coarse.
+  void step(const std::function<void(bool is_coarse)>& between_batches);
+
+  /// Returns the picture of the eye that the last step rendered.
+  Picture picture();
+  /// Returns the picture of the first eye as the bytes of an EXR file.
+  std::string snapshot();
+
+ private:
+  void look_with(const ShowView& look, int scale, std::size_t eye);
+  void set_film(const ShowView& look, int scale);
+  void change_eyes();
+  std::uint32_t samples_of_step(std::size_t eye, double pixels) const;
+
+  LiveScene& live_;
+  const Editor& editor_;
+  ViewerOptions options_;
+  Session session_;
+  ShowView look_;
+  std::uint64_t version_ = 0;
+  std::uint32_t view_ = 1;
+  std::array<std::uint32_t, 2> samples_{};  // for both eyes
+  std::array<std::optional<Film>, 2> films_;
+  std::size_t eye_ = 0;  // the eye whose film is in the session
+  int scale_ = 0;        // of the film; 0: it is empty
+  double paths_a_second_;
+};
+
+}  // namespace caplet::view

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/detail/eye_films.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/clock.h"
+#include "film/develop.h"
+#include "film/exr_bytes.h"
+#include "view/detail/shown_view.h"
+#include "view/detail/snapshot.h"
+
+namespace caplet::view {
+
+namespace {
+
+constexpr int coarsest_scale = 16;
+constexpr double first_guess_paths_a_second = 5e5;
+
+SessionOptions session_options(const ViewerOptions& options) {
+  SessionOptions out;
+  out.layers = Layers::none().with(Layer::object).with(Layer::primitive).with(Layer::variance);
+  out.batch_paths = options.batch_paths;
+  return out;
+}
+
+}  // namespace
+
+EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device, const ViewerOptions& options)
+    : live_(live),
+      editor_(editor),
+      options_(options),
+      session_(live.flat(), live.view(), std::vector<Device>{device}, session_options(options)),
+      look_(look_of_scene(live.scene())),
+      paths_a_second_(first_guess_paths_a_second) {
+  (void)live_.take_changes();
+}
+
+std::uint32_t EyeFilms::target() const {
+  return static_cast<std::uint32_t>(options_.samples > 0 ? options_.samples : live_.scene().sampler.samples_per_pixel);
+}
+
+void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {
+  ViewEdit own = view_of(live_.scene());
+  own.camera = editor_.view().camera;
+  live_.edit(shown_view(own, look, scale, static_cast<int>(eye)));
+  session_.update(live_.flat(), live_.take_changes(), live_.view());
+  eye_ = eye;
+}
+
+/// Starts the film of `look` with a pixel for each square of `scale` pixels.
+void EyeFilms::set_film(const ShowView& look, int scale) {
+  look_with(look, scale, 0);
+  scale_ = scale;
+  samples_ = {0, 0};
+  films_ = {};
+}
+
+/// Switches to the other eye of a pair and resumes its film.
+void EyeFilms::change_eyes() {
+  films_[eye_] = session_.film();
+  look_with(look_, scale_, 1 - eye_);
+  if (samples_[eye_] > 0) session_.resume(std::move(*films_[eye_]));
+}
+
+void EyeFilms::begin(const ShowView& look) {
+  drop();
+  const double pixels = static_cast<double>(look.width) * look.height;
+  int scale = 1;
+  while (scale < coarsest_scale && pixels > options_.coarse_seconds * paths_a_second_ * scale * scale) scale *= 2;
+  set_film(look, scale);
+  look_ = look;
+  ++view_;
+}
+
+std::uint32_t EyeFilms::samples_of_step(std::size_t eye, double pixels) const {
+  if (scale_ != 1) return 1;
+  if (eye == 1) return samples_[0] - samples_[1];
+  const double affordable = options_.step_seconds * paths_a_second_ / pixels;
+  return std::clamp(static_cast<std::uint32_t>(affordable), 1u, std::max(1u, std::min(samples_[0], target() - samples_[0])));
+}
+
+void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) {
+  const bool both = samples_[0] > 0 && (eyes() == 1 || samples_[1] > 0);
+  if (scale_ == 0 || (scale_ > 1 && both)) set_film(look_, 1);
+  const std::size_t eye = eyes() == 2 && samples_[1] < samples_[0] ? 1 : 0;
+  if (eye != eye_) change_eyes();
+  const double pixels = static_cast<double>(live_.scene().film.width) * live_.scene().film.height;
+  const std::uint32_t count = samples_of_step(eye, pixels);
+  const bool is_coarse = scale_ > 1;
+  const Clock::time_point start = Clock::now();
+  session_.render(count, [&](const SessionProgress&) { between_batches(is_coarse); });
+  const double seconds = std::max(1e-4, seconds_since(start));
+  paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
+  samples_[eye_] += count;
+}
+
+Picture EyeFilms::picture() {
+  NotFinite not_finite;
+  const LayeredImage image = develop(session_.film(), live_.scene(), session_options(options_).layers, not_finite);
+  Picture out = shown_of(image, is_full());
+  out.version = ++version_;
+  out.view = view_;
+  out.eye = static_cast<int>(eye_);
+  out.scale = scale_;
+  out.samples = samples_[eye_];
+  return out;
+}
+
+std::string EyeFilms::snapshot() {
+  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene(), session_options(options_).layers));
+}
+
+}  // namespace caplet::view

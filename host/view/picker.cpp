@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "view/detail/picker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "lower/camera.h"
+#include "report/pick_report.h"
+#include "view/detail/scene_text.h"
+#include "view/detail/shown_view.h"
+#include "view/forms.h"
+
+namespace caplet::view {
+
+namespace {
+
+constexpr std::size_t most_crossings = 4096;
+
+}  // namespace
+
+Picker::Picker(const LiveScene& live, const Editor& editor, DeviceScene& scene, std::string device)
+    : live_(live), editor_(editor), device_(std::move(device)), query_(scene) {
+  const RayRecord any{0, 0, 0, 0, 0, 0, 1, INFINITY};
+  (void)query_.closest(std::span(&any, 1));  // compiles the query's kernel
+}
+
+Text Picker::answer(const Question& question, const ShowView& shown) {
+  return std::visit([&](const auto& one) { return answer_to(one, shown); }, question);
+}
+
+Text Picker::answer_to(const Ask& ask, const ShowView& shown) {
+  nlohmann::ordered_json out{{"type", "answer"}, {"number", ask.number}};
+  const Scene& scene = live_.scene();
+  const RayRecord ray = ray_at(ask, shown);
+  report::PickReport told;
+  told.pixel = {ask.x, ask.y};
+  told.ray = ray;
+  told.device = device_;
+  told.all = true;  // reports a list, even for the nearest crossing only
+  if (ask.all) {
+    told.crossings = query_.all(std::span(&ray, 1), most_crossings).crossings;
+  } else if (const PickRecord pick = query_.closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
+    told.crossings = {pick};
+  }
+  if (ask.reference) told.reference = report::reference_crossings(scene, ray, ask.all);
+  out["pick"] = nlohmann::ordered_json::parse(report::json_text(told, scene));
+  return text_of(out);
+}
+
+Text Picker::answer_to(const Describe& describe, const ShowView&) {
+  nlohmann::ordered_json out{{"type", "answer"}, {"number", describe.number}};
+  out["thing"] = thing_text(live_.scene(), describe.id, describe.primitive);
+  return text_of(out);
+}
+
+Text Picker::answer_to(const Form& form, const ShowView&) {
+  nlohmann::ordered_json out{{"type", "answer"}, {"number", form.number}};
+  out["form"] = form_text(live_.scene(), editor_.view(), form.part);
+  return text_of(out);
+}
+
+RayRecord Picker::ray_at(const Ask& ask, const ShowView& shown) const {
+  ViewEdit own = view_of(live_.scene());
+  own.camera = editor_.view().camera;
+  const ViewEdit view = shown_view(own, shown, 1, ask.eye);
+  Scene looked;
+  looked.camera = view.camera;
+  looked.film = view.film;
+  return ray_of_pixel(looked, std::min(ask.x, shown.width - 1), std::min(ask.y, shown.height - 1));
+}
+
+}  // namespace caplet::view
