@@ -26,6 +26,9 @@ TOLERANCE = 1e-6  # metres, of positions and sizes
 ENDS = 1e-5       # of the ends of capsules
 RAY = 1e-5        # of distances
 
+# Without this MuJoCo writes its warnings into MUJOCO_LOG.TXT in the working folder.
+mujoco.set_mju_user_warning(lambda text: print(f"mujoco: {text}", file=sys.stderr))
+
 
 def model_of(path):
     """The model as it stands in the file: nothing fused or left out, and no meshes of URDF that are not there."""

@@ -40,7 +40,7 @@ PARTS = [  # of the table of sizes: what, and its files
     ("the linker", r"pocl/bin/"),
     ("the program", r"caplet/bin/caplet$"),
     ("the Python extension", r"_caplet.*\.so$"),
-    ("libraries of both (OpenEXR, assimp, TBB, ...)", r"caplet\.libs/"),
+    ("libraries of both (OpenEXR, TBB, ...)", r"caplet\.libs/"),
     ("Python, licences, all else", r""),
 ]
 

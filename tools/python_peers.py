@@ -75,6 +75,8 @@ def mesh(rays, rounds):
 
 def robot(path, rays, rounds):
     import mujoco
+    # Without this MuJoCo writes its warnings into MUJOCO_LOG.TXT in the working folder.
+    mujoco.set_mju_user_warning(lambda text: print(f"mujoco: {text}", file=sys.stderr))
     model = mujoco.MjModel.from_xml_path(path)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)

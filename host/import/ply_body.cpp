@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Checks the body of a PLY file and rewrites it for assimp 5.2, which reads beyond the end of truncated files, mistakes bytes of
-// unknown elements for vertices and faces, refuses faces before vertices, rounds ascii numbers wrongly, takes lists of texture
-// coordinates from faces, and drops the first byte of a binary body when it equals a newline.
+// Reads and checks the body of a PLY file, whatever its encoding and the order of its elements.
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace caplet::ply {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the rewritten body is written in the host's byte order");
+static_assert(std::endian::native == std::endian::little, "values are put together in the host's byte order");
 
 /// Reads one value after the other, from text or bytes.
 class PlyValues {
@@ -123,18 +123,15 @@ class PlyValues {
   Encoding encoding_;
 };
 
-template <class T>
-void append(std::string& out, T value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
-/// Returns the standard name of a vertex property that a mesh uses; otherwise empty.
-std::string_view plain_name(std::string_view name) {
-  for (std::string_view same : {"x", "y", "z", "nx", "ny", "nz", "u", "v"})
-    if (name == same) return same;
-  if (name == "s" || name == "texture_u" || name == "texture_s") return "u";
-  if (name == "t" || name == "texture_v" || name == "texture_t") return "v";
-  return {};
+/// Returns a property's place in x y z nx ny nz u v, or -1 where a mesh does not use it.
+int part_of(const Property& property) {
+  if (property.is_list) return -1;
+  constexpr std::array<std::string_view, 8> names = {"x", "y", "z", "nx", "ny", "nz", "u", "v"};
+  std::string_view name = property.name;
+  if (name == "s" || name == "texture_u" || name == "texture_s") name = "u";
+  if (name == "t" || name == "texture_v" || name == "texture_t") name = "v";
+  const auto* const found = std::ranges::find(names, name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
 /// Returns the colour component of a property: 0 to 2, or -1.
@@ -158,64 +155,52 @@ bool has_color(const Element& element) {
 /// Returns the value of white: the greatest value of a small integer type; 1 for floats.
 double white_of(Type type) { return is_float(type) ? 1 : size_of(type) == 2 ? 65535 : 255; }
 
-class Walk {
+class BodyReader {
  public:
-  Walk(const std::string& file, std::string_view bytes, const Header& header, Colors* colors)
-      : header_(header), values_(file, bytes, header), colors_(colors) {}
+  BodyReader(const std::string& file, std::string_view bytes, const Header& header, bool with_colors)
+      : header_(header), values_(file, bytes, header) {
+    const Element &vertex = header.elements[header.vertex], &face = header.elements[header.face];
+    of_vertices_ = with_colors && has_color(vertex);
+    of_faces_ = with_colors && !of_vertices_ && has_color(face);
+    for (const Property& one : vertex.properties) parts_.push_back(part_of(one));
+    has_normals_ = std::ranges::any_of(parts_, [](int part) { return part >= 3 && part < 6; });
+    has_uvs_ = std::ranges::any_of(parts_, [](int part) { return part >= 6; });
+    body_.positions.reserve(vertex.count);
+    body_.lengths.reserve(face.count);
+  }
 
-  void run() {
-    const bool of_vertices = colors_ && has_color(header_.elements[header_.vertex]);
-    const bool of_faces = colors_ && !of_vertices && has_color(header_.elements[header_.face]);
+  Body read() {
     for (std::size_t e = 0; e < header_.elements.size(); ++e) {
-      with_color_ = (e == header_.vertex && of_vertices) || (e == header_.face && of_faces);
+      with_color_ = (e == header_.vertex && of_vertices_) || (e == header_.face && of_faces_);
       for (std::uint64_t i = 0; i < header_.elements[e].count; ++i) {
         if (e == header_.vertex)
           vertex(header_.elements[e]);
         else
           for (std::size_t p = 0; p < header_.elements[e].properties.size(); ++p)
             property(header_.elements[e].properties[p], e == header_.face && p == header_.indices);
-        if (with_color_) (e == header_.vertex ? colors_->of_vertices : colors_->of_faces).push_back(color_);
+        if (with_color_) (e == header_.vertex ? body_.vertex_colors : body_.face_colors).push_back(color_);
       }
     }
-  }
-
-  std::string rewritten() const {
-    std::string out =
-        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(header_.elements[header_.vertex].count) + "\n";
-    const char* type = "double";
-    for (const Property& property : header_.elements[header_.vertex].properties)
-      if (const std::string_view name = plain_name(property.name); !name.empty() && !property.is_list) {
-        out += std::string("property ") + type + " " + std::string(name) + "\n";
-        type = "float";
-      }
-    out += "element face " + std::to_string(header_.elements[header_.face].count) +
-           "\nproperty list uint uint vertex_indices\nend_header\n";
-    out.reserve(out.size() + vertices_.size() + faces_.size());
-    out += vertices_;
-    out += faces_;
-    return out;
+    return std::move(body_);
   }
 
  private:
   void vertex(const Element& element) {
-    bool is_first = true;
-    for (const Property& p : element.properties) {
-      const std::string_view name = p.is_list ? std::string_view() : plain_name(p.name);
-      if (name.empty()) {
+    std::array<float, 8> parts{};
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Property& p = element.properties[i];
+      if (parts_[i] < 0) {
         property(p, false);
         continue;
       }
       const double value = values_.number(p.type);
-      const bool is_position = name == "x" || name == "y" || name == "z";
-      if (is_position && !(std::abs(value) <= 3.4028234663852886e38))
+      if (parts_[i] < 3 && !(std::abs(value) <= 3.4028234663852886e38))
         values_.fail("a vertex position is not finite (\"" + p.name + "\")");
-      // The low bytes of a float written as a double are 0, so the body does not start with a newline.
-      if (is_first)
-        append(vertices_, static_cast<double>(static_cast<float>(value)));
-      else
-        append(vertices_, static_cast<float>(value));
-      is_first = false;
+      parts[static_cast<std::size_t>(parts_[i])] = static_cast<float>(value);
     }
+    body_.positions.emplace_back(parts[0], parts[1], parts[2]);
+    if (has_normals_) body_.normals.emplace_back(parts[3], parts[4], parts[5]);
+    if (has_uvs_) body_.uvs.emplace_back(parts[6], parts[7]);
   }
 
   void property(const Property& p, bool is_indices) {
@@ -233,31 +218,31 @@ class Walk {
     const auto length = static_cast<std::uint64_t>(given);
     if (!values_.fits(length, p.type)) values_.truncated();
     if (!is_indices && values_.skip(p.type, length)) return;
-    if (is_indices) append(faces_, static_cast<std::uint32_t>(length));
+    if (is_indices) body_.lengths.push_back(static_cast<std::uint32_t>(length));
     for (std::uint64_t i = 0; i < length; ++i) {
       const double value = values_.number(p.type);
       if (!is_indices) continue;
       if (value < 0 || value >= static_cast<double>(header_.elements[header_.vertex].count))
         values_.fail("a PLY face has the vertex index " + std::to_string(static_cast<std::int64_t>(value)) + ", but there are " +
                      std::to_string(header_.elements[header_.vertex].count) + " vertices");
-      append(faces_, static_cast<std::uint32_t>(value));
+      body_.corners.push_back(static_cast<std::uint32_t>(value));
     }
   }
 
   const Header& header_;
   PlyValues values_;
-  std::string vertices_, faces_;
-  Colors* colors_;
-  bool with_color_ = false;
+  Body body_;
+  std::vector<int> parts_;  // of each property of vertices
+  bool has_normals_ = false, has_uvs_ = false;
+  bool of_vertices_ = false, of_faces_ = false;  // which colours are read
+  bool with_color_ = false;                      // of the element that is being read
   glm::vec3 color_{0};
 };
 
 }  // namespace
 
-std::string rewrite(const std::string& file, std::string_view bytes, const Header& header, Colors* colors) {
-  Walk walk(file, bytes, header, colors);
-  walk.run();
-  return walk.rewritten();
+Body read_body(const std::string& file, std::string_view bytes, const Header& header, bool with_colors) {
+  return BodyReader(file, bytes, header, with_colors).read();
 }
 
 }  // namespace caplet::ply

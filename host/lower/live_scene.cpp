@@ -187,7 +187,6 @@ struct LiveScene::State {
     const Material& material = scene.materials[edit.material];
     if (!edit.textures.empty() || !before.textures.empty() || material.normalmap || material.displacement)
       return false;  // other steps, and perhaps other kinds of them
-    if (scene.materials[edit.material].normalmap || scene.materials[edit.material].displacement) return false;
     flat().materials[edit.material] = lower_material(scene, edit.material, lowering->images, lowering->spectra, flat());
     changes.materials.add(edit.material, 1);
     changes.material_data.add(flat().materials[edit.material].data, material_stride);

@@ -202,12 +202,10 @@ std::vector<BadInput> bad_inputs() {
   std::string many;
   for (int i = 0; i < 300'000; ++i) many += "0 0 5 0 0 -1\n";
   rows.push_back(rays("rays_wrong_at_the_end", "rays.txt", many + "0 0 5 0 0 zero\n", "rays.txt:300001:11", "'zero'"));
-#ifdef CAPLET_WITH_PLY
   const std::string mesh = "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
   rows.push_back(scene("ply_missing", head + mesh, "", "mesh.ply"));
   rows.push_back(scene("ply_truncated", head + mesh, "", "mesh.ply",
                        {{"mesh.ply", ply + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0"}}));
-#endif
 #ifdef CAPLET_WITH_OIIO
   rows.push_back(scene("broken_png", head + "LightSource \"infinite\" \"string filename\" \"sky.png\"\n" + capsule, "", "sky.png",
                        {{"sky.png", garbage}}));

@@ -191,12 +191,10 @@ fs::path folder_with_inputs() {
   test::write_file(folder / "part.pbrt", small.substr(small.find("Shape ")));
   std::string text = small.substr(0, small.find("LightSource ")) + "LightSource \"infinite\" \"string filename\" \"env.exr\"\n" +
                      "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\nInclude \"part.pbrt\"\n";
-#ifdef CAPLET_WITH_PLY
   test::write_file(folder / "mesh.ply",
                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   text += "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
-#endif
   test::write_file(folder / "scene.pbrt", text);
   test::write_file(folder / "cell.swc", "1 1 0 0 0 1 -1\n2 3 0 5 0 1 1\n");
   test::write_file(folder / "axon.capsules", "<0, 0, 0> <1, 0, 0> 0.5\n");
@@ -220,11 +218,8 @@ TEST(Outputs, NoInputIsReplaced) {
   };
   for (const char* name : {"env.exr", "./env.exr", "sub/../env.exr", "hard.exr", "soft.exr"})
     refused({"render", "scene.pbrt", "-o", name}, "-o");
-  Names read = {"scene.pbrt", "part.pbrt", "grey.spd", "env.exr"};
-#ifdef CAPLET_WITH_PLY
-  read.push_back("mesh.ply");
-#endif
-  for (const std::string& name : read) refused({"render", "scene.pbrt", "-o", "out.exr", "--stats", name}, "--stats");
+  for (const char* name : {"scene.pbrt", "part.pbrt", "grey.spd", "env.exr", "mesh.ply"})
+    refused({"render", "scene.pbrt", "-o", "out.exr", "--stats", name}, "--stats");
   refused({"render", "cell.swc", "--stats", "cell.swc"}, "--stats");
   refused({"render", "axon.capsules", "--stats", "axon.capsules"}, "--stats");
   refused({"pick", "scene.pbrt", "--rays", "rays.csv", "--out", "rays.csv"}, "--out");

@@ -431,12 +431,10 @@ TEST(SharedScenes, LoadWithTheirStatements) {
   const Scene box = import_scene(scenes / "cornell-box" / "scene-v4.pbrt", StubImages());
   EXPECT_EQ(box.integrator.max_depth, 4);
   EXPECT_EQ(box.shapes.size(), 8u);
-#ifdef CAPLET_WITH_PLY
   const Scene coffee = import_scene(scenes / "coffee" / "scene-v4.pbrt", StubImages());
   EXPECT_EQ(std::ranges::count_if(coffee.materials,
                                   [](const Material& one) { return std::holds_alternative<CoatedDiffuseMaterial>(one.model); }),
             3);
-#endif
 }
 
 TEST(SharedScenes, MitsubaReferencesLoad) {

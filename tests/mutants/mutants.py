@@ -6,9 +6,11 @@
 usage: mutants.py [--jobs N] [NAME...]   run all mutants, or those named
        mutants.py --check                is every mutant's place still there, once, and its test?
        mutants.py --page                 print a table of all. The last two run no test.
+       mutants.py --self-test            are functions found in a text of a few lines?
 
 A mutant is an entry of a *.toml file of this folder: `old` is the text of `file` that becomes `new`, `test` a test program and a
-filter of its tests. Kernels are mutated for the device alone (CAPLET_KERNELS), so one of kernels/shared makes host and device differ.
+filter of its tests. `function` may name the function whose body holds `old`, which need not be unique elsewhere.
+Kernels are mutated for the device alone (CAPLET_KERNELS), so one of kernels/shared makes host and device differ.
 Exit status: 0 when all were caught, 1 when not, 2 for a fault of the list.
 """
 import argparse
@@ -50,6 +52,7 @@ class Mutant:
     new: str
     test: str
     source: str  # the file it is listed in
+    function: str = ""  # the one whose body holds `old`; empty: anywhere in the file
 
     @property
     def program(self):
@@ -81,6 +84,75 @@ def listed():
     return mutants
 
 
+# --- Places in the sources ---
+
+# Braces in these are no braces of the code.
+NO_CODE = re.compile(r"//[^\n]*|/\*(?s:.*?)\*/" r'|R"(\w*)\((?s:.*?)\)\1"' r'|"(?:\\.|[^"\\\n])*"' r"|(?<!\w)'(?:\\.|[^'\\\n])+'")
+# What may stand between a function's parameters and its body, initializers of members included.
+BEFORE_BODY = re.compile(r"(?:\s|const\b|noexcept\b|override\b|final\b|try\b|->[\w:<>&*\s]++|:(?!:)[^;{}]*+)*+\{")
+
+
+def closed(code, at):
+    """Returns the place behind the bracket that closes the one at `at`; the code's end if none does."""
+    depth = 0
+    for i in range(at, len(code)):
+        depth += (code[i] in "({") - (code[i] in ")}")
+        if depth == 0:
+            return i + 1
+    return len(code)
+
+
+def bodies(text, function):
+    """Returns beginning and end of the body of each function of this name (overloads have the same one), with its braces."""
+    code = NO_CODE.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+    out = []
+    for named in re.finditer(rf"(?<![\w~]){re.escape(function)}\s*(?=\()", code):
+        if before := BEFORE_BODY.match(code, closed(code, named.end())):
+            out.append((before.end() - 1, closed(code, before.end() - 1)))
+    return out
+
+
+def places(text, m):
+    """Returns where the mutant's old text begins."""
+    within = bodies(text, m.function) if m.function else [(0, len(text))]
+    return sorted({begin + at.start() for begin, end in within for at in re.finditer(re.escape(m.old), text[begin:end])})
+
+
+def place(path, m):
+    """Returns the only place of the mutant's old text. Raises ListError where there is none, or another."""
+    found = places(path.read_text(), m) if path.is_file() else []
+    if len(found) != 1:
+        where = f"{m.function} of {m.file}" if m.function else m.file
+        raise ListError(f"{m.name}: its old text occurs {len(found)} times in {where}, not once")
+    return found[0]
+
+
+SAMPLE = """int once(int a);
+int once(int a) { return '}' + a; }  // once() {
+struct Twice {
+  explicit Twice(int a) : a_(a), b_(once(a)) { a_ += 1; }
+  int twice(int a) const { if (a) { return a += 1; } return once(a); }
+  int twice(char a) try { return a += 2; } catch (...) {}
+  ~Twice() { a_ += 1; }
+  const char* text = "twice(int a) { a += 3";
+  int a_ = 1'000, b_;
+};
+auto Twice::other() -> std::vector<int> { if (twice(1)) { a_ += 1; } }
+"""
+
+
+def self_test():
+    def counted(function, old):
+        return len(places(SAMPLE, Mutant("", "", "", old, "", "", "", function)))
+
+    expected = {("once", "return"): 1, ("once", "'}' + a"): 1, ("Twice", "a_ += 1"): 1, ("twice", "a += 1"): 1, ("twice", "a +="): 2,
+                ("other", "a_ += 1"): 1, ("Twice::other", "a_ += 1"): 1, ("~Twice", "a_ += 1"): 1, ("", "a_ += 1"): 3, ("none", "a"): 0}
+    wrong = [f"{old!r} of {function}: {counted(function, old)} times, not {count}"
+             for (function, old), count in expected.items() if counted(function, old) != count]
+    print("\n".join(wrong) or "functions are found")
+    return 1 if wrong else 0
+
+
 # --- The list itself ---
 
 
@@ -95,10 +167,10 @@ def complaints(mutants):
     tests = set(re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", sources))
     for m in mutants:
         where = f"{m.source}: {m.name}"
-        path = ROOT / m.file
-        count = path.read_text().count(m.old) if path.is_file() else 0
-        if count != 1:
-            out.append(f"{where}: its old text occurs {count} times in {m.file}, not once")
+        try:
+            place(ROOT / m.file, m)
+        except ListError as error:
+            out.append(f"{m.source}: {error}")
         if m.old == m.new:
             out.append(f"{where}: changes nothing")
         if " " not in m.test or m.program not in programs:
@@ -222,10 +294,8 @@ def outcome(program, test_filter, kernels, folder):
 
 
 def mutate(path, m):
-    text = path.read_text()
-    if text.count(m.old) != 1:
-        raise ListError(f"{m.name}: its old text occurs {text.count(m.old)} times in {m.file}, not once")
-    path.write_text(text.replace(m.old, m.new))
+    text, at = path.read_text(), place(path, m)
+    path.write_text(text[:at] + m.new + text[at + len(m.old):])
 
 
 class Run:
@@ -342,7 +412,10 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at the same time")
     parser.add_argument("--check", action="store_true", help="look at the list alone")
     parser.add_argument("--page", action="store_true", help="print a table of all mutants")
+    parser.add_argument("--self-test", action="store_true", help="try how functions are found")
     options = parser.parse_args()
+    if options.self_test:
+        return self_test()
     if options.check:
         return check()
     mutants = listed()

@@ -57,15 +57,17 @@ bool is_index_list(const Property& property);
 /// Reads and checks the header, and the counts against the file's size. Throws InputError.
 Header parse_header(const std::string& file, std::string_view bytes);
 
-/// Linear colours, one per vertex or one per face; empty without colours.
-struct Colors {
-  std::vector<glm::vec3> of_vertices, of_faces;
+/// What a file's vertices and faces hold. Normals, texture coordinates and colours are empty where the file has none.
+struct Body {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> uvs;
+  std::vector<std::uint32_t> lengths, corners;        // numbers of corners of each face, and the vertices of all faces
+  std::vector<glm::vec3> vertex_colors, face_colors;  // linear
 };
 
-/// Rewrites the mesh as a little-endian PLY of the simplest form: vertices before faces, x y z nx ny nz u v as far as given, then
-/// one list of 32-bit indices per face, nothing else. Throws InputError unless every value of the body is present and readable,
-/// positions are finite and indices are in range.
-std::string rewrite(const std::string& file, std::string_view bytes, const Header& header, Colors* colors = nullptr);
+/// Reads the body, with colours of vertices or else of faces if they are asked for. Throws InputError unless every value of the
+/// body is present and readable, positions are finite and indices are in range.
+Body read_body(const std::string& file, std::string_view bytes, const Header& header, bool with_colors);
 
 }  // namespace ply
 

@@ -10,19 +10,16 @@
 
 #include "base/error.h"
 #include "base/quotes.h"
-#include "import/detail/molecule.h"
-#include "import/detail/text_file.h"
+#include "import/detail/molecule_lines.h"
 
 namespace caplet {
 
 namespace {
 
-class SdfReader {
+class SdfReader : MoleculeLines {
  public:
   SdfReader(std::string_view text, const std::string& path, const ImportOptions& options)
-      : text_(text), path_(path), options_(options) {
-    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
-  }
+      : MoleculeLines(text, path, "the file ends before its connection table does"), options_(options) {}
 
   Molecule read() {
     const std::uint32_t wanted = options_.number("model", 1);
@@ -30,7 +27,6 @@ class SdfReader {
     if (trimmed(text_).starts_with('<'))
       throw InputError({path_, 1, 0},
                        "is XML: simulators' SDFormat is not read, which has the same ending as molecules' SD files");
-    out_.chains = {""};
     out_.name = std::string(trimmed(line()));
     line();  // skips program and date
     line();  // skips the comment
@@ -40,25 +36,13 @@ class SdfReader {
     else
       read_v2000(counts);
     if (out_.atoms.empty()) fail(0, "holds no atoms");
-    Residue all;
-    all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
-    out_.residues.push_back(all);
+    close_residue();
     out_.bonds_are_complete = true;
     out_.frames = wanted + records_behind();
     return std::move(out_);
   }
 
  private:
-  [[noreturn]] void fail(std::size_t column, const std::string& message) const {
-    throw InputError({path_, line_, static_cast<int>(column)}, message);
-  }
-
-  std::string_view line() {
-    ++line_;
-    if (text_.empty()) fail(0, "the file ends before its connection table does");
-    return take_line(text_);
-  }
-
   void skip_records(std::uint32_t number) {
     for (std::uint32_t record = 1; record < number; ++record) {
       do {
@@ -87,12 +71,7 @@ class SdfReader {
   void add_atom(glm::dvec3 p, std::string_view symbol, std::size_t column) {
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(p[axis]) <= static_cast<double>(largest_number))) fail(column, "the place is not finite or out of range");
-    Atom atom;
-    atom.position = p;
-    atom.element = element_of(symbol);
-    atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
-    out_.atoms.push_back(atom);
-    in_file_.prove();
+    add(next_atom(glm::vec3(p), symbol));
   }
 
   void add_bond(std::uint32_t a, std::uint32_t b, std::size_t column) {
@@ -164,12 +143,7 @@ class SdfReader {
     return value;
   }
 
-  std::string_view text_;
-  const std::string& path_;
   const ImportOptions& options_;
-  int line_ = 0;
-  Molecule out_;
-  Unproven in_file_;
 };
 
 }  // namespace

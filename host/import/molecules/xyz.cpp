@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 #include "base/quotes.h"
-#include "import/detail/molecule.h"
-#include "import/detail/text_file.h"
+#include "import/detail/molecule_lines.h"
 
 namespace caplet {
 
@@ -43,12 +42,10 @@ Columns columns_of(std::string_view comment) {
   return columns;
 }
 
-class XyzReader {
+class XyzReader : MoleculeLines {
  public:
   XyzReader(std::string_view text, const std::string& path, const ImportOptions& options)
-      : text_(text), path_(path), options_(options) {
-    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
-  }
+      : MoleculeLines(text, path, "the file ends where a line of it is missing"), options_(options) {}
 
   Molecule read() {
     const std::uint32_t wanted = options_.number("model", 1);
@@ -65,24 +62,14 @@ class XyzReader {
     }
     out_.frames = wanted + frames_behind();
     if (out_.atoms.empty()) throw InputError({path_, line_, 0}, "holds no atoms that are asked for");
-    out_.chains = {""};
-    Residue all;
-    all.atom_count = static_cast<std::uint32_t>(out_.atoms.size());
-    out_.residues.push_back(all);
+    close_residue();
     return std::move(out_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, line_, 0}, message); }
-
   std::string_view next_line_peeked() const {
     std::string_view rest = text_;
     return take_line(rest);
-  }
-  std::string_view line() {
-    ++line_;
-    if (text_.empty()) fail("the file ends where a line of it is missing");
-    return take_line(text_);
   }
 
   /// Counts the complete frames after the one that was read.
@@ -103,34 +90,27 @@ class XyzReader {
   std::uint64_t count_of(std::string_view text) const {
     const std::vector<std::string_view> words = words_of(text);
     std::uint64_t count = 0;
-    if (words.empty()) fail("the number of atoms is missing");
-    if (words.size() != 1 || !parse_number(words[0], count)) fail(quoted(words[0]) + " is no number of atoms");
+    if (words.empty()) fail(0, "the number of atoms is missing");
+    if (words.size() != 1 || !parse_number(words[0], count)) fail(0, quoted(words[0]) + " is no number of atoms");
     return count;
   }
 
   void add_atom(std::string_view text, const Columns& columns) {
     const std::vector<std::string_view> words = words_of(text);
     if (words.size() < columns.position + 3 || words.size() <= columns.species)
-      fail(fmt::format("{} columns: an atom is a symbol and three coordinates", words.size()));
-    Atom atom;
+      fail(0, fmt::format("{} columns: an atom is a symbol and three coordinates", words.size()));
+    glm::vec3 position(0);
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = words[columns.position + static_cast<std::size_t>(axis)];
-      const NumberError error = parse_float(word, atom.position[axis]);
-      if (error != NumberError::none) fail(describe(error, word));
+      const NumberError error = parse_float(word, position[axis]);
+      if (error != NumberError::none) fail(0, describe(error, word));
     }
-    atom.element = element_of(words[columns.species]);
-    atom.serial = static_cast<std::int32_t>(out_.atoms.size()) + 1;
+    const Atom atom = next_atom(position, words[columns.species]);
     if (atom.hydrogen() && !options_.yes("hydrogens", true)) return;
-    out_.atoms.push_back(atom);
-    in_file_.prove();
+    add(atom);
   }
 
-  std::string_view text_;
-  const std::string& path_;
   const ImportOptions& options_;
-  int line_ = 0;
-  Molecule out_;
-  Unproven in_file_;
 };
 
 }  // namespace
