@@ -20,7 +20,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Takes arguments as they were typed behind `bench`. Only a request for this command's help is left to the caller.
 void run_bench(std::vector<std::string> arguments) {
+  if (!arguments.empty() && (arguments[0] == "-h" || arguments[0] == "--help")) return;
+  if (!arguments.empty() && arguments[0] == "--") arguments.erase(arguments.begin());
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path() / "caplet_bench";
   if (error || !fs::exists(program, error))
@@ -36,12 +39,14 @@ void run_bench(std::vector<std::string> arguments) {
 
 }  // namespace
 
-void add_bench(CLI::App& app) {
+void add_bench(CLI::App& app, const Invocation& invocation) {
   CLI::App* command = app.add_subcommand("bench", "Measure ray tracing speed side by side with Embree");
   command->footer(footer_with({"caplet bench capsules --n 1000000"},
                               "Arguments go to the benchmark program; `caplet bench -- --help` lists them."));
-  command->prefix_command();
-  command->callback([command] { run_bench(command->remaining()); });
+  command->preparse_callback([&invocation](std::size_t count) {  // CLI11 would take `-- --help` for itself
+    const std::vector<std::string>& all = invocation.arguments;
+    run_bench({all.end() - static_cast<std::ptrdiff_t>(count), all.end()});
+  });
 }
 
 }  // namespace caplet::cli

@@ -23,7 +23,7 @@ void add_devices(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_pick(CLI::App& app);
 void add_info(CLI::App& app);
-void add_bench(CLI::App& app);
+void add_bench(CLI::App& app, const Invocation& invocation);
 void add_verify(CLI::App& app);
 void add_view(CLI::App& app);        // only if it is built (CAPLET_WITH_VIEW)
 void add_try_device(CLI::App& app);  // hidden: see trial.h

@@ -116,7 +116,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_convert(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
-  caplet::cli::add_bench(app);
+  caplet::cli::add_bench(app, invocation);
   caplet::cli::add_try_device(app);
   caplet::cli::add_describe(app);
   return end(run(app, argc, argv));

@@ -16,6 +16,7 @@
 #include "base/spelling.h"
 #include "film/image.h"
 #include "import/import.h"
+#include "import/picture_options.h"
 #include "present/film_window.h"
 
 namespace caplet::cli {
@@ -176,7 +177,8 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
         .add_option_function<std::string>(
             "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
             row.help + (row.of == Of::picture ? "" : " (" + formats_of_it + ")") +
-                (row.name == "least-width" ? "; unless asked " + usual_least_width() : ""))
+                (row.name == "least-width" ? fmt::format("; at most {}; unless asked {}", widest_least_width, usual_least_width())
+                                           : ""))
         ->type_name(row.values)
         ->group(row.of == Of::picture ? "The picture" : "Files of other fields");
   }

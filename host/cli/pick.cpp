@@ -223,9 +223,9 @@ void add_pick(CLI::App& app) {
                            ->capture_default_str()
                            ->type_name("N");
   command->option_defaults()->group("Output");
-  command->add_flag("--json", o->json, "Print a JSON object for machines");
+  command->add_flag("--json", o->json, "Print a JSON object for machines; not with --rays");
   command->option_defaults()->group("What is asked");
-  command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method");
+  command->add_flag("--reference", o->reference, "Also print what the host reference finds by another method; not with --rays");
   command->option_defaults()->group("Device");
   add_device(*command, o->device);
   add_encoding(*command, o->encoding);

@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "import/detail/pbrt_parameters.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -170,6 +172,14 @@ std::string values_of(const Parameter& parameter) {
   return some(parameter.numbers.size(), "number");
 }
 
+/// Says why a parameter given without a type is of none of these.
+std::string mismatch(const Parameter& parameter, const std::string& wanted) {
+  if (wanted == "integer")
+    for (const double x : parameter.numbers)
+      if (x != std::floor(x)) return fmt::format("must be a whole number, not {}", x);
+  return "must be of type " + wanted + ", not " + values_of(parameter);
+}
+
 std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
 
 /// Returns the error in a parameter's number of values; empty when it is right.
@@ -321,7 +331,7 @@ const Parameter* Parameters::values(std::string_view name, std::initializer_list
     if (parameter->type.empty()) {
       std::string wanted;
       for (const std::string_view type : types) wanted += (wanted.empty() ? "" : " or ") + std::string(type);
-      error(name, "must be of type " + wanted + ", not " + values_of(*parameter));
+      error(name, mismatch(*parameter, wanted));
       parameter->broken = true;
       return nullptr;
     }

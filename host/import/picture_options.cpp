@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "import/picture_options.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "import/detail/text_file.h"
 #include "present/picture_options.h"
@@ -11,13 +13,12 @@ namespace caplet {
 
 namespace {
 
-constexpr float kWidest = 64;  // pixels: anything wider is no line
-
 double width_of(const std::string& text) {
   float value = 0;
   const NumberError error = parse_float(text, value);
   if (error != NumberError::none) throw InputError({"--least-width"}, describe(error, text));
-  if (!(value >= 0 && value <= kWidest)) throw InputError({"--least-width"}, "'" + text + "' is not from 0 to 64 pixels");
+  if (!(value >= 0 && value <= widest_least_width))
+    throw InputError({"--least-width"}, fmt::format("'{}' is not from 0 to {} pixels", text, widest_least_width));
   return value;
 }
 

@@ -48,6 +48,17 @@ TEST(Program, HelpAndVersion) {
   EXPECT_THAT(version.out, testing::StartsWith("caplet "));
 }
 
+TEST(Program, BenchHandsItsArgumentsOn) {
+  const auto folder = test::temporary_folder();
+  const Result own = test::run_program({"bench", "--help"}, folder);
+  EXPECT_EQ(own.code, 0);
+  EXPECT_THAT(own.out, HasSubstr("Usage: caplet bench"));
+  // Where caplet_bench is not built, the error names it.
+  const Result handed_on = test::run_program({"bench", "--", "--help"}, folder);
+  EXPECT_THAT(handed_on.out + handed_on.err, HasSubstr("caplet_bench"));
+  EXPECT_THAT(handed_on.out, Not(HasSubstr("Usage: caplet bench")));
+}
+
 // Everything of the model counts: 12 bytes a vertex and 16 a patch, 48 bytes a plane, a Shape (a transform alone is 128) an
 // operand.
 TEST(Program, InfoCountsTheBytesOfEveryShape) {

@@ -492,7 +492,7 @@ TEST_F(LibraryAppearance, WhatThereIsNoneOfIsToldWithTheNearest) {
   EXPECT_THAT(said(Named{"hair", {{"beta_m", caplet::Rgb{}}}}),
               HasSubstr("\"beta_m\" must be of type float or texture, not rgb"));
   EXPECT_THAT(said(Named{"hair", {{"beta_m", 2.0}}}), HasSubstr("\"beta_m\" must lie between 0 and 1"));
-  EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}), HasSubstr("\"maxdepth\" must be of type integer, not 1 number"));
+  EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}), HasSubstr("\"maxdepth\" must be a whole number, not 1.5"));
   EXPECT_THAT(said(Named{"conductor", {{"eta", std::string("metal-Gold-eta")}}}), HasSubstr("metal-"));
   EXPECT_THAT(said(Named{"conductor", {{"multiscatter", 1.0}}}),
               HasSubstr("\"multiscatter\" must be of type bool, not 1 number"));
