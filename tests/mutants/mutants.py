@@ -112,10 +112,21 @@ def bodies(text, function):
     return out
 
 
+def pattern(old):
+    """Returns a regular expression for the text, however its words and signs are divided by blanks and lines."""
+    out = previous = ""
+    for token in re.findall(r"\w+|[^\w\s]", old):
+        if previous:
+            out += r"(?:\s|\\\n)" + ("+" if re.match(r"\w", previous) and re.match(r"\w", token) else "*")
+        out += re.escape(token)
+        previous = token
+    return re.compile(out)
+
+
 def places(text, m):
-    """Returns where the mutant's old text begins."""
+    """Returns beginning and end of each place of the mutant's old text."""
     within = bodies(text, m.function) if m.function else [(0, len(text))]
-    return sorted({begin + at.start() for begin, end in within for at in re.finditer(re.escape(m.old), text[begin:end])})
+    return sorted({(begin + at.start(), begin + at.end()) for begin, end in within for at in pattern(m.old).finditer(text[begin:end])})
 
 
 def place(path, m):
@@ -294,8 +305,8 @@ def outcome(program, test_filter, kernels, folder):
 
 
 def mutate(path, m):
-    text, at = path.read_text(), place(path, m)
-    path.write_text(text[:at] + m.new + text[at + len(m.old):])
+    text, (begin, end) = path.read_text(), place(path, m)
+    path.write_text(text[:begin] + m.new + text[end:])
 
 
 class Run:
