@@ -10,12 +10,13 @@
 #include <glm/matrix.hpp>
 
 #include "base/spelling.h"
-#include "import/detail/pbrt_lights.h"
-#include "import/detail/pbrt_materials.h"
-#include "import/detail/pbrt_media.h"
-#include "import/detail/pbrt_names.h"
-#include "import/detail/pbrt_options.h"
-#include "import/detail/pbrt_shapes.h"
+#include "import/detail/pbrt/lights.h"
+#include "import/detail/pbrt/materials.h"
+#include "import/detail/pbrt/media.h"
+#include "import/detail/pbrt/names.h"
+#include "import/detail/pbrt/options.h"
+#include "import/detail/pbrt/resolve.h"
+#include "import/detail/pbrt/shapes.h"
 
 namespace caplet {
 
@@ -207,14 +208,8 @@ void set_option(const ProgramStatement& statement, const glm::dmat4& world_from_
 }
 
 void make_hair_one_sided(const ProgramStatement& statement, const Scene& scene, Shape& shape) {
-  const auto is_hair = [&](std::uint32_t material) {
-    return material < scene.materials.size() && std::holds_alternative<HairMaterial>(scene.materials[material].model);
-  };
   if (std::ranges::find(statement.parameters, "onesided", &StatementParameter::name) != statement.parameters.end()) return;
-  bool some = is_hair(shape.material) || std::ranges::any_of(shape.materials, is_hair);
-  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    some = some || std::ranges::any_of(capsules->materials, is_hair);
-  if (some && is_closed(shape)) shape.one_sided = true;
+  if (pbrt::is_closed_hair(shape, scene.materials)) shape.one_sided = true;
 }
 
 }  // namespace caplet

@@ -10,17 +10,11 @@
 #include "scene/camera_fields.h"
 #include "schema/detail/describe.h"
 #include "schema/detail/rows.h"
+#include "schema/kind_of.h"
 
 namespace caplet::schema {
 
 namespace {
-
-/// Returns the index of `type` in `names`, or 0 for a type that is rendered as the first.
-template <class Kind, class Names>
-Kind kind_of(const std::string& type, const Names& names) {
-  const auto found = std::ranges::find(names, type);
-  return found == names.end() ? Kind{} : static_cast<Kind>(found - names.begin());
-}
 
 bool is_one_of(const std::string& type, std::initializer_list<const char*> names) {
   return std::ranges::find(names, type) != names.end();
@@ -89,7 +83,7 @@ void add_film(const std::string& type, std::vector<Parameter>& out) {
 
 void add_integrator(const std::string& type, std::vector<Parameter>& out) {
   IntegratorSettings integrator;
-  integrator.kind = kind_of<IntegratorSettings::Kind>(type, integrator_names);
+  integrator.kind = kind_of<IntegratorSettings::Kind>(type, integrator_names).value_or(IntegratorSettings::Kind{});
   Describe all(out);
   IntegratorSettings::fields(integrator, all);
   if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) add_ignored_names({"maxdepth"}, "integer", out);
@@ -111,12 +105,12 @@ void add_option(std::string_view directive, const std::string& type, std::vector
   if (directive == "Integrator") add_integrator(type, out);
   if (directive == "PixelFilter") {
     PixelFilter filter;
-    filter.set_kind(kind_of<PixelFilter::Kind>(type, filter_names));
+    filter.set_kind(kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind{}));
     PixelFilter::fields(filter, all);
   }
   if (directive == "Sampler") {
     SamplerSettings sampler;
-    sampler.kind = kind_of<SamplerSettings::Kind>(type, sampler_names);
+    sampler.kind = kind_of<SamplerSettings::Kind>(type, sampler_names).value_or(SamplerSettings::Kind{});
     SamplerSettings::fields(sampler, all);
     if (is_one_of(type, {"halton", "paddedsobol", "sobol", "zsobol"})) add_ignored(randomization_ignored, out);
   }

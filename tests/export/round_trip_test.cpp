@@ -14,7 +14,7 @@
 #include "export/detail/text.h"
 #include "export/export.h"
 #include "flat_equal.h"
-#include "import/detail/pbrt.h"
+#include "import/detail/pbrt/pbrt.h"
 #include "present/lights.h"
 #include "present/present.h"
 #include "random_scene.h"

@@ -4,7 +4,7 @@
 // Scene text of any bytes either imports and is sound once it is validated, or is refused. What is sound is written, or refused,
 // and what is written is read as the same text. It can name the files of the folder beside/.
 #include "export/export.h"
-#include "import/detail/pbrt.h"
+#include "import/detail/pbrt/pbrt.h"
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Spectrum text either gives ascending wavelengths with a value each, or is refused.
-#include "import/detail/pbrt_spectrum_file.h"
+#include "import/detail/pbrt/spectrum_file.h"
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

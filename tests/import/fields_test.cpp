@@ -4,7 +4,7 @@
 // Shapes whose model names its fields are read without a reader of their own.
 #include <gmock/gmock.h>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::test {
 

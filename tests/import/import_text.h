@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "import/detail/pbrt.h"
+#include "import/detail/pbrt/pbrt.h"
 #include "import/import.h"
 #include "support/data.h"
 

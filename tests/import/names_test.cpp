@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/spelling.h"
-#include "import/detail/pbrt_names.h"
+#include "import/detail/pbrt/names.h"
 #include "import_text.h"
 
 namespace caplet::test {

@@ -13,11 +13,11 @@
 #include <functional>
 #include <set>
 
-#include "import/detail/pbrt_lights.h"
-#include "import/detail/pbrt_materials.h"
-#include "import/detail/pbrt_media.h"
-#include "import/detail/pbrt_options.h"
-#include "import/detail/pbrt_shapes.h"
+#include "import/detail/pbrt/lights.h"
+#include "import/detail/pbrt/materials.h"
+#include "import/detail/pbrt/media.h"
+#include "import/detail/pbrt/options.h"
+#include "import/detail/pbrt/shapes.h"
 #include "import/statement.h"
 
 namespace caplet::test {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "counted_new.h"
-#include "import/detail/pbrt.h"
+#include "import/detail/pbrt/pbrt.h"
 #include "lower/lower.h"
 #include "scene/image_reader.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

@@ -3,7 +3,7 @@
 #include <set>
 #include <variant>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

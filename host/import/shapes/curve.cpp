@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 #include "import/detail/cubic_chain.h"
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

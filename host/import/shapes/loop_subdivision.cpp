@@ -9,7 +9,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

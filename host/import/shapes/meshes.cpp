@@ -3,7 +3,7 @@
 //
 // Readers of triangle meshes and bilinear meshes.
 #include "base/log.h"
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

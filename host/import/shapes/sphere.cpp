@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 #include <algorithm>
 
-#include "import/detail/pbrt_geometry.h"
+#include "import/detail/pbrt/geometry.h"
 
 namespace caplet::pbrt {
 

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/detail/pbrt/options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+#include "base/log.h"
+#include "base/spelling.h"
+#include "import/detail/pbrt/fields.h"
+#include "scene/transform.h"
+#include "schema/kind_of.h"
+
+namespace caplet::pbrt {
+
+namespace {
+
+double positive(Parameters& parameters, std::string_view name, double fallback) {
+  const double value = parameters.number(name, fallback);
+  if (value > 0) return value;
+  parameters.error(name, "must be positive");
+  return fallback;
+}
+
+void warn(Parameters& parameters, std::string_view name, const std::string& message) {
+  parameters.diagnostics().warning(parameters.where(name), parameters.owner() + ": " + message);
+}
+
+/// Lists the camera sensors whose response curves pbrt-v4 has.
+const std::vector<std::string>& camera_sensors() {
+  static const std::vector<std::string> names = {
+      "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d", "canon_eos_200d_mkii", "canon_eos_5d",   "canon_eos_5d_mkii",
+      "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",  "canon_eos_5ds",  "canon_eos_m",         "cie1931",        "hasselblad_l1d_20c",
+      "nikon_d810",         "nikon_d850",         "sony_ilce_6400", "sony_ilce_7m3",       "sony_ilce_7rm3", "sony_ilce_9"};
+  return names;
+}
+
+/// Reads "sensor" and "whitebalance". For a camera's sensor only pbrt-v4's white balance is applied, not its response curves.
+void set_sensor(Parameters& parameters, FilmSettings& film) {
+  const std::string sensor = parameters.text("sensor", "cie1931");
+  const auto& known = camera_sensors();
+  if (std::ranges::find(known, sensor) == known.end())
+    return parameters.error("sensor",
+                            "is " + in_quotes(sensor) + "; the nearest known name is \"" + nearest_name(sensor, known) + "\"");
+  if (film.white_balance > 0 && !(film.white_balance >= 1000 && film.white_balance <= 25000))
+    parameters.error("whitebalance", must_lie_within(1000, 25000) + " kelvin");
+  if (sensor == "cie1931") return;
+  if (film.white_balance == 0) film.white_balance = 6500;
+  warn(parameters, "sensor", "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
+}
+
+/// Reads the direction and the up axis of an automatic camera.
+Framing framing_of(Parameters& parameters, bool is_orthographic) {
+  Framing framing;
+  framing.is_orthographic = is_orthographic;
+  for (auto [name, value] : {std::pair{"view", &framing.toward_viewer}, {"up", &framing.up}}) {
+    if (!parameters.has(name)) continue;
+    const glm::dvec3 direction = parameters.vector(name, {0, 1, 0});
+    const double length = glm::length(direction);
+    if (length > 0 && std::isfinite(length))
+      *value = is_unit(length) ? direction : direction / length;
+    else
+      parameters.error(name, "has no direction");
+  }
+  return framing;
+}
+
+/// Reads the background. The path of an image is resolved here; `images` reads it if it is given.
+std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* images) {
+  const std::string kind = parameters.text("background", "");
+  if (kind.empty()) return std::nullopt;
+  Backdrop out;
+  if (kind == "color") {
+    out.kind = Backdrop::Kind::color;
+    const Parameter* color = parameters.values("backgroundcolor", {"float"});
+    const auto is_within = [](double v) { return v >= 0 && v <= 1; };
+    if (!color || color->numbers.size() != 3 || !std::ranges::all_of(color->numbers, is_within))
+      parameters.error("backgroundcolor", "must be three numbers from 0 to 1");
+    else
+      out.color = {color->numbers[0], color->numbers[1], color->numbers[2]};
+  } else if (kind == "image") {
+    const std::string name = parameters.text("backgroundfile", "");
+    try {
+      if (!images) throw InputError("pictures cannot be read here");
+      out.kind = Backdrop::Kind::image;
+      out.image = std::make_shared<const EnvironmentImage>(
+          images->read_rgb(resolve_file(name, parameters.where("backgroundfile"), parameters.main_file())));
+    } catch (const InputError& error) {
+      parameters.error("backgroundfile", error.what());
+      return std::nullopt;
+    }
+  } else if (kind != "transparent") {
+    parameters.error("background", "must be \"transparent\", \"color\" or \"image\"");
+  }
+  return out;
+}
+
+Projection projection_of(const std::string& type, Parameters& parameters) {
+  if (type == "orthographic") return OrthographicProjection{};
+  if (type == "spherical") {
+    int mapping = 0;
+    FieldReader{parameters}.choice(SphericalProjection::mapping_field, mapping, SphericalProjection::mapping_names);
+    return SphericalProjection{static_cast<SphericalProjection::Mapping>(mapping)};
+  }
+  const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
+  const double degrees = half > 0 ? 2 * half : given;
+  if (degrees > 0 && degrees < 180) return PerspectiveProjection{degrees * glm::pi<double>() / 180};
+  parameters.error(half > 0 ? "halffov" : "fov", half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
+  return PerspectiveProjection{};
+}
+
+}  // namespace
+
+void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
+  Camera camera;
+  camera.world_from_camera = world_from_camera;
+  camera.projection = projection_of(type, parameters);
+  if (parameters.has("frameaspectratio")) camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
+  if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
+    const auto& v = window->numbers;
+    if (v.size() != 4)
+      parameters.error("screenwindow", "takes 4 values, not " + std::to_string(v.size()));
+    else if (!(v[0] < v[1] && v[2] < v[3]))
+      parameters.error("screenwindow", "must be x min, x max, y min, y max with min below max");
+    else
+      camera.screen_window = {v[0], v[1], v[2], v[3]};
+  }
+  Camera::fields(camera, FieldReader{parameters});
+  const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean(Camera::parallel_lens_field.name, false);
+  if (is_orthographic(camera) && camera.lens_radius > 0 && !has_parallel_lens) {
+    // All rays of pbrt-v4 then leave the same lens: a perspective through the window at the focal distance.
+    camera.projection = PerspectiveProjection{2 * std::atan(1 / camera.focal_distance)};
+    warn(parameters, "lensradius", "makes a perspective of it, as in pbrt-v4; with \"bool parallellens\" true it makes none");
+  }
+  const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
+  if (close > open)
+    scene.film.exposure_time = close - open;
+  else
+    parameters.error("shutterclose", "must be after shutteropen");
+  scene.automatic_camera = parameters.boolean("automatic", false);
+  scene.has_no_up = parameters.boolean("noup", false);
+  scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
+  scene.unit = parameters.text("unit", "");
+  parameters.finish();
+  scene.camera = camera;
+}
+
+void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene, const ImageReader* images) {
+  FilmSettings film;
+  film.exposure_time = scene.film.exposure_time;
+  film.space = space;
+  FilmSettings::fields(film, FieldReader{parameters});
+  film.filename = parameters.text("filename", "pbrt.exr");
+  if (const Parameter* bounds = parameters.values("pixelbounds", {"integer"})) {
+    const auto& v = bounds->numbers;
+    if (v.size() == 4)
+      film.crop = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
+    else
+      parameters.error("pixelbounds", "takes 4 values, not " + std::to_string(v.size()));
+  }
+  if (const Parameter* window = parameters.values("cropwindow", {"float"})) {
+    const auto& v = window->numbers;
+    // pbrt computes in 32-bit floats: 0.07 of 100 is pixel 7, not a little more.
+    const auto pixel = [](double fraction, int size) {
+      return static_cast<int>(std::ceil(static_cast<float>(fraction) * static_cast<float>(size)));
+    };
+    if (v.size() != 4)
+      parameters.error("cropwindow", "takes 4 values, not " + std::to_string(v.size()));
+    else if (!(0 <= v[0] && v[0] < v[1] && v[1] <= 1 && 0 <= v[2] && v[2] < v[3] && v[3] <= 1))
+      parameters.error("cropwindow", "must be x min, x max, y min, y max within 0 and 1");
+    else if (film.crop)
+      parameters.error("cropwindow", "cannot be combined with \"pixelbounds\"");
+    else
+      film.crop = {pixel(v[0], film.width), pixel(v[1], film.width), pixel(v[2], film.height), pixel(v[3], film.height)};
+  }
+  if (film.crop) {
+    const auto& c = *film.crop;
+    if (!(0 <= c[0] && c[0] < c[1] && c[1] <= film.width && 0 <= c[2] && c[2] < c[3] && c[3] <= film.height))
+      parameters.error(parameters.has("pixelbounds") ? "pixelbounds" : "cropwindow",
+                       "must be x0, x1, y0, y1 of a part of the image that is not empty");
+  }
+  positive(parameters, "diagonal", 35);
+  parameters.boolean("savefp16", true);
+  set_sensor(parameters, film);
+  if (type == "gbuffer") {
+    parameters.text("coordinatesystem", "camera");
+    warn(parameters, {}, "the layers have names of our own (--layers), and are of the world");
+  }
+  if (type == "spectral") {
+    for (const char* name : {"nbuckets", "lambdamin", "lambdamax"}) parameters.ignore(name);
+    warn(parameters, {}, "red, green and blue are written, not the spectrum");
+  }
+  film.backdrop = backdrop_of(parameters, images);
+  parameters.finish();
+  scene.film = film;
+}
+
+void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
+  PixelFilter filter;
+  filter.set_kind(schema::kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind::gaussian));
+  PixelFilter::fields(filter, FieldReader{parameters});
+  parameters.finish();
+  scene.filter = filter;
+}
+
+std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene) {
+  SamplerSettings sampler;
+  const bool has_seed = parameters.has("seed");
+  const auto kind = schema::kind_of<SamplerSettings::Kind>(type, sampler_names);
+  sampler.kind = kind.value_or(SamplerSettings::Kind::sobol);
+  SamplerSettings::fields(sampler, FieldReader{parameters});
+  if (!kind) warn(parameters, {}, "rendered by the sampler \"sobol\", whose noise is another");
+  if (sampler.kind == SamplerSettings::Kind::stratified) {
+    const std::int64_t samples = std::int64_t{sampler.x_strata} * sampler.y_strata;
+    if (samples > INT32_MAX)
+      parameters.error("xsamples", "times \"ysamples\" is more than 2^31 samples a pixel");
+    else
+      sampler.samples_per_pixel = static_cast<int>(samples);
+  }
+  if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol") parameters.text("randomization", "");
+  parameters.finish();
+  const std::uint32_t seed = std::exchange(sampler.seed, scene.sampler.seed);
+  scene.sampler = sampler;
+  return has_seed ? std::optional(seed) : std::nullopt;
+}
+
+void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
+  IntegratorSettings integrator;
+  const auto kind = schema::kind_of<IntegratorSettings::Kind>(type == "volpath" ? "path" : type, integrator_names);
+  integrator.kind = kind.value_or(IntegratorSettings::Kind::path);
+  if (!kind) warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
+  IntegratorSettings::fields(integrator, FieldReader{parameters});
+  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) parameters.ignore("maxdepth");
+  if (type == "path" || type == "volpath") parameters.text("lightsampler", "bvh");
+  if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
+    if (parameters.boolean("regularize", false))
+      warn(parameters, "regularize", "nothing is made rougher than it is (\"regularize\")");
+  // These write additional pictures, or affect only noise.
+  if (type == "bdpt")
+    for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
+  if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");
+  if (type == "mlt")
+    for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
+      parameters.ignore(name);
+  if (type == "sppm")
+    for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
+  parameters.finish();
+  scene.integrator = integrator;
+}
+
+void check_accelerator(const std::string& type, Parameters& parameters) {
+  for (const char* name : {"maxnodeprims", "splitmethod"})
+    if (type == "bvh") parameters.ignore(name);
+  for (const char* name : {"intersectcost", "traversalcost", "emptybonus", "maxprims", "maxdepth"})
+    if (type == "kdtree") parameters.ignore(name);
+  log::info("{}: {} has no effect on the image and is ignored", parameters.where().to_string(), parameters.owner());
+  parameters.finish();
+}
+
+std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const std::string& file,
+                                        Diagnostics& diagnostics) {
+  const auto wrong = [&](const std::string& message) {
+    diagnostics.error(place_of(value, file), "Option " + in_quotes(name) + " " + message);
+  };
+  if (name == "seed") return static_cast<std::uint32_t>(parse_integer(value, file));
+  if (name == "displacementedgescale") {
+    parse_number(value, file);
+  } else if (name == "rendercoordsys") {
+    if (value.text != "camera" && value.text != "cameraworld" && value.text != "world")
+      wrong("must be \"camera\", \"cameraworld\" or \"world\", not " + in_quotes(value.text));
+  } else if (value.text != "true" && value.text != "false") {
+    wrong("must be true or false, not " + in_quotes(value.text));
+  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "pixelstats" && name != "wavefront") {
+    wrong("is not rendered yet");
+  }
+  return std::nullopt;
+}
+
+}  // namespace caplet::pbrt
